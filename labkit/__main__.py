@@ -1,0 +1,154 @@
+"""The command line: `python3 -m labkit lab`, `python3 -m labkit test`, and more of the same."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import importlib.util
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from labkit import __version__
+from labkit.errors import LabError, SetupError
+
+__all__ = ['main']
+
+# Command -> the module whose `main(argv)` runs it, given all that follows.
+_FORWARDED = {'progress': 'labkit.exercises.progress', 'ros2': 'labkit.ros2'}
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command of labkit.
+
+    Args:
+        argv: The words after `labkit`. Those of the command line if None.
+
+    Returns:
+        The exit code: 2 if this machine, or what was typed, is not as it has to be.
+    """
+    words = list(sys.argv[1:] if argv is None else argv)
+    try:
+        return _run(words)
+    except LabError as error:
+        print(f'labkit: {error}', file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print('\nlabkit: interrupted. Repeat the command to go on.', file=sys.stderr)
+        return 130
+
+
+def _run(words: list[str]) -> int:
+    if words and words[0] in _forwarded():
+        _enter_environment(words)
+        module = importlib.import_module(_FORWARDED[words[0]])
+        return int(module.main(words[1:]))
+    options, others = _parser().parse_known_args(words)
+    if others and options.command not in ('lab', 'test'):
+        _parser().error(f'{options.command} does not know {" ".join(others)!r}')
+    if others[:1] == ['--']:
+        others = others[1:]
+    if options.command == 'lab':
+        from labkit.learner import start_lab
+
+        start_lab(others)
+    if options.command == 'test':
+        from labkit.run_tests import run_tests
+
+        return run_tests(others)
+    if options.command == 'reset':
+        from labkit.learner import reset
+
+        print(reset(options.lesson))
+        return 0
+    if options.command == 'doctor':
+        return _doctor(words)
+    _enter_environment(words)
+    from labkit.record import record
+
+    return record(options.lessons)
+
+
+def _doctor(words: Sequence[str]) -> int:
+    try:
+        _enter_environment(words)
+    except LabError:
+        pass  # no Python with ROS: the doctor says so, among other things
+    from labkit.doctor import doctor
+
+    report = doctor()
+    print(report)
+    return 0 if report.ok else 1
+
+
+def _forwarded() -> list[str]:
+    """Return the commands of parts of labkit that are there."""
+    folder = Path(__file__).parent.parent
+    found = []
+    for command, module in _FORWARDED.items():
+        path = folder.joinpath(*module.split('.'))
+        if path.is_dir() or path.with_suffix('.py').is_file():
+            found.append(command)
+    return found
+
+
+def _enter_environment(words: Sequence[str]) -> None:
+    """Go on in the environment's Python, unless this one is an environment with ROS itself."""
+    from labkit.setup_env import PYTHON, VENV, environment_variables, existing_environment
+
+    has_ros = importlib.util.find_spec('rclpy') is not None and sys.version_info >= (3, 10)
+    inside = os.path.realpath(sys.prefix) == os.path.realpath(VENV)
+    if inside and not has_ros:
+        raise SetupError(
+            f'The environment {str(VENV)!r} is without ROS 2.',
+            todo='Delete that folder, and make it anew: python3 -m labkit lab',
+        )
+    # Another environment with ROS is the learner's choice; packages beside the system's are not.
+    chosen = inside or sys.prefix != sys.base_prefix or not PYTHON.exists()
+    if not (has_ros and chosen):
+        python = existing_environment()
+        command = [str(python), '-m', 'labkit', *words]
+        os.execve(python, command, environment_variables())
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog='labkit',
+        description='Learn ROS 2 in Jupyter notebooks. Start with: python3 -m labkit lab',
+        allow_abbrev=False,
+    )
+    parser.add_argument('--version', action='version', version=f'labkit {__version__}')
+    commands = parser.add_subparsers(dest='command', metavar='command', required=True)
+
+    def add(name: str, text: str, more: str = '') -> argparse.ArgumentParser:
+        return commands.add_parser(
+            name, help=text, description=f'{text}. {more}'.strip(), allow_abbrev=False
+        )
+
+    add(
+        'lab',
+        'Make the environment if need be, and open the lessons in JupyterLab',
+        'Options it does not know, and all after `--`, go to JupyterLab: '
+        '`--no-browser`, `--port 9000`.',
+    )
+    add(
+        'test',
+        'Run every lesson and every test',
+        'Options and paths are for pytest, which then runs alone: `-k odds`, `tests/sim`.',
+    )
+    add('doctor', 'Say what is wrong with this machine or environment, and what to do')
+    record = add('record', 'Run lessons and store their outputs in notebooks/')
+    record.add_argument(
+        'lessons', nargs='*', metavar='NN', help='numbers or names; all if none is given'
+    )
+    reset = add('reset', 'Get a fresh copy of a lesson, and keep the old one as a backup')
+    reset.add_argument('lesson', metavar='NN', help='number or name of the lesson')
+    for name in _forwarded():
+        text = {'progress': 'Show what you have solved', 'ros2': 'The words of the ros2 command'}
+        commands.add_parser(name, help=text[name], add_help=False)
+    return parser
+
+
+if __name__ == '__main__':
+    sys.exit(main())

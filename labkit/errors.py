@@ -1,0 +1,85 @@
+"""Errors for people: what was expected, what was seen, what to do next."""
+
+from __future__ import annotations
+
+import sys
+
+__all__ = ['LabError', 'LabTimeout', 'SetupError']
+
+# Characters in a line of a message in a notebook: what a projector shows side by side.
+WIDTH = 88
+
+
+class LabError(Exception):
+    """Report something that a learner can put right.
+
+    In a notebook it is shown without a traceback: the line of the cell that led to it, then the
+    message. In a script it is an ordinary exception.
+
+    Args:
+        message: What was expected and what was seen, values shown with `!r`.
+        todo: What to do next, as one or more sentences. Shown on a line of its own.
+    """
+
+    def __init__(self, message: str, *, todo: str = '') -> None:
+        super().__init__(f'{message}\n{todo}' if todo else message)
+        self.message = message
+        self.todo = todo
+
+    def _render_traceback_(self) -> list[str]:
+        """Return the lines that IPython shows instead of a traceback."""
+        place = _calling_line(self)
+        return [place] * bool(place) + _wrapped(f'{type(self).__name__}: {self}')
+
+
+def _wrapped(text: str) -> list[str]:
+    """Return the lines of a text, long ones broken between words; JupyterLab breaks words."""
+    import textwrap
+
+    wrap = textwrap.TextWrapper(WIDTH, break_long_words=False, break_on_hyphens=False)
+    return [part for line in text.splitlines() for part in wrap.wrap(line) or ['']]
+
+
+class LabTimeout(LabError, TimeoutError):
+    """Report that something awaited did not happen within `timeout_sec`."""
+
+
+class SetupError(LabError):
+    """Report that this machine, or its environment, can't run the course as it is.
+
+    The command line shows the message alone and ends with exit code 2.
+    """
+
+
+def _calling_line(error: BaseException) -> str:
+    """Return where in the learner's own code the error came up, '' if that is not known."""
+    # IPython is there whenever this is asked: it is what asks.
+    import linecache
+
+    place = ''
+    traceback = error.__traceback__
+    while traceback is not None:
+        code = traceback.tb_frame.f_code
+        cell = cell_name(code.co_filename)
+        if cell:
+            text = linecache.getline(code.co_filename, traceback.tb_lineno).strip()
+            place = f'{cell}, line {traceback.tb_lineno}: {text}'
+        traceback = traceback.tb_next
+    return place
+
+
+def cell_name(filename: str) -> str:
+    """Return the notebook cell that a code object's file name stands for.
+
+    Args:
+        filename: `co_filename` of a code object.
+
+    Returns:
+        `'Cell In[3]'`, or `''` when the file is not a cell of the running notebook.
+    """
+    ipython = sys.modules.get('IPython')
+    shell = ipython.get_ipython() if ipython is not None else None
+    if shell is None:
+        return ''
+    data = shell.compile.format_code_name(filename)
+    return f'{data[0]} {data[1]}' if data is not None else ''
