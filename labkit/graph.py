@@ -1,0 +1,265 @@
+"""The computation graph as data: nodes, topics, services, and where they do not fit together.
+
+`read_graph` takes a picture of the moment; two pictures compare equal when nothing has changed.
+Nothing here prints.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+from rclpy.node import Node, NodeNameNonExistentError
+from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
+from rclpy.topic_endpoint_info import TopicEndpointInfo
+
+__all__ = [
+    'Endpoint',
+    'Graph',
+    'GraphNode',
+    'GraphService',
+    'GraphTopic',
+    'Mismatch',
+    'endpoints',
+    'full_node_name',
+    'is_hidden',
+    'node_names',
+    'read_graph',
+]
+
+# Every node has these, so they say nothing about one.
+EVERY_NODE_HAS = ('/parameter_events', '/rosout')
+_EVERY_NODE_OFFERS = ('rcl_interfaces/srv/', 'type_description_interfaces/srv/')
+
+
+@dataclass(frozen=True)
+class GraphNode:
+    """A node.
+
+    Attributes:
+        name: Full name, such as `/talker`.
+        own: Whether it lives in this process; the others belong to other processes.
+        count: How many nodes have this name. It should be 1.
+    """
+
+    name: str
+    own: bool
+    count: int = 1
+
+
+@dataclass(frozen=True)
+class Endpoint:
+    """A publisher or a subscription.
+
+    Attributes:
+        node: Full name of its node.
+        msg_type: Name of the type, such as `std_msgs/msg/String`.
+        qos: QoS profile. History and depth are unknown to the graph.
+    """
+
+    node: str
+    msg_type: str
+    qos: QoSProfile
+
+
+@dataclass(frozen=True)
+class Mismatch:
+    """A publisher and a subscription of one topic that will never exchange a message.
+
+    Attributes:
+        topic: Full name of the topic.
+        publisher: Full name of the publishing node.
+        subscription: Full name of the subscribing node.
+        reason: Why, as half a sentence.
+    """
+
+    topic: str
+    publisher: str
+    subscription: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class GraphTopic:
+    """A topic, and who is at either end of it."""
+
+    name: str
+    types: tuple[str, ...]
+    publishers: tuple[Endpoint, ...]
+    subscriptions: tuple[Endpoint, ...]
+
+    def mismatches(self) -> Iterator[Mismatch]:
+        """Yield the pairs that can't hear each other; a pair of nodes once for each reason."""
+        seen = set()
+        for publisher in self.publishers:
+            for subscription in self.subscriptions:
+                reason = _why_apart(publisher, subscription)
+                mismatch = Mismatch(self.name, publisher.node, subscription.node, reason)
+                if reason and mismatch not in seen:
+                    seen.add(mismatch)
+                    yield mismatch
+
+
+@dataclass(frozen=True)
+class GraphService:
+    """A service, the nodes that offer it and those that have a client for it."""
+
+    name: str
+    types: tuple[str, ...]
+    servers: tuple[str, ...]
+    clients: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Graph:
+    """Nodes, topics and services of a domain at one moment, each sorted by name.
+
+    `str(graph)` tells it in words.
+    """
+
+    nodes: tuple[GraphNode, ...]
+    topics: tuple[GraphTopic, ...]
+    services: tuple[GraphService, ...] = ()
+
+    @property
+    def mismatches(self) -> tuple[Mismatch, ...]:
+        """Return all pairs of a publisher and a subscription that can't hear each other."""
+        return tuple(mismatch for topic in self.topics for mismatch in topic.mismatches())
+
+    def __str__(self) -> str:
+        lines = ['Nodes:', *(f'  {_told(node)}' for node in self.nodes), 'Topics:']
+        for topic in self.topics:
+            lines += [f'  {topic.name} [{", ".join(topic.types)}]']
+            lines += _line('published by', [end.node for end in topic.publishers])
+            lines += _line('subscribed by', [end.node for end in topic.subscriptions])
+            for mismatch in topic.mismatches():
+                pair = f'{mismatch.publisher} and {mismatch.subscription}'
+                lines += [f'    no match between {pair}: {mismatch.reason}']
+        if self.services:
+            lines += ['Services:']
+        for service in self.services:
+            lines += [f'  {service.name} [{", ".join(service.types)}]']
+            lines += _line('offered by', service.servers)
+            lines += _line('called by', service.clients)
+        return '\n'.join(lines)
+
+
+def read_graph(
+    node: Node,
+    *,
+    foreign: Iterable[str] = (),
+    include_hidden: bool = False,
+    include_services: bool = False,
+) -> Graph:
+    """Take a picture of the graph.
+
+    Args:
+        node: The node to ask with.
+        foreign: Full names of the nodes of other processes, see `Runtime.foreign_nodes`.
+        include_hidden: Whether to include hidden nodes and topics (a part of the name starts with
+            `_`), and the two topics and the parameter services that every node has.
+        include_services: Whether to include services.
+
+    Returns:
+        The graph, sorted by name.
+    """
+    others = set(foreign)
+    names = [name for name in node_names(node) if include_hidden or not is_hidden(name)]
+    nodes = tuple(
+        GraphNode(name, name not in others, names.count(name)) for name in sorted(set(names))
+    )
+    topics = []
+    for topic, types in sorted(node.get_topic_names_and_types()):
+        if include_hidden or not (is_hidden(topic) or topic in EVERY_NODE_HAS):
+            publishers = endpoints(node.get_publishers_info_by_topic(topic), include_hidden)
+            subscriptions = endpoints(node.get_subscriptions_info_by_topic(topic), include_hidden)
+            if publishers or subscriptions:
+                topics += [GraphTopic(topic, tuple(types), publishers, subscriptions)]
+    services = _services(node, names, include_hidden) if include_services else ()
+    return Graph(nodes, tuple(topics), services)
+
+
+def is_hidden(name: str) -> bool:
+    """Tell whether a node, topic or service is hidden: a part of its name starts with `_`."""
+    return any(part.startswith('_') for part in name.split('/'))
+
+
+def full_node_name(name: str, namespace: str) -> str:
+    """Return a node's full name: `/talker`, or `/robot/talker` in a namespace."""
+    return f'{namespace.rstrip("/")}/{name}'
+
+
+def node_names(node: Node) -> list[str]:
+    """Return the full names of all nodes, hidden ones too; two of one name appear twice."""
+    return sorted(full_node_name(*pair) for pair in node.get_node_names_and_namespaces())
+
+
+def endpoints(infos: list[TopicEndpointInfo], include_hidden: bool = True) -> tuple[Endpoint, ...]:
+    """Return publishers or subscriptions as data, sorted by node and type.
+
+    Args:
+        infos: What `get_publishers_info_by_topic` and its like return.
+        include_hidden: Whether to include those of hidden nodes.
+    """
+    found = [
+        Endpoint(
+            full_node_name(info.node_name, info.node_namespace), info.topic_type, info.qos_profile
+        )
+        for info in infos
+    ]
+    shown = [end for end in found if include_hidden or not is_hidden(end.node)]
+    return tuple(sorted(shown, key=lambda end: (end.node, end.msg_type)))
+
+
+def _services(node: Node, names: list[str], include_hidden: bool) -> tuple[GraphService, ...]:
+    servers: dict[str, set[str]] = {}
+    clients: dict[str, set[str]] = {}
+    for full_name in set(names):
+        namespace, _, name = full_name.rpartition('/')
+        for ask, ends in (
+            (node.get_service_names_and_types_by_node, servers),
+            (node.get_client_names_and_types_by_node, clients),
+        ):
+            for service, _types in _asked(ask, name, namespace or '/'):
+                ends.setdefault(service, set()).add(full_name)
+    return tuple(
+        GraphService(
+            service,
+            tuple(types),
+            tuple(sorted(servers.get(service, ()))),
+            tuple(sorted(clients.get(service, ()))),
+        )
+        for service, types in sorted(node.get_service_names_and_types())
+        if include_hidden or not (is_hidden(service) or types[0].startswith(_EVERY_NODE_OFFERS))
+    )
+
+
+def _asked(
+    ask: Callable[[str, str], list[tuple[str, list[str]]]], name: str, namespace: str
+) -> list[tuple[str, list[str]]]:
+    try:
+        return ask(name, namespace)
+    except NodeNameNonExistentError:
+        return []  # it has gone meanwhile
+
+
+def _why_apart(publisher: Endpoint, subscription: Endpoint) -> str:
+    """Return why two ends of a topic do not match, '' if they do."""
+    if publisher.msg_type != subscription.msg_type:
+        return f'{publisher.msg_type} is not {subscription.msg_type}'
+    compatibility, reason = qos_check_compatible(publisher.qos, subscription.qos)
+    if compatibility != QoSCompatibility.ERROR:
+        return ''
+    return str(reason).removeprefix('ERROR: ').strip().rstrip(';.')
+
+
+def _told(node: GraphNode) -> str:
+    notes = [] if node.own else ['another process']
+    if node.count > 1:
+        notes += [f'{node.count} nodes of this name']
+    return f'{node.name} ({", ".join(notes)})' if notes else node.name
+
+
+def _line(words: str, names: Iterable[str]) -> list[str]:
+    text = ', '.join(dict.fromkeys(names))
+    return [f'    {words} {text}'] if text else []
