@@ -1,0 +1,101 @@
+"""Python, and the packages that it has."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import importlib.util
+import os
+import platform
+import sys
+import sysconfig
+
+from labkit.checkup.words import inside, some
+from labkit.errors import LabError
+from labkit.installer import applicable
+from labkit.machine import VERSIONS, check_platform
+from labkit.setup_env import ROOT, VENV
+
+__all__ = ['jupyter', 'python', 'ros_packages']
+
+_JUPYTER = ('jupyterlab', 'ipykernel', 'ipywidgets', 'anywidget')
+
+
+def python() -> str:
+    """Look at the machine and the running Python."""
+    check_platform()
+    here = f'{platform.python_version()} ({sys.executable})'
+    fits = sys.implementation.name == 'cpython' and sys.maxsize > 2**32
+    if sys.version_info[:2] not in VERSIONS or not fits:
+        raise LabError(
+            f'ROS 2 Jazzy needs Python 3.10, 3.11, 3.12 or 3.13 (CPython, 64 bits), '
+            f'but this is {platform.python_implementation()} {here}.',
+            todo='Run python3 -m labkit lab: it looks for a Python that fits.',
+        )
+    return here
+
+
+def ros_packages() -> str:
+    """Look whether the packages of ROS 2 are there, of one distribution, from one place."""
+    wanted = {name: version for name, version in _pinned().items() if name.startswith('ros-')}
+    _compare(wanted)
+    spec = importlib.util.find_spec('rclpy')
+    origin = (spec.origin if spec is not None else None) or ''
+    if not inside(origin, os.path.join(sysconfig.get_path('platlib'), 'rclpy')):
+        raise LabError(
+            f'Python takes rclpy from {origin!r}, not from its own environment {sys.prefix!r}.',
+            todo='Start from a terminal where no ROS 2 has been sourced, and from a folder '
+            'without a file or folder called rclpy.',
+        )
+    return f'Jazzy, rclpy {wanted["ros-rclpy"]}'
+
+
+def jupyter() -> str:
+    """Look whether JupyterLab and what belongs to it are those of environment.txt."""
+    wanted = {name: version for name, version in _pinned().items() if name in _JUPYTER}
+    _compare(wanted)
+    return ', '.join(f'{name} {wanted[name]}' for name in _JUPYTER if name in wanted)
+
+
+def _pinned() -> dict[str, str]:
+    """Return the packages and versions that environment.txt asks for in this Python."""
+    try:
+        lines = (ROOT / 'environment.txt').read_text(encoding='utf-8').splitlines()
+    except OSError as error:
+        raise LabError(
+            f'environment.txt, which names the packages, can not be read: {error}.',
+            todo='Use a complete copy (git clone) of the course.',
+        ) from error
+    pinned = {}
+    for line in applicable(lines, tuple(sys.version_info[:3])):
+        name, _, version = line.partition(';')[0].partition('==')
+        pinned[name.partition('[')[0].strip().lower()] = version.strip()
+    return pinned
+
+
+def _compare(wanted: dict[str, str]) -> None:
+    missing, other = [], []
+    for name, version in wanted.items():
+        try:
+            found = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:
+            missing.append(name)
+            continue
+        if found != version:
+            other.append(f'{name} {found} instead of {version}')
+    if not missing and not other:
+        return
+    texts = [f'Missing: {some(missing)}.'] if missing else []
+    texts += [f'Installed: {some(other)}.'] if other else []
+    raise LabError(' '.join(texts), todo=_renew_environment())
+
+
+def _renew_environment() -> str:
+    if inside(sys.prefix, str(VENV)):
+        return (
+            f'End JupyterLab, delete the folder {VENV}, and run python3 -m labkit lab: that makes '
+            'it anew.'
+        )
+    return (
+        'Run python3 -m labkit lab, which makes an environment with all of them, or in an '
+        f'environment of your own: pip install -r {ROOT / "environment.txt"}'
+    )
