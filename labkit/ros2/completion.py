@@ -1,0 +1,110 @@
+"""Completion by the Tab key: commands, verbs, options, and names read off the live graph."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+from argparse import Namespace
+from collections.abc import Iterable
+
+from labkit.errors import LabError
+from labkit.ros2.shell import COMMANDS, command
+from labkit.ros2.words import Parser
+
+__all__ = ['complete', 'complete_line']
+
+
+def complete_line(line: str) -> tuple[str, list[str]]:
+    """Return what may stand at the end of a line.
+
+    Args:
+        line: What stands after `ros2`, up to the cursor.
+
+    Returns:
+        The word that is begun, as typed, and the words that may stand in its place.
+    """
+    words, last, quote = _split(line)
+    return f'{quote}{last}', [f'{quote}{text}' for text in complete(words, last)]
+
+
+def complete(words: list[str], last: str) -> list[str]:
+    """Return what may stand as the last word.
+
+    Args:
+        words: The words after `ros2` that are complete.
+        last: The word that is begun.
+
+    Returns:
+        Words that begin like it, sorted.
+    """
+    try:
+        found = set(_candidates(words, last))
+    except Exception:  # a Tab key that raises helps nobody
+        return []
+    return sorted(text for text in found if text.startswith(last))
+
+
+def _candidates(words: list[str], last: str) -> Iterable[str]:
+    if not words:
+        return COMMANDS
+    chosen = command(words[0])
+    rest = words[1:]
+    if chosen.has_verbs:
+        while rest and rest[0] in chosen.options:
+            rest = rest[1:]
+        if not rest:
+            verbs = [verb.name for verb in chosen.verbs]
+            return [*verbs, *chosen.options] if last.startswith('-') else verbs
+        verb, rest = chosen.verb(rest[0]), rest[1:]
+    else:
+        verb = chosen.verbs[0]
+    return _arguments(verb.parser(chosen.name), rest, last)
+
+
+def _arguments(parser: Parser, words: list[str], last: str) -> Iterable[str]:
+    """Return what may stand at the end of the words after the verb."""
+    options = {name: action for action in parser.actions for name in action.option_strings}
+    positionals = [action for action in parser.actions if not action.option_strings]
+    known = Namespace()
+    waiting: argparse.Action | None = None
+    count = 0
+    for word in words:
+        if waiting is not None:
+            setattr(known, waiting.dest, word)
+            waiting = None
+        elif word in options:
+            action = options[word]
+            waiting = action if action.nargs is None else None
+        elif (not word.startswith('-') or word == '-') and count < len(positionals):
+            setattr(known, positionals[count].dest, word)
+            several = positionals[count].nargs in ('+', '*', argparse.REMAINDER)
+            count += 0 if several else 1
+    if waiting is not None:
+        return _words_for(waiting, known)
+    if last.startswith('-'):
+        shown = (n for n, action in options.items() if action.help != argparse.SUPPRESS)
+        return [name for name in shown if name.startswith('--') or len(last) < 2]
+    return _words_for(positionals[count], known) if count < len(positionals) else ()
+
+
+def _words_for(action: argparse.Action, known: Namespace) -> Iterable[str]:
+    try:
+        words = getattr(action, 'complete', None)
+        return words(known) if words is not None else ()
+    except LabError:
+        return ()
+
+
+def _split(line: str) -> tuple[list[str], str, str]:
+    """Split a line into complete words, the word that is begun, and its quotation mark if any."""
+    for quote in ('', '"', "'"):
+        try:
+            words = shlex.split(line + quote)
+        except ValueError:
+            continue
+        if quote:
+            return words[:-1], words[-1] if words else '', quote
+        if not line or line[-1].isspace():
+            return words, '', ''
+        return words[:-1], words[-1], ''
+    return line.split()[:-1], '', ''

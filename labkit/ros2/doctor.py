@@ -1,0 +1,201 @@
+"""`ros2 doctor`: what in this machine and in the graph is likely to cause trouble.
+
+About this course itself, its environment and its notebook, `lab.doctor()` knows more.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import sys
+from argparse import Namespace
+from collections.abc import Callable
+from pathlib import Path
+
+from rclpy.node import Node
+from rclpy.qos import QoSCompatibility, qos_check_compatible
+from rclpy.utilities import get_rmw_implementation_identifier
+
+from labkit.graph import EVERY_NODE_HAS, is_hidden
+from labkit.ros2.context import add_discovery_options, asking_node
+from labkit.ros2.words import Command, Parser, Verb
+
+__all__ = ['COMMAND']
+
+_LOOPBACK, _MULTICAST = 0x8, 0x1000  # flags of an interface, see netdevice(7)
+_DISTRIBUTION = 'jazzy'
+
+Section = tuple[str, list[tuple[str, object]]]
+
+
+def doctor(args: Namespace) -> int:
+    """Print warnings and how many checks have failed, or all there is to know."""
+    node = asking_node(args)
+    if args.report:
+        for title, items in _report(node):
+            print(f'\n   {title}')
+            width = max(len(key) for key, _ in items) + 4
+            for key, value in items:
+                print(f'{key:{width}}: {value}')
+        print()
+        return 0
+    failed = []
+    for name, check in _CHECKS.items():
+        warnings, errors = check(node)
+        for text in warnings:
+            print(f'UserWarning: {text}', file=sys.stderr)
+        for text in errors:
+            print(f'UserWarning: ERROR: {text}', file=sys.stderr)
+        if errors or (warnings and args.include_warnings):
+            failed.append(name)
+    if not failed:
+        print(f'\nAll {len(_CHECKS)} checks passed\n')
+        return 0
+    print(f'\n{len(failed)}/{len(_CHECKS)} check(s) failed\n')
+    print('Failed modules:', *failed)
+    return 1
+
+
+Findings = tuple[list[str], list[str]]
+
+
+def _check_platform(_: Node) -> Findings:
+    distribution = os.environ.get('ROS_DISTRO', _DISTRIBUTION)
+    if distribution != _DISTRIBUTION:
+        return [], [f'ROS_DISTRO is {distribution}, but what runs is {_DISTRIBUTION}.']
+    return [], []
+
+
+def _check_network(_: Node) -> Findings:
+    flags = [flag for _, flag, _ in _interfaces()]
+    if not any(flag & _LOOPBACK for flag in flags):
+        return [], ['No loopback IP address is found.']
+    warnings = []
+    if all(flag & _LOOPBACK for flag in flags):
+        warnings += ['Only loopback IP address is found.']
+    if not any(flag & _MULTICAST for flag in flags):
+        warnings += ['No multicast IP address is found.']
+    return warnings, []
+
+
+def _check_topics(node: Node) -> Findings:
+    warnings = []
+    for topic in _topics(node):
+        publishers, subscribers = node.count_publishers(topic), node.count_subscribers(topic)
+        if publishers > subscribers == 0:
+            warnings += [f'Publisher without subscriber detected on {topic}.']
+        elif subscribers > publishers == 0:
+            warnings += [f'Subscriber without publisher detected on {topic}.']
+    return warnings, []
+
+
+def _check_qos(node: Node) -> Findings:
+    errors = []
+    for topic, _, _, state in _pairs(node):
+        if state.startswith('ERROR'):
+            reason = state.removeprefix('ERROR: ')
+            errors += [f"QoS compatibility error found on topic '{topic}': {reason}"]
+    return [], errors
+
+
+_CHECKS: dict[str, Callable[[Node], Findings]] = {
+    'platform': _check_platform,
+    'network': _check_network,
+    'topic': _check_topics,
+    'middleware': _check_qos,
+}
+
+
+def _report(node: Node) -> list[Section]:
+    network: list[tuple[str, object]] = []
+    for name, flag, mtu in _interfaces():
+        kinds = [
+            word
+            for bit, word in ((_LOOPBACK, 'LOOPBACK'), (_MULTICAST, 'MULTICAST'))
+            if flag & bit
+        ]
+        network += [('device', name), ('flags', f'<{",".join(kinds)}>'), ('mtu', mtu)]
+    pairs: list[tuple[str, object]] = []
+    for topic, publisher, subscriber, state in _pairs(node):
+        pairs += [
+            ('topic [type]', topic),
+            ('publisher node', publisher),
+            ('subscriber node', subscriber),
+            ('compatibility status', state),
+        ]
+    topics: list[tuple[str, object]] = []
+    for topic in _topics(node):
+        topics += [
+            ('topic', topic),
+            ('publisher count', node.count_publishers(topic)),
+            ('subscriber count', node.count_subscribers(topic)),
+        ]
+    none: list[tuple[str, object]] = [
+        ('compatibility status', 'No publisher/subscriber pairs found')
+    ]
+    return [
+        ('NETWORK CONFIGURATION', network or [('device', 'none')]),
+        (
+            'PLATFORM INFORMATION',
+            [
+                ('system', platform.system()),
+                ('platform info', platform.platform()),
+                ('release', platform.release()),
+                ('processor', platform.machine()),
+                ('python', platform.python_version()),
+            ],
+        ),
+        ('QOS COMPATIBILITY LIST', pairs or none),
+        ('RMW MIDDLEWARE', [('middleware name', get_rmw_implementation_identifier())]),
+        (
+            'ROS 2 INFORMATION',
+            [('distribution name', _DISTRIBUTION), ('distribution type', 'ros2')],
+        ),
+        ('TOPIC LIST', topics or [('topic', 'none')]),
+    ]
+
+
+def _topics(node: Node) -> list[str]:
+    names = sorted(name for name, _ in node.get_topic_names_and_types())
+    return [name for name in names if name not in EVERY_NODE_HAS and not is_hidden(name)]
+
+
+def _pairs(node: Node) -> list[tuple[str, str, str, str]]:
+    """Return topic, publishing node, subscribing node and whether they match, for each pair."""
+    found = []
+    for topic in _topics(node):
+        for publisher in node.get_publishers_info_by_topic(topic):
+            for subscriber in node.get_subscriptions_info_by_topic(topic):
+                state, reason = qos_check_compatible(publisher.qos_profile, subscriber.qos_profile)
+                text = 'OK' if state == QoSCompatibility.OK else str(reason).strip()
+                found += [(topic, publisher.node_name, subscriber.node_name, text)]
+    return sorted(found)
+
+
+def _interfaces() -> list[tuple[str, int, int]]:
+    """Return name, flags and size of a packet in bytes of each network interface."""
+    found = []
+    for folder in sorted(Path('/sys/class/net').glob('*')):
+        try:
+            flags = int((folder / 'flags').read_text(), 16)
+            found += [(folder.name, flags, int((folder / 'mtu').read_text()))]
+        except (OSError, ValueError):
+            continue
+    return found
+
+
+def _arguments(parser: Parser) -> None:
+    add_discovery_options(parser)
+    parser.add('-r', '--report', action='store_true', help='Print all reports.')
+    parser.add(
+        *('-iw', '--include-warnings'),
+        action='store_true',
+        help='Include warnings as failed checks. Warnings are ignored by default.',
+    )
+
+
+COMMAND = Command(
+    'doctor',
+    'Check ROS setup and other potential issues',
+    (Verb('doctor', 'Check ROS setup and other potential issues', doctor, _arguments),),
+)

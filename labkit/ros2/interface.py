@@ -1,0 +1,176 @@
+"""`ros2 interface`: which types there are, and what they look like."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+from collections.abc import Iterator
+
+from rosidl_adapter.parser import parse_message_string  # type: ignore[import-untyped]
+
+from labkit import settings
+from labkit.ros2 import interfaces
+from labkit.ros2.messages import to_yaml
+from labkit.ros2.words import Command, Parser, Usage, Verb
+
+__all__ = ['COMMAND']
+
+_TITLES = {'msg': 'Messages:', 'srv': 'Services:', 'action': 'Actions:'}
+_ONLY = {'msg': 'msgs', 'srv': 'srvs', 'action': 'actions'}
+_WORDS = {'msg': 'message', 'srv': 'service', 'action': 'action'}
+
+
+def list_interfaces(args: Namespace) -> None:
+    """Print the names of all interface types."""
+    for kind in _kinds(args):
+        print(_TITLES[kind])
+        for name in interfaces.names(kind):
+            print(f'    {name}')
+
+
+def list_package(args: Namespace) -> None:
+    """Print the names of the interface types of one package."""
+    interfaces.check_package(args.package_name)
+    kinds = _kinds(args)
+    for name in interfaces.names_in(args.package_name):
+        if name.split('/')[1] in kinds:
+            print(name)
+
+
+def list_packages(args: Namespace) -> None:
+    """Print the names of the packages that have interface types."""
+    kinds = _kinds(args)
+    found = {package for kind in kinds for package in interfaces.packages(kind)}
+    print('\n'.join(sorted(found)))
+
+
+def show(args: Namespace) -> None:
+    """Print the definition of an interface type, with those of the types within it."""
+    name = interfaces.check_exists(_type(args))
+    if args.all_comments and args.no_comments:
+        raise Usage('ros2 interface show: --all-comments and --no-comments can not go together.')
+    lines = _definition(
+        name, comments=not args.no_comments, nested_comments=args.all_comments, indent=''
+    )
+    for line in lines:
+        print(line)
+
+
+def show_prototype(args: Namespace) -> None:
+    """Print the values of a new message as YAML, to be edited and published."""
+    name = interfaces.check_exists(args.type)
+    if name.split('/')[1] == 'srv':
+        text = to_yaml(interfaces.service_class(name).Request())
+    else:
+        text = to_yaml(interfaces.message_class(name)())
+    print(text if args.no_quotes else f'"{text}"')
+
+
+def _definition(name: str, *, comments: bool, nested_comments: bool, indent: str) -> Iterator[str]:
+    """Yield the lines of a definition.
+
+    Args:
+        name: Full name of the type.
+        comments: Whether comments and empty lines are kept.
+        nested_comments: The same for types within this one.
+        indent: What stands before each line.
+    """
+    package, _, word = name.split('/')
+    for raw in interfaces.path_of(name).read_text(encoding='utf-8').splitlines():
+        text, nested = raw.rstrip(), ''
+        if text != '---':
+            parsed = parse_message_string(package, word, text)
+            field = parsed.fields[0] if parsed.fields else None
+            if not comments and (not text or parsed.annotations['comment']):
+                continue
+            if field is not None:
+                if not comments and field.annotations['comment']:
+                    text = text.partition('#')[0].strip()
+                nested = str(field.type).partition('[')[0]
+        yield f'{indent}{text}' if text else ''
+        if '/' in nested:
+            yield from _definition(
+                nested.replace('/', '/msg/'),
+                comments=nested_comments,
+                nested_comments=nested_comments,
+                indent=f'{indent}\t',
+            )
+
+
+def _type(args: Namespace) -> str:
+    """Return the type that is asked for; `-` stands for a line of standard input."""
+    if args.type != '-':
+        return str(args.type)
+    if settings.in_kernel() or sys.stdin.isatty():
+        raise Usage('ros2 interface show: - reads the name from a pipe, and there is none.')
+    return sys.stdin.readline().strip()
+
+
+def _kinds(args: Namespace) -> list[str]:
+    chosen = [kind for kind, word in _ONLY.items() if getattr(args, f'only_{word}')]
+    return chosen or list(_ONLY)
+
+
+def _kind_options(parser: Parser) -> None:
+    for kind, word in _ONLY.items():
+        parser.add(
+            *(f'-{word[0]}', f'--only-{word}'),
+            action='store_true',
+            help=f'Print out only the {_WORDS[kind]} types',
+        )
+
+
+def _package_arguments(parser: Parser) -> None:
+    _kind_options(parser)
+    parser.add(
+        'package_name',
+        help="Name of the ROS package (e.g. 'std_msgs')",
+        complete=lambda _: interfaces.packages(),
+    )
+
+
+def _show_arguments(parser: Parser) -> None:
+    parser.add(
+        'type',
+        help="Show an interface definition (e.g. 'std_msgs/msg/String'). Passing '-' reads the "
+        "argument from stdin (e.g. 'ros2 topic type /chatter | ros2 interface show -').",
+        complete=lambda _: interfaces.names(),
+    )
+    parser.add(
+        '--all-comments',
+        action='store_true',
+        help='Show all comments, including for nested interface definitions',
+    )
+    parser.add('--no-comments', action='store_true', help='Show no comments or whitespace')
+
+
+def _proto_arguments(parser: Parser) -> None:
+    parser.add(
+        'type',
+        help='Show an interface definition (e.g. "std_msgs/msg/String")',
+        complete=lambda _: interfaces.names(),
+    )
+    parser.add('--no-quotes', action='store_true', help='if true output has no outer quotes.')
+
+
+COMMAND = Command(
+    'interface',
+    'Show information about ROS interfaces',
+    (
+        Verb('list', 'List all interface types available', list_interfaces, _kind_options),
+        Verb(
+            'package',
+            'Output a list of available interface types within one package',
+            list_package,
+            _package_arguments,
+        ),
+        Verb(
+            'packages',
+            'Output a list of packages that provide interfaces',
+            list_packages,
+            _kind_options,
+        ),
+        Verb('proto', 'Output an interface prototype', show_prototype, _proto_arguments),
+        Verb('show', 'Output the interface definition', show, _show_arguments),
+    ),
+)

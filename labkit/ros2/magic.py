@@ -1,0 +1,52 @@
+"""`%ros2 ...` in a notebook, with completion by the Tab key."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+__all__ = ['register']
+
+
+def register() -> None:
+    """Make `%ros2` known to the running IPython; without one nothing happens. Light and fast."""
+    ipython = sys.modules.get('IPython')
+    shell = ipython.get_ipython() if ipython is not None else None
+    if shell is None:
+        return
+    shell.register_magic_function(_ros2, 'line', 'ros2')
+    from IPython.core.completer import context_matcher
+
+    matchers = shell.Completer.custom_matchers
+    if _complete not in matchers:
+        context_matcher()(_complete)
+        matchers.append(_complete)
+
+
+def _ros2(line: str) -> None:
+    """Run a `ros2` command: `%ros2 topic list`; `%ros2 -h` shows all of them."""
+    from labkit.ros2.shell import run_line
+
+    run_line(line)
+
+
+# Braces and dollar signs belong to YAML; IPython would take them for Python variables.
+_ros2._ipython_magic_no_var_expand = True  # type: ignore[attr-defined]
+
+
+def _complete(context: Any) -> dict[str, Any]:
+    """Return what may stand at the cursor; called by IPython's completer in every line."""
+    from IPython.core.completer import SimpleCompletion
+
+    magic, space, line = context.text_until_cursor.lstrip().partition(' ')
+    if magic != '%ros2' or not space:
+        return {'completions': []}
+    from labkit.ros2.completion import complete_line
+
+    last, words = complete_line(line)
+    return {
+        'completions': [SimpleCompletion(text=word, type='ros2') for word in words],
+        'matched_fragment': last,
+        'ordered': True,
+        'suppress': True,  # the words of Python have no place here
+    }

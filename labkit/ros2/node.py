@@ -1,0 +1,118 @@
+"""`ros2 node`: which nodes there are, and what a node publishes, subscribes to and offers."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+
+from rclpy.action.graph import (
+    get_action_client_names_and_types_by_node,
+    get_action_server_names_and_types_by_node,
+)
+from rclpy.node import Node
+
+from labkit.errors import LabError
+from labkit.graph import is_hidden
+from labkit.graph import node_names as names_of_nodes
+from labkit.ros2.context import add_discovery_options, asking_node, soon, unknown
+from labkit.ros2.names import node_names
+from labkit.ros2.words import Command, Parser, Verb
+
+__all__ = ['COMMAND']
+
+
+def list_nodes(args: Namespace) -> None:
+    """Print the names of the nodes."""
+    names = _nodes(asking_node(args), args.all)
+    if args.count_nodes:
+        print(len(names))
+        return
+    if len(set(names)) < len(names):
+        print(
+            'WARNING: Be aware that there are nodes in the graph that share an exact name, which '
+            'can have unintended side effects.',
+            file=sys.stderr,
+        )
+    for name in names:
+        print(name)
+
+
+def show_info(args: Namespace) -> None:
+    """Print what a node publishes, subscribes to and offers."""
+    node = asking_node(args)
+    name = args.node_name
+    count = soon(lambda: _nodes(node, args.include_hidden).count(name))
+    if not count:
+        hidden = name in _nodes(node, include_hidden=True)
+        todo = unknown(name, _nodes(node, include_hidden=False), 'node')
+        raise LabError(
+            f"Unable to find node '{name}'",
+            todo='It is hidden. Add --include-hidden to see it.' if hidden else todo,
+        )
+    if count > 1:
+        print(
+            f'There are {count} nodes in the graph with the exact name "{name}". You are seeing '
+            'information about only one of them.',
+            file=sys.stderr,
+        )
+    namespace, _, base = name.rpartition('/')
+    whose = (base, namespace or '/')
+    print(name)
+    for title, found in (
+        ('Subscribers', node.get_subscriber_names_and_types_by_node(*whose)),
+        ('Publishers', node.get_publisher_names_and_types_by_node(*whose)),
+        ('Service Servers', node.get_service_names_and_types_by_node(*whose)),
+        ('Service Clients', node.get_client_names_and_types_by_node(*whose)),
+        ('Action Servers', get_action_server_names_and_types_by_node(node, *whose)),
+        ('Action Clients', get_action_client_names_and_types_by_node(node, *whose)),
+    ):
+        print(f'  {title}:')
+        shown = [
+            f'    {entity}: {", ".join(types)}'
+            for entity, types in sorted(found)
+            if args.include_hidden or not is_hidden(entity)
+        ]
+        print('\n'.join(shown))
+
+
+def _nodes(node: Node, include_hidden: bool) -> list[str]:
+    # The name alone decides, not the namespace.
+    return [
+        name
+        for name in names_of_nodes(node)
+        if include_hidden or not is_hidden(name.rpartition('/')[2])
+    ]
+
+
+def _list_arguments(parser: Parser) -> None:
+    add_discovery_options(parser)
+    parser.add('-a', '--all', action='store_true', help='Display all nodes even hidden ones')
+    parser.add(
+        *('-c', '--count-nodes'),
+        action='store_true',
+        help='Only display the number of nodes discovered',
+    )
+
+
+def _info_arguments(parser: Parser) -> None:
+    add_discovery_options(parser)
+    parser.add(
+        'node_name',
+        help='Fully qualified node name to request information',
+        complete=node_names,
+    )
+    parser.add(
+        '--include-hidden',
+        action='store_true',
+        help='Display hidden topics, services, and actions as well',
+    )
+
+
+COMMAND = Command(
+    'node',
+    'Various node related sub-commands',
+    (
+        Verb('info', 'Output information about a node', show_info, _info_arguments),
+        Verb('list', 'Output a list of available nodes', list_nodes, _list_arguments),
+    ),
+)

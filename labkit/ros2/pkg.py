@@ -1,0 +1,103 @@
+"""`ros2 pkg`: which packages there are, where they are, what they have to run."""
+
+from __future__ import annotations
+
+import sys
+import xml.etree.ElementTree as ET
+from argparse import Namespace
+
+from labkit.errors import LabError
+from labkit.ros2.executables import DEMO, executables, package_names, prefix_of
+from labkit.ros2.words import Command, Parser, Verb
+
+__all__ = ['COMMAND']
+
+
+def list_packages(args: Namespace) -> None:
+    """Print the names of all packages."""
+    print('\n'.join(package_names()))
+
+
+def show_prefix(args: Namespace) -> None:
+    """Print the folder that a package is installed in."""
+    prefix = prefix_of(args.package_name)
+    print(prefix / 'share' / args.package_name if args.share else prefix)
+
+
+def show_xml(args: Namespace) -> None:
+    """Print what a package says about itself."""
+    path = prefix_of(args.package_name) / 'share' / args.package_name / 'package.xml'
+    try:
+        tree = ET.parse(path)
+    except (OSError, ET.ParseError) as error:
+        raise LabError(f'Package xml manifest not found: {path}') from error
+    if args.tag is None:
+        print(ET.tostring(tree.getroot(), encoding='unicode'))
+        return
+    elements = tree.getroot().findall(args.tag)
+    if not elements:
+        tags = ', '.join(sorted({child.tag for child in tree.getroot()}))
+        raise LabError(f'XML tag not found: {args.tag!r}', todo=f'It has: {tags}.')
+    for element in elements:
+        print(element.text)
+
+
+def list_executables(args: Namespace) -> None:
+    """Print what can be started with `ros2 run`."""
+    if args.package_name is None:
+        packages = sorted({*package_names(), DEMO})
+    else:
+        packages = [args.package_name]
+    stand_ins = False
+    for package in packages:
+        for one in executables(package):
+            stand_ins = stand_ins or one.stand_in
+            print(' '.join(one.command) if args.full_path else f'{package} {one.path.name}')
+    if stand_ins:
+        print(f'({DEMO} is not installed; labkit has its talker and listener.)', file=sys.stderr)
+
+
+def _package_argument(parser: Parser) -> None:
+    parser.add('package_name', help='The package name', complete=lambda _: package_names())
+
+
+def _prefix_arguments(parser: Parser) -> None:
+    _package_argument(parser)
+    parser.add('--share', action='store_true', help='show share directory for the package')
+
+
+def _xml_arguments(parser: Parser) -> None:
+    _package_argument(parser)
+    parser.add('-t', '--tag', help="The package's xml's tag to print")
+
+
+def _executables_arguments(parser: Parser) -> None:
+    parser.add(
+        'package_name',
+        nargs='?',
+        help='The package name',
+        complete=lambda _: [*package_names(), DEMO],
+    )
+    parser.add('--full-path', action='store_true', help='Show full path of each executable')
+
+
+COMMAND = Command(
+    'pkg',
+    'Various package related sub-commands',
+    (
+        Verb(
+            'executables',
+            'Output a list of package specific executables',
+            list_executables,
+            _executables_arguments,
+        ),
+        Verb('list', 'Output a list of available packages', list_packages),
+        Verb('prefix', 'Output the prefix path of a package', show_prefix, _prefix_arguments),
+        Verb(
+            'xml',
+            'Output the XML of the package manifest or a specific tag',
+            show_xml,
+            _xml_arguments,
+        ),
+    ),
+)

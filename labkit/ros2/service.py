@@ -1,0 +1,215 @@
+"""`ros2 service`: which services there are, and calling one."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from argparse import Namespace
+from collections.abc import Iterable
+
+from rclpy.node import Node
+
+from labkit import settings
+from labkit.errors import LabError
+from labkit.graph import is_hidden
+from labkit.ros2 import interfaces
+from labkit.ros2.calls import ServiceCalls
+from labkit.ros2.context import add_discovery_options, alone, asking_node, soon, unknown
+from labkit.ros2.messages import fill, prototype, read_yaml
+from labkit.ros2.names import service_names, service_types
+from labkit.ros2.streams import expand
+from labkit.ros2.words import Command, Parser, Usage, Verb, positive_float
+from labkit.silence import type_name
+
+__all__ = ['COMMAND']
+
+HIDDEN = '--include-hidden-services'
+# A service that the graph knows is ready soon.
+READY_SEC = 1.0
+HEADLESS_SEC = 5.0
+
+
+def list_services(args: Namespace) -> None:
+    """Print the names of the services."""
+    found = _services(asking_node(args), args.include_hidden_services)
+    if args.count_services:
+        print(len(found))
+        return
+    for name, types in found:
+        print(f'{name} [{", ".join(types)}]' if args.show_types else name)
+
+
+def show_type(args: Namespace) -> None:
+    """Print a service's type."""
+    print('\n'.join(_types_of(asking_node(args), args.service_name)))
+
+
+def show_info(args: Namespace) -> None:
+    """Print a service's type and how many offer and call it."""
+    node = asking_node(args)
+    types = _types_of(node, args.service_name)
+    print(f'Type: {types[0] if len(types) == 1 else types}')
+    print(f'Clients count: {node.count_clients(args.service_name)}')
+    print(f'Services count: {node.count_services(args.service_name)}')
+
+
+def find(args: Namespace) -> None:
+    """Print the services of a type."""
+    found = _services(asking_node(args), args.include_hidden_services)
+    names = [name for name, types in found if args.service_type in types]
+    if not names:
+        interfaces.check_exists(args.service_type, 'srv')
+    print(len(names)) if args.count_services else print('\n'.join(names), end='\n' * bool(names))
+
+
+def call(args: Namespace) -> None:
+    """Call a service, and print request and response."""
+    srv_type = interfaces.service_class(args.service_type)
+    request = srv_type.Request()
+    fill(request, read_yaml(_values(args)))
+    node = asking_node(args)
+    name = expand(node, args.service_name)
+    _check_type(node, name, type_name(srv_type))
+    limit = HEADLESS_SEC if settings.headless() else None
+    with ServiceCalls(node, srv_type, name) as service:
+        known = name in dict(node.get_service_names_and_types())
+        if not service.wait_until_ready(READY_SEC if known else 0.0):
+            print('waiting for service to become available...', flush=True)
+            if not service.wait_until_ready(limit):
+                raise LabError(f'{name} has not become available.')
+        while True:
+            print(f'requester: making request: {request!r}\n', flush=True)
+            started = time.monotonic()
+            print(f'response:\n{service.call(request, limit)!r}\n', flush=True)
+            if args.rate is None:
+                return
+            time.sleep(max(0.0, started + 1 / args.rate - time.monotonic()))
+
+
+def _check_type(node: Node, name: str, wanted: str) -> None:
+    """Raise a LabError if a service is there, but of another type: the call would never end."""
+    soon(lambda: name in dict(node.get_service_names_and_types()), 0.0 if alone() else 0.3)
+    types = dict(node.get_service_names_and_types()).get(name, [wanted])
+    if wanted not in types:
+        raise LabError(f'{name} is a {", ".join(types)}, not a {wanted}.')
+    if not node.count_services(name):
+        names = [other for other, _ in _services(node, include_hidden=False)]
+        hint = unknown(name, names, 'service')
+        if hint.startswith('Did you mean'):
+            print(hint, file=sys.stderr, flush=True)
+
+
+def _services(node: Node, include_hidden: bool) -> list[tuple[str, list[str]]]:
+    return [
+        (name, types)
+        for name, types in sorted(node.get_service_names_and_types())
+        if include_hidden or not is_hidden(name)
+    ]
+
+
+def _types_of(node: Node, name: str) -> list[str]:
+    types = soon(lambda: dict(node.get_service_names_and_types()).get(name, []))
+    if not types:
+        names = [other for other, _ in _services(node, include_hidden=False)]
+        raise LabError(f"Unknown service '{name}'", todo=unknown(name, names, 'service'))
+    return types
+
+
+def _values(args: Namespace) -> str:
+    if not args.stdin:
+        return str(args.values)
+    if settings.in_kernel():
+        raise Usage('ros2 service call: --stdin works in a terminal only.')
+    return sys.stdin.read()
+
+
+def _prototype(args: Namespace) -> Iterable[str]:
+    srv_type = interfaces.service_class(getattr(args, 'service_type', '') or '')
+    return [f'"{prototype(srv_type.Request)}"']
+
+
+def _hidden_option(parser: Parser, *, shown: bool) -> None:
+    text = 'Consider hidden services as well' if shown else argparse.SUPPRESS
+    parser.add(HIDDEN, action='store_true', help=text)
+
+
+def _count_option(parser: Parser) -> None:
+    parser.add(
+        *('-c', '--count-services'),
+        action='store_true',
+        help='Only display the number of services discovered',
+    )
+
+
+def _name_argument(parser: Parser, text: str) -> None:
+    add_discovery_options(parser)
+    parser.add('service_name', help=text, complete=service_names)
+    _hidden_option(parser, shown=False)
+
+
+def _list_arguments(parser: Parser) -> None:
+    add_discovery_options(parser)
+    parser.add(
+        '-t', '--show-types', action='store_true', help='Additionally show the service type'
+    )
+    _count_option(parser)
+    _hidden_option(parser, shown=True)
+
+
+def _type_arguments(parser: Parser) -> None:
+    _name_argument(parser, "Name of the ROS service to get type (e.g. '/talker/list_parameters')")
+
+
+def _info_arguments(parser: Parser) -> None:
+    _name_argument(parser, "Name of the ROS service to get info (e.g. '/add_two_ints')")
+
+
+def _find_arguments(parser: Parser) -> None:
+    add_discovery_options(parser)
+    parser.add(
+        'service_type',
+        help="Name of the ROS service type to filter for (e.g. 'rcl_interfaces/srv/"
+        "ListParameters')",
+        complete=lambda _: interfaces.names('srv'),
+    )
+    _count_option(parser)
+    _hidden_option(parser, shown=True)
+
+
+def _call_arguments(parser: Parser) -> None:
+    _name_argument(parser, "Name of the ROS service to call to (e.g. '/add_two_ints')")
+    parser.add(
+        'service_type',
+        help="Type of the ROS service (e.g. 'std_srvs/srv/Empty')",
+        complete=service_types,
+    )
+    parser.add(
+        'values',
+        nargs='?',
+        default='{}',
+        help="Values to fill the service request with in YAML format (e.g. '{a: 1, b: 2}'), "
+        'otherwise the service request will be published with default values',
+        complete=_prototype,
+    )
+    parser.add('--stdin', action='store_true', help='Read values from standard input')
+    parser.add(
+        *('-r', '--rate'),
+        metavar='N',
+        type=positive_float,
+        help='Repeat the call at a specific rate in Hz',
+    )
+
+
+COMMAND = Command(
+    'service',
+    'Various service related sub-commands',
+    (
+        Verb('call', 'Call a service', call, _call_arguments),
+        Verb('find', 'Output a list of available services of a given type', find, _find_arguments),
+        Verb('info', 'Print information about a service', show_info, _info_arguments),
+        Verb('list', 'Output a list of available services', list_services, _list_arguments),
+        Verb('type', "Output a service's type", show_type, _type_arguments),
+    ),
+    {HIDDEN: 'Consider hidden services as well'},
+)

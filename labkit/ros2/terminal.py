@@ -1,0 +1,117 @@
+"""`ros2` in a terminal: a real one first, the domain of the running notebook, completion."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+from pathlib import Path
+
+from labkit import settings
+from labkit.errors import LabError
+
+__all__ = ['BASH', 'choose_domain', 'real_ros2', 'run']
+
+# `complete -C` calls the command with the line so far in COMP_LINE.
+BASH = "complete -o default -C 'ros2 --complete' ros2"
+
+
+def run(words: list[str]) -> int:
+    """Run one command.
+
+    Args:
+        words: The words after `ros2`.
+
+    Returns:
+        The exit code.
+    """
+    if words[:1] == ['--complete'] and 'COMP_LINE' in os.environ:
+        return _complete()
+    if words == ['--completion']:
+        print(BASH)
+        return 0
+    real = real_ros2()
+    if real is not None:
+        sys.stdout.flush()
+        os.execve(real, [str(real), *words], _environment_of_others())
+    try:
+        choose_domain()
+    except LabError as error:
+        print(error, file=sys.stderr)
+        return 2
+    from labkit.ros2.shell import execute
+
+    try:
+        code = execute(words)
+        sys.stdout.flush()
+        return code
+    except BrokenPipeError:
+        # Whoever read the output has gone, as `head` does. Python flushes once more at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+
+
+def real_ros2() -> Path | None:
+    """Return the `ros2` of a full installation, None if there is none on the path."""
+    own = Path(sys.prefix, 'bin').resolve()
+    for folder in os.environ.get('PATH', '').split(os.pathsep):
+        found = shutil.which('ros2', path=folder) if folder else None
+        if found and Path(found).resolve().parent != own and not _is_ours(Path(found)):
+            return Path(found)
+    return None
+
+
+def choose_domain() -> None:
+    """Join the domain of the one running notebook, unless `ROS_DOMAIN_ID` says otherwise.
+
+    Raises:
+        LabError: Several notebooks are running.
+    """
+    if settings.read_domain_id() is not None:
+        return
+    notebooks = settings.claimed_domains()
+    if len(notebooks) > 1:
+        lines = [f'  ROS_DOMAIN_ID={number}  {name}' for number, name in notebooks.items()]
+        first = next(iter(notebooks))
+        raise LabError(
+            'Several notebooks are running, each in a ROS domain of its own:\n' + '\n'.join(lines),
+            todo=f'Choose one: export ROS_DOMAIN_ID={first}',
+        )
+    if notebooks:
+        os.environ['ROS_DOMAIN_ID'] = str(next(iter(notebooks)))
+
+
+def _complete() -> int:
+    """Print what may stand at the cursor, for bash."""
+    line = os.environ['COMP_LINE'][: int(os.environ.get('COMP_POINT', '0')) or None]
+    try:
+        choose_domain()
+    except LabError:
+        pass
+    from labkit.ros2.completion import complete_line
+
+    _, _, rest = line.partition(' ')
+    last, words = complete_line(rest)
+    # For bash a word begins anew after a colon or an equals sign.
+    kept = max(last.rfind(':'), last.rfind('=')) + 1
+    print('\n'.join(word[kept:] for word in words))
+    return 0
+
+
+def _is_ours(path: Path) -> bool:
+    """Tell whether a script is that of another environment of this course."""
+    try:
+        return b'labkit.ros2' in path.read_bytes()[:2000]
+    except OSError:
+        return False
+
+
+def _environment_of_others() -> dict[str, str]:
+    """Return the variables without what makes the libraries of the wheels be found first."""
+    variables = dict(os.environ)
+    variables.pop('_ROS_WHEELS_BOOTSTRAP_COMPLETE', None)
+    paths = variables.pop('LD_LIBRARY_PATH', '').split(os.pathsep)
+    others = [path for path in paths if path and not path.startswith(sys.prefix)]
+    if others:
+        variables['LD_LIBRARY_PATH'] = os.pathsep.join(others)
+    return variables

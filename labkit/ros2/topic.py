@@ -1,0 +1,182 @@
+"""`ros2 topic`: what topics there are, who is at their ends, and the verbs that stream."""
+
+from __future__ import annotations
+
+import argparse
+from argparse import Namespace
+
+from rclpy.node import Node
+from rclpy.topic_endpoint_info import TopicEndpointInfo
+
+from labkit.errors import LabError
+from labkit.graph import full_node_name, is_hidden
+from labkit.ros2 import interfaces
+from labkit.ros2.context import add_discovery_options, asking_node, soon, unknown
+from labkit.ros2.names import topic_names
+from labkit.ros2.topic_echo import ECHO
+from labkit.ros2.topic_pub import PUB
+from labkit.ros2.topic_rates import BW, DELAY, HZ
+from labkit.ros2.words import Command, Parser, Verb
+
+__all__ = ['COMMAND']
+
+HIDDEN = '--include-hidden-topics'
+
+
+def list_topics(args: Namespace) -> None:
+    """Print the names of the topics."""
+    node = asking_node(args)
+    found = _topics(node, args.include_hidden_topics)
+    if args.count_topics:
+        print(len(found))
+    elif args.verbose and found:
+        print(_ends(node, found, publishers=True))
+        print(_ends(node, found, publishers=False))
+    else:
+        for name, types in found:
+            print(f'{name} [{", ".join(types)}]' if args.show_types else name)
+
+
+def show_info(args: Namespace) -> None:
+    """Print a topic's type and its publishers and subscriptions."""
+    node = asking_node(args)
+    name = args.topic_name
+    types = _types_of(node, name)
+    if not types:
+        names = [topic for topic, _ in _topics(node, include_hidden=False)]
+        raise LabError(f"Unknown topic '{name}'", todo=unknown(name, names, 'topic'))
+    end = '\n\n' if args.verbose else '\n'
+    print(f'Type: {types[0] if len(types) == 1 else types}', end=end)
+    print(f'Publisher count: {node.count_publishers(name)}', end=end)
+    if args.verbose:
+        _print_each(node.get_publishers_info_by_topic(name))
+    print(f'Subscription count: {node.count_subscribers(name)}', end=end)
+    if args.verbose:
+        _print_each(node.get_subscriptions_info_by_topic(name))
+
+
+def show_type(args: Namespace) -> str | int:
+    """Print a topic's type."""
+    node = asking_node(args)
+    types = soon(lambda: dict(_topics(node, args.include_hidden_topics)).get(args.topic_name))
+    if not types:
+        # The real one says nothing and ends with code 1; a learner needs a word.
+        names = [topic for topic, _ in _topics(node, include_hidden=False)]
+        raise LabError(
+            f"Unknown topic '{args.topic_name}'", todo=unknown(args.topic_name, names, 'topic')
+        )
+    print('\n'.join(types))
+    return 0
+
+
+def find(args: Namespace) -> None:
+    """Print the topics of a type."""
+    found = _topics(asking_node(args), args.include_hidden_topics)
+    names = [name for name, types in found if args.topic_type in types]
+    if not names:
+        interfaces.check_exists(args.topic_type, 'msg')
+    print(len(names)) if args.count_topics else print('\n'.join(names), end='\n' * bool(names))
+
+
+def _topics(node: Node, include_hidden: bool) -> list[tuple[str, list[str]]]:
+    return [
+        (name, types)
+        for name, types in sorted(node.get_topic_names_and_types())
+        if include_hidden or not is_hidden(name)
+    ]
+
+
+def _types_of(node: Node, topic: str) -> list[str]:
+    return soon(lambda: dict(node.get_topic_names_and_types()).get(topic, []))
+
+
+def _ends(node: Node, topics: list[tuple[str, list[str]]], *, publishers: bool) -> str:
+    """Return the topics that have publishers, or those that have subscribers, as a list."""
+    count_of = node.count_publishers if publishers else node.count_subscribers
+    word = 'publisher' if publishers else 'subscriber'
+    lines = ['Published topics:' if publishers else 'Subscribed topics:']
+    for name, types in topics:
+        count = count_of(name)
+        if count:
+            plural = 's' if count > 1 else ''
+            lines += [f' * {name} [{", ".join(types)}] {count} {word}{plural}']
+    return '\n'.join(lines) + '\n'
+
+
+def _print_each(infos: list[TopicEndpointInfo]) -> None:
+    ordered = sorted(infos, key=lambda end: full_node_name(end.node_name, end.node_namespace))
+    for info in ordered:
+        print(info, end='\n\n')
+
+
+def _hidden_options(parser: Parser, *, shown: bool) -> None:
+    text = 'Consider hidden topics as well' if shown else argparse.SUPPRESS
+    names = [HIDDEN, '-a', '--all'] if shown else [HIDDEN]
+    parser.add(*names, action='store_true', help=text, dest='include_hidden_topics')
+
+
+def _list_arguments(parser: Parser) -> None:
+    add_discovery_options(parser)
+    parser.add('-t', '--show-types', action='store_true', help='Additionally show the topic type')
+    parser.add(
+        *('-c', '--count-topics'),
+        action='store_true',
+        help='Only display the number of topics discovered',
+    )
+    parser.add('-v', '--verbose', action='store_true', help='List full details about each topic')
+    _hidden_options(parser, shown=True)
+
+
+def _name_argument(parser: Parser, text: str) -> None:
+    parser.add('topic_name', help=text, complete=topic_names)
+
+
+def _info_arguments(parser: Parser) -> None:
+    add_discovery_options(parser)
+    _name_argument(parser, "Name of the ROS topic to get info (e.g. '/chatter')")
+    parser.add(
+        *('-v', '--verbose'),
+        action='store_true',
+        help='Prints detailed information like the node name, node namespace, topic type, topic '
+        'type hash, GUID, and QoS Profile of the publishers and subscribers to this topic',
+    )
+    _hidden_options(parser, shown=False)
+
+
+def _type_arguments(parser: Parser) -> None:
+    add_discovery_options(parser)
+    _name_argument(parser, "Name of the ROS topic to get type (e.g. '/chatter')")
+    _hidden_options(parser, shown=False)
+
+
+def _find_arguments(parser: Parser) -> None:
+    add_discovery_options(parser)
+    parser.add(
+        'topic_type',
+        help="Name of the ROS topic type to filter for (e.g. 'std_msgs/msg/String')",
+        complete=lambda _: interfaces.names('msg'),
+    )
+    parser.add(
+        *('-c', '--count-topics'),
+        action='store_true',
+        help='Only display the number of topics discovered',
+    )
+    parser.add(HIDDEN, action='store_true', help='Consider hidden topics as well')
+
+
+COMMAND = Command(
+    'topic',
+    'Various topic related sub-commands',
+    (
+        BW,
+        DELAY,
+        ECHO,
+        Verb('find', 'Output a list of available topics of a given type', find, _find_arguments),
+        HZ,
+        Verb('info', 'Print information about a topic', show_info, _info_arguments),
+        Verb('list', 'Output a list of available topics', list_topics, _list_arguments),
+        PUB,
+        Verb('type', "Print a topic's type", show_type, _type_arguments),
+    ),
+    {HIDDEN: 'Consider hidden topics as well'},
+)

@@ -1,0 +1,213 @@
+"""`ros2 topic echo`: show the messages of a topic."""
+
+from __future__ import annotations
+
+import argparse
+import functools
+from argparse import Namespace
+from collections.abc import Iterable
+from typing import Any
+
+from rclpy.node import Node
+
+from labkit import settings
+from labkit.errors import LabError
+from labkit.ros2 import interfaces
+from labkit.ros2.context import add_discovery_options, asking_node, soon
+from labkit.ros2.messages import field_paths, to_csv, to_yaml
+from labkit.ros2.names import topic_names, topic_types
+from labkit.ros2.qos import add_qos_options, matching_profile
+from labkit.ros2.streams import MAX_SHOWN, Arrivals, Stop, expand, subscribed, tell, wait_for_type
+from labkit.ros2.words import (
+    Parser,
+    Usage,
+    Verb,
+    nearest,
+    positive_float,
+    positive_int,
+    unsigned_int,
+)
+from labkit.silence import type_name, why_silent
+
+__all__ = ['ECHO']
+
+TRUNCATE_LENGTH = 128
+
+
+def echo(args: Namespace) -> str | None:
+    """Show messages until a count, a time, or the stop button."""
+    if args.filter_expr is not None:
+        raise Usage(
+            'ros2 topic echo: --filter takes Python code, and %ros2 runs none.',
+            todo='Pick a part of the message with --field, or write a subscription in a cell.',
+        )
+    stop = Stop(1 if args.once else args.count, args.timeout)
+    node = asking_node(args)
+    topic = expand(node, args.topic_name)
+    msg_type = _type_of(node, topic, args, stop)
+    if msg_type is None:
+        return f'No message came: {topic} has not appeared.'
+    fields = _check_field(args.field, msg_type)
+    profile, notes = matching_profile(args, node, topic)
+    for note in notes:
+        print(note)
+    most = None if args.once or args.count or not settings.in_kernel() else MAX_SHOWN
+    arrivals = Arrivals()
+    show = functools.partial(_show, args, fields)
+    seen = []
+
+    def arrived(message: Any, info: dict[str, Any]) -> None:
+        def print_it() -> None:
+            if not stop.reached:
+                seen.append(True)
+                show(message, info)
+                stop.count_one()
+                if len(seen) == most:
+                    stop.now()
+                    print(f'{most} messages are shown. Run the cell again to see more.')
+
+        arrivals.put(print_it)
+
+    def say(text: str) -> None:
+        arrivals.put(lambda: tell(text))
+
+    with subscribed(
+        node,
+        topic,
+        msg_type,
+        profile,
+        arrived,
+        say=say,
+        report_lost=not args.no_lost_messages,
+        raw=args.raw,
+    ):
+        arrivals.show_until(stop)
+        if seen:
+            return None
+        return f'No message came. {why_silent(node, topic, msg_type, profile)}'
+
+
+def _type_of(node: Node, topic: str, args: Namespace, stop: Stop) -> Any:
+    """Return the class of the topic's messages, None if it was time to stop."""
+    if args.message_type is not None:
+        return interfaces.message_class(args.message_type)
+    soon(lambda: dict(node.get_topic_names_and_types()).get(topic))
+    name = wait_for_type(node, topic, stop)
+    return None if name is None else interfaces.message_class(name)
+
+
+def _check_field(text: str | None, msg_type: Any) -> list[str]:
+    """Return the parts of a field's path; raise a LabError if there is no such field."""
+    if text is None:
+        return []
+    parts = [part for part in text.split('.') if part]
+    if not parts:
+        raise LabError(f"Invalid field value '{text}'")
+    paths = list(field_paths(msg_type))
+    path = '.'.join(parts)
+    if path not in paths:
+        near = nearest(path, paths)
+        fields = ', '.join(msg_type.get_fields_and_field_types())
+        hint = f'Did you mean {near!r}?' if near else f'Its fields: {fields}.'
+        raise LabError(f"Invalid field '{path}': {type_name(msg_type)} has none.", todo=hint)
+    return parts
+
+
+def _show(args: Namespace, fields: list[str], message: Any, info: dict[str, Any]) -> None:
+    """Print one message."""
+    part = functools.reduce(getattr, fields, message)
+    length = None if args.full_length else args.truncate_length
+    if not hasattr(part, 'get_fields_and_field_types'):
+        if args.include_message_info:
+            print('---Got new message, message info:---')
+            print(info)
+            print('---Message data:---')
+        tell(str(part), end='\n---\n')
+    elif args.csv:
+        text = to_csv(part, truncate_length=length, no_arr=args.no_arr, no_str=args.no_str)
+        if args.include_message_info:
+            text = f'{",".join(map(str, info.values()))},{text}'
+        tell(text)
+    else:
+        if args.include_message_info:
+            print('\n'.join(f'{key}: {value}' for key, value in sorted(info.items())))
+            print('---')
+        text = to_yaml(
+            part,
+            truncate_length=length,
+            no_arr=args.no_arr,
+            no_str=args.no_str,
+            flow_style=args.flow_style,
+        )
+        tell(text, end='---\n')
+
+
+def _fields(args: Namespace) -> Iterable[str]:
+    """Return the fields to offer for completion."""
+    types = [getattr(args, 'message_type', None)]
+    if not types[0] and getattr(args, 'topic_name', None):
+        types = list(topic_types(args))
+    return field_paths(interfaces.message_class(types[0])) if len(types) == 1 and types[0] else ()
+
+
+def _arguments(parser: Parser) -> None:
+    add_discovery_options(parser)
+    parser.add(
+        'topic_name',
+        help="Name of the ROS topic to listen to (e.g. '/chatter')",
+        complete=topic_names,
+    )
+    parser.add(
+        'message_type',
+        nargs='?',
+        help="Type of the ROS message (e.g. 'std_msgs/msg/String')",
+        complete=topic_types,
+    )
+    add_qos_options(parser, 'sensor_data')
+    parser.add(
+        '--csv',
+        action='store_true',
+        help='Output all recursive fields separated by commas (e.g. for plotting)',
+    )
+    parser.add(
+        '--field',
+        help="Echo a selected field of a message. Use '.' to select sub-fields, as in "
+        "'--field pose.pose.position'",
+        complete=_fields,
+    )
+    parser.add(
+        *('-f', '--full-length'),
+        action='store_true',
+        help='Output all elements for arrays, bytes, and string with a length > '
+        "'--truncate-length'; by default they are cut",
+    )
+    parser.add(
+        *('-l', '--truncate-length'),
+        type=unsigned_int,
+        default=TRUNCATE_LENGTH,
+        metavar='N',
+        help=f'The length to truncate arrays, bytes, and string to (default: {TRUNCATE_LENGTH})',
+    )
+    for name, text in (
+        ('--no-arr', "Don't print array fields of messages"),
+        ('--no-str', "Don't print string fields of messages"),
+        ('--flow-style', 'Print collections on one line (not available with csv format)'),
+        ('--no-lost-messages', "Don't report when a message is lost"),
+        ('--raw', 'Echo the raw binary representation'),
+        ('--once', 'Print the first message received and then exit.'),
+    ):
+        parser.add(name, action='store_true', help=text)
+    parser.add(
+        '--timeout', metavar='N', type=positive_float, help='Set a timeout in seconds for waiting'
+    )
+    parser.add('--count', metavar='N', type=positive_int, help='Exit after N messages (only here)')
+    parser.add(
+        *('-i', '--include-message-info'),
+        action='store_true',
+        help='Shows the associated message info.',
+    )
+    parser.add('--filter', dest='filter_expr', help=argparse.SUPPRESS)
+    parser.add('--include-hidden-topics', action='store_true', help=argparse.SUPPRESS)
+
+
+ECHO = Verb('echo', 'Output messages from a topic', echo, _arguments)

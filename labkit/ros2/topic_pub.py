@@ -1,0 +1,281 @@
+"""`ros2 topic pub`: publish a message on a topic."""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import math
+import sys
+import time
+from argparse import Namespace
+from collections.abc import Iterable
+from typing import Any
+
+from rclpy._rclpy_pybind11 import RCLError
+from rclpy.clock import ROSClock
+from rclpy.duration import Duration
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.qos import ReliabilityPolicy
+
+from labkit import settings
+from labkit.errors import LabError
+from labkit.graph import is_hidden
+from labkit.nodes import destroy_node
+from labkit.ros2 import interfaces
+from labkit.ros2.context import add_discovery_options, asking_node, soon
+from labkit.ros2.messages import fill, prototype, read_yaml
+from labkit.ros2.names import topic_names, topic_types
+from labkit.ros2.qos import add_qos_options, profile_from
+from labkit.ros2.streams import MAX_SHOWN, Stop, expand, tell
+from labkit.ros2.words import Parser, Usage, Verb, nearest, positive_float, unsigned_int
+from labkit.runtime import runtime
+from labkit.silence import other_type_here, type_name
+
+__all__ = ['PUB']
+
+POLL_SEC = 0.01
+# As long as that, a subscriber that the graph knows may take to match.
+MATCH_SEC = 1.0
+# As long as that, a best effort subscriber may take to find a publisher that has found it.
+FOUND_SEC = 0.5
+# As long as that, a subscriber that has matched may take to get what was sent.
+TAKEN_SEC = 5.0
+HEADLESS_WAIT_SEC = 5.0
+
+
+def pub(args: Namespace) -> str | None:
+    """Publish until a count, a time, or the stop button."""
+    times = 1 if args.once else args.times
+    if args.once and args.times:
+        raise Usage('ros2 topic pub: --once and --times can not go together.')
+    if args.wait_matching_subscriptions is None and args.max_wait_time_secs is not None:
+        return '--max-wait-time-secs option is only effective with --wait-matching-subscriptions'
+    stop = Stop(times or None, args.timeout)
+    msg_type = interfaces.message_class(args.message_type)
+    message = msg_type()
+    setters = fill(message, read_yaml(_values(args)))
+    asking = asking_node(args)
+    topic = expand(asking, args.topic_name)
+    node = _node(args.node_name, asking)
+    try:
+        publisher = _publisher(node, topic, msg_type, args)
+        try:
+            wanted = args.wait_matching_subscriptions
+            _wait_for_subscribers(
+                asking,
+                publisher,
+                int(times != 0) if wanted is None else wanted,
+                args.max_wait_time_secs,
+                stop,
+            )
+            _publish(publisher, message, setters, args, stop)
+        finally:
+            node.destroy_publisher(publisher)
+    finally:
+        if node is not asking:
+            destroy_node(node)
+    return None
+
+
+def _publish(
+    publisher: Publisher, message: Any, setters: list[Any], args: Namespace, stop: Stop
+) -> None:
+    """Publish at the rate that was asked for."""
+    tell('publisher: beginning loop')
+    period = 1 / args.rate
+    start = time.monotonic()
+    clock = ROSClock()
+    shown = 0
+    most = MAX_SHOWN if settings.in_kernel() else math.inf
+    for count in itertools.count(1):
+        for set_time in setters:
+            set_time(clock.now().to_msg())
+        if args.print and count % args.print == 0 and shown < most:
+            shown += 1
+            tell(f'publishing #{count}: {message!r}\n')
+            if shown == most:
+                tell(f'{most} messages are shown. It goes on without showing them.')
+        publisher.publish(message)
+        stop.count_one()
+        while not stop.reached and time.monotonic() < start + count * period:
+            time.sleep(max(0.0, min(stop.left_sec, start + count * period - time.monotonic())))
+        if stop.reached:
+            break
+    time.sleep(args.keep_alive)  # so that the last message is on its way before the end
+    _wait_until_taken(publisher)
+
+
+def _wait_until_taken(publisher: Publisher) -> None:
+    """Wait a moment for reliable subscribers that have not got everything yet.
+
+    One that has only just found the publisher asks for what it missed. A publisher that has ended
+    by then can't repeat it, and the only message would be lost.
+    """
+    step = Duration(nanoseconds=int(POLL_SEC * 1e9))  # short, so that the stop button is heard
+    end = time.monotonic() + TAKEN_SEC
+    while not publisher.wait_for_all_acked(step) and time.monotonic() < end:
+        pass
+
+
+def _wait_for_subscribers(
+    node: Node, publisher: Publisher, count: int, max_wait_sec: float | None, stop: Stop
+) -> None:
+    """Wait until enough subscribers are there, and say so each second."""
+    started = time.monotonic()
+    if max_wait_sec is None and settings.headless():
+        max_wait_sec = HEADLESS_WAIT_SEC  # nobody is there to press the stop button
+    known = node.count_subscribers(publisher.topic_name) >= count
+    hint = _other_topic(node, publisher.topic_name)
+    due = started + (MATCH_SEC if known else 0.0)
+    while publisher.get_subscription_count() < count and not stop.reached:
+        now = time.monotonic()
+        if max_wait_sec is not None and now >= started + max_wait_sec:
+            raise LabError(
+                f'Timed out waiting for subscribers: Expected {count} subscribers but only got '
+                f'{publisher.get_subscription_count()} subscribers'
+            )
+        if now >= due:
+            due = now + 1.0
+            print(f'Waiting for at least {count} matching subscription(s)...', flush=True)
+            if hint:
+                print(hint, flush=True)
+                hint = ''
+        time.sleep(POLL_SEC)
+    if count:
+        _wait_for_others(node, publisher)
+
+
+def _wait_for_others(node: Node, publisher: Publisher) -> None:
+    """Wait a moment, so that a message sent once reaches all who are there, not one only."""
+    wanted = type_name(publisher.msg_type)
+    infos = node.get_subscriptions_info_by_topic(publisher.topic_name)
+    known = [info.qos_profile.reliability for info in infos if info.topic_type == wanted]
+    soon(lambda: publisher.get_subscription_count() >= len(known), MATCH_SEC)
+    if ReliabilityPolicy.BEST_EFFORT in known:
+        # It has to find the publisher too, and does not ask for what it has missed.
+        time.sleep(FOUND_SEC)
+
+
+def _other_topic(node: Node, topic: str) -> str:
+    """Return a word on the topic that was probably meant, '' if this one has subscribers."""
+    heard = [
+        name
+        for name, _ in node.get_topic_names_and_types()
+        if not is_hidden(name) and node.count_subscribers(name)
+    ]
+    near = '' if topic in heard else nearest(topic, heard)
+    return f'Nobody subscribes to {topic}. Did you mean {near!r}?' if near else ''
+
+
+def _node(name: str | None, asking: Node) -> Node:
+    """Return the node to publish with: one of its own if it is to have a name."""
+    if not name:
+        return asking
+    if any(entry.name == f'/{name}' for entry in runtime.nodes()):
+        raise LabError(f'A node called /{name} runs in this notebook; choose another name.')
+    try:
+        return Node(name, start_parameter_services=False)
+    except Exception as error:
+        raise LabError(
+            f'{name!r} is no name of a node: {str(error).splitlines()[0]}',
+            todo='Use letters, digits and _, such as my_talker.',
+        ) from error
+
+
+def _publisher(node: Node, topic: str, msg_type: Any, args: Namespace) -> Publisher:
+    try:
+        return node.create_publisher(msg_type, topic, profile_from(args))
+    except (RCLError, LabError) as error:
+        why = other_type_here(node, topic, msg_type)
+        raise LabError(
+            f'{topic} can not be used with messages of {type_name(msg_type)}. {why or error}'
+        ) from error
+
+
+def _values(args: Namespace) -> str:
+    if not args.stdin:
+        return str(args.values)
+    if settings.in_kernel():
+        raise Usage('ros2 topic pub: --stdin works in a terminal only.')
+    return sys.stdin.read()
+
+
+def _prototype(args: Namespace) -> Iterable[str]:
+    msg_type = interfaces.message_class(getattr(args, 'message_type', '') or '')
+    return [f'"{prototype(msg_type)}"']
+
+
+def _arguments(parser: Parser) -> None:
+    parser.add(
+        'topic_name',
+        help="Name of the ROS topic to publish to (e.g. '/chatter')",
+        complete=topic_names,
+    )
+    parser.add(
+        'message_type',
+        help="Type of the ROS message (e.g. 'std_msgs/String')",
+        complete=topic_types,
+    )
+    parser.add(
+        'values',
+        nargs='?',
+        default='{}',
+        help="Values to fill the message with in YAML format (e.g. 'data: Hello World'), "
+        'otherwise the message will be published with default values; a time may be `now`, a '
+        'header `auto`',
+        complete=_prototype,
+    )
+    parser.add('--stdin', action='store_true', help='Read values from standard input')
+    parser.add(
+        *('-r', '--rate'),
+        metavar='N',
+        type=positive_float,
+        default=1.0,
+        help='Publishing rate in Hz (default: 1)',
+    )
+    parser.add(
+        *('-p', '--print'),
+        metavar='N',
+        type=unsigned_int,
+        default=1,
+        help='Only print every N-th published message (default: 1)',
+    )
+    parser.add('-1', '--once', action='store_true', help='Publish one message and exit')
+    parser.add(
+        *('-t', '--times'),
+        metavar='N',
+        type=unsigned_int,
+        default=0,
+        help='Publish this number of times and then exit',
+    )
+    parser.add(
+        *('-w', '--wait-matching-subscriptions'),
+        metavar='N',
+        type=unsigned_int,
+        help='Wait until finding the specified number of matching subscriptions. Defaults to 1 '
+        'when using "-1"/"--once"/"--times", otherwise defaults to 0.',
+    )
+    parser.add(
+        '--max-wait-time-secs',
+        metavar='N',
+        type=positive_float,
+        help='The maximum wait time in seconds if --wait-matching-subscriptions is set',
+    )
+    parser.add(
+        '--keep-alive',
+        metavar='N',
+        type=positive_float,
+        default=0.1,
+        help='Keep publishing node alive for N seconds after the last msg (default: 0.1)',
+    )
+    parser.add('-n', '--node-name', help='Name of the created publishing node')
+    parser.add(
+        '--timeout', metavar='N', type=positive_float, help='Exit after N seconds (only here)'
+    )
+    add_qos_options(parser, 'default')
+    add_discovery_options(parser)
+    parser.add('--include-hidden-topics', action='store_true', help=argparse.SUPPRESS)
+
+
+PUB = Verb('pub', 'Publish a message to a topic', pub, _arguments)

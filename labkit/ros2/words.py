@@ -1,0 +1,272 @@
+"""Commands, verbs and options: how a line of `ros2` is taken apart, and what is said of a bad one.
+
+The words and options are those of the real `ros2`. What is said when one of them is wrong is our
+own: one sentence with the nearest right word, then the usage line. It is the same under every
+version of Python, so that it can stand in a notebook.
+"""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NoReturn
+
+from labkit.errors import LabError
+
+__all__ = [
+    'Command',
+    'Done',
+    'Parser',
+    'Usage',
+    'Verb',
+    'nearest',
+    'positive_float',
+    'positive_int',
+    'unsigned_int',
+]
+
+Complete = Callable[[argparse.Namespace], Iterable[str]]
+"""Return the words that may stand at a place of the line, given what stands before it."""
+
+
+class Usage(LabError):
+    """Report that a line can't be understood. Exit code 2, as with the real `ros2`."""
+
+
+class Done(Exception):
+    """End a line early, because help was asked for and shown."""
+
+
+class Parser(argparse.ArgumentParser):
+    """An argument parser that raises `Usage` and never ends the process.
+
+    Args:
+        prog: The words that lead here, such as `ros2 topic echo`.
+        description: What it does, as one line.
+    """
+
+    def __init__(self, prog: str, description: str = '') -> None:
+        super().__init__(
+            prog=prog,
+            description=description,
+            formatter_class=lambda prog: argparse.RawDescriptionHelpFormatter(prog, width=88),
+        )
+
+    def add(
+        self, *names: str, complete: Complete | None = None, **options: Any
+    ) -> argparse.Action:
+        """Add an argument, and say what may stand there.
+
+        Args:
+            names: Name or option strings, as `add_argument` takes them.
+            complete: Returns the words to offer for completion.
+            options: As `add_argument` takes them.
+        """
+        if 'choices' in options:
+            # argparse words its complaint in another way in every version of Python.
+            choices = list(options.pop('choices'))
+            options['type'] = _choice(choices)
+            options.setdefault('metavar', '{' + ','.join(choices) + '}')
+            complete = complete or (lambda _: choices)
+        action = self.add_argument(*names, **options)
+        action.complete = complete  # type: ignore[attr-defined]
+        return action
+
+    @property
+    def actions(self) -> list[argparse.Action]:
+        """Return all arguments, in the order they were added."""
+        return self._actions
+
+    def read(self, words: Sequence[str]) -> argparse.Namespace:
+        """Read the words after the verb.
+
+        Raises:
+            Usage: They can't be understood.
+            Done: Help was asked for, and has been shown.
+        """
+        if any(action.nargs == argparse.REMAINDER for action in self._actions):
+            return self.parse_args(list(words))
+        # Options may stand anywhere, also before a positional that may be left out.
+        found, others = self.parse_known_intermixed_args(list(words))
+        if others:
+            raise self._refuse(others)
+        return found
+
+    def error(self, message: str) -> NoReturn:
+        """Raise a `Usage` error; called by argparse."""
+        raise Usage(f'{self.prog}: {message}', todo=self.usage_line)
+
+    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
+        """End the line; called by argparse after it has shown help."""
+        raise Done
+
+    @property
+    def usage_line(self) -> str:
+        """Return how the command is used, on one line."""
+        words = [self.prog, '[options]']
+        for action in self._actions:
+            if not action.option_strings:
+                name = str(action.metavar or action.dest)
+                left_out = action.nargs in ('?', '*', argparse.REMAINDER)
+                words += [f'[{name}]' if left_out else name]
+        return f'usage: {" ".join(words)}'
+
+    def _refuse(self, others: list[str]) -> Usage:
+        options = [name for action in self._actions for name in action.option_strings]
+        wrong = next((word for word in others if word.startswith('-')), '')
+        if wrong:
+            near = nearest(wrong.partition('=')[0], options)
+            hint = f' Did you mean {near!r}?' if near else ''
+            return Usage(f'{self.prog} has no option {wrong!r}.{hint}', todo=self.usage_line)
+        rest = ' '.join(others)
+        hint = ''
+        if set(rest) & set('{}[]:'):
+            hint = ' YAML goes in quotation marks: "{data: 1}"'
+        return Usage(f'{self.prog}: {rest!r} is too much.{hint}', todo=self.usage_line)
+
+
+@dataclass(frozen=True)
+class Verb:
+    """One verb of a command, such as `list` of `ros2 topic list`.
+
+    Attributes:
+        name: The word.
+        summary: What it does, as the real `ros2` says it in its help.
+        run: Does it. Returns None or 0 if all went well, another exit code, or an error message.
+        arguments: Adds its arguments to a parser.
+    """
+
+    name: str
+    summary: str
+    run: Callable[[argparse.Namespace], str | int | None]
+    arguments: Callable[[Parser], None] = lambda parser: None
+
+    def parser(self, command: str) -> Parser:
+        """Return the parser of the words after the verb."""
+        prog = f'ros2 {command} {self.name}' if command != self.name else f'ros2 {command}'
+        parser = Parser(prog, self.summary)
+        self.arguments(parser)
+        return parser
+
+
+@dataclass(frozen=True)
+class Command:
+    """One command, such as `topic`.
+
+    Attributes:
+        name: The word.
+        summary: What it is for, as the real `ros2` says it in its help.
+        verbs: Its verbs. A command that has none has itself as its only verb.
+        options: Option of the command that may stand before the verb -> its help.
+    """
+
+    name: str
+    summary: str
+    verbs: tuple[Verb, ...]
+    options: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def has_verbs(self) -> bool:
+        """Tell whether a verb has to follow."""
+        return [verb.name for verb in self.verbs] != [self.name]
+
+    def verb(self, name: str) -> Verb:
+        """Return a verb.
+
+        Raises:
+            Usage: There is none of that name.
+        """
+        for verb in self.verbs:
+            if verb.name == name:
+                return verb
+        names = [verb.name for verb in self.verbs]
+        near = nearest(name, names)
+        hint = f' Did you mean {near!r}?' if near else ''
+        raise Usage(
+            f'ros2 {self.name} has no verb {name!r}.{hint}',
+            todo=f'usage: ros2 {self.name} <verb>   with one of: {", ".join(sorted(names))}',
+        )
+
+    def help(self) -> str:
+        """Return what `-h` shows, in the form of the real `ros2`."""
+        options = {'-h, --help': 'show this help message and exit', **self.options}
+        calls = f'Call `ros2 {self.name} <command> -h` for more detailed usage.'
+        return '\n'.join(
+            [
+                f'usage: ros2 {self.name} [-h] <verb> ...',
+                '',
+                self.summary,
+                '',
+                'options:',
+                *table(options.items()),
+                '',
+                'Commands:',
+                *table((verb.name, verb.summary) for verb in self.verbs),
+                '',
+                f'  {calls}',
+            ]
+        )
+
+
+def table(rows: Iterable[tuple[str, str]]) -> list[str]:
+    """Return lines of a word and what it means, sorted and set in two columns."""
+    found = sorted(rows)
+    width = max(len(word) for word, _ in found)
+    return [f'  {word:{width}}  {text}' for word, text in found]
+
+
+def nearest(word: str, words: Iterable[str]) -> str:
+    """Return the one of `words` that was most likely meant, '' if none is near."""
+    known = list(words)
+    for other in known:
+        if word and (other.lower() == word.lower() or other.rsplit('/', 1)[-1] == word):
+            return other
+    near = difflib.get_close_matches(word, known, n=1, cutoff=0.7)
+    return near[0] if near else ''
+
+
+def unsigned_int(text: str) -> int:
+    """Read a whole number of at least 0."""
+    return _int_from(text, 0)
+
+
+def positive_int(text: str) -> int:
+    """Read a whole number of at least 1."""
+    return _int_from(text, 1)
+
+
+def positive_float(text: str) -> float:
+    """Read a finite number above 0."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f'expected a number above 0, but got {text!r}')
+    return value
+
+
+def _int_from(text: str, least: int) -> int:
+    try:
+        value = int(text)
+    except ValueError:
+        value = least - 1
+    if value < least:
+        raise argparse.ArgumentTypeError(
+            f'expected a whole number of at least {least}, but got {text!r}'
+        )
+    return value
+
+
+def _choice(choices: list[str]) -> Callable[[str], str]:
+    def read(text: str) -> str:
+        if text in choices:
+            return text
+        near = nearest(text, choices)
+        hint = f'; did you mean {near!r}?' if near else ''
+        raise argparse.ArgumentTypeError(f'{text!r} is not one of {", ".join(choices)}{hint}')
+
+    return read

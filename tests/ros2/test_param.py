@@ -1,0 +1,97 @@
+"""`ros2 param` against a foreign node."""
+
+from __future__ import annotations
+
+import pytest
+
+pytestmark = pytest.mark.usefixtures('robot')
+
+NAMES = ['names', 'pid.p', 'speed', 'start_type_description_service', 'use_sim_time']
+DUMP = """\
+/lamp:
+  ros__parameters:
+    names:
+    - a
+    - b
+    pid:
+      p: 1.5
+    speed: 5
+    start_type_description_service: true
+    use_sim_time: false
+
+"""
+
+
+def test_read(ros2):
+    every, names, types, number, text, bare, dump, described = ros2(
+        'param list',
+        'param list /lamp',
+        'param list lamp --param-type',
+        'param get /lamp speed',
+        'param get /lamp names',
+        'param get /lamp speed --hide-type',
+        'param dump /lamp',
+        'param describe /lamp speed pid.p',
+    )
+    assert every.lines[0] == '/fleet/robot:'
+    assert every.lines[-6:] == ['/lamp:', *(f'  {name}' for name in NAMES)]
+    assert names.lines == [f'  {name}' for name in NAMES]
+    assert types.lines[:2] == ['  names (type: string array)', '  pid.p (type: double)']
+    assert number.out == 'Integer value is: 5\n'
+    assert text.out == "String values are: ['a', 'b']\n"
+    assert bare.out == '5\n'
+    assert dump.out == DUMP
+    assert described.lines == [
+        'Parameter name: speed',
+        '  Type: integer',
+        '  Description: how fast',
+        '  Constraints:',
+        '    Min value: 0',
+        '    Max value: 10',
+        '    Step: 1',
+        'Parameter name: pid.p',
+        '  Type: double',
+        '  Constraints:',
+    ]
+
+
+def test_write(ros2, tmp_path):
+    good, bad = tmp_path / 'good.yaml', tmp_path / 'bad.yaml'
+    good.write_text(DUMP.replace('speed: 5', 'speed: 9').replace('p: 1.5', 'p: 2.5'))
+    bad.write_text('nothing: {of: the kind}')
+    changed, value, loaded, after, out_of_range, kind, wrong_file, no_file = ros2(
+        'param set /lamp speed 7',
+        'param get /lamp speed',
+        f'param load /lamp {good}',
+        'param get /lamp pid.p',
+        'param set /lamp speed 70',
+        'param set /lamp speed fast',
+        f'param load /lamp {bad}',
+        'param load /lamp nowhere.yaml',
+    )
+    assert changed.out == 'Set parameter successful\n'
+    assert value.out == 'Integer value is: 7\n'
+    assert 'Set parameter pid.p successful' in loaded.lines
+    assert after.out == 'Double value is: 2.5\n'
+    assert out_of_range.err.startswith('Setting parameter failed: Parameter speed out of range')
+    assert kind.err.startswith('Setting parameter failed: Wrong parameter type')
+    assert wrong_file.err == (
+        'Param file does not contain parameters for /lamp, only for: nothing\n'
+    )
+    assert no_file.err == 'nowhere.yaml can not be read: No such file or directory\n'
+    assert {answer.code for answer in (out_of_range, kind, wrong_file, no_file)} == {1}
+
+
+def test_wrong_names(ros2):
+    node, name, described, hidden = ros2(
+        'param list /lump',
+        'param get /lamp sped',
+        'param describe /lamp spee',
+        'param get /nobody x',
+    )
+    assert node.err == "Node not found\nDid you mean '/lamp'?\n"
+    assert name.err == (
+        "Parameter not set: /lamp has no parameter 'sped'.\nDid you mean 'speed'?\n"
+    )
+    assert described.err == "/lamp has no parameter 'spee'.\nDid you mean 'speed'?\n"
+    assert hidden.code == 1 and hidden.err.startswith('Node not found\n')

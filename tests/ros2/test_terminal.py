@@ -1,0 +1,121 @@
+"""`ros2` in a terminal: whose domain it joins, whom it steps aside for, how it ends."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from labkit import settings
+from labkit.errors import LabError
+from labkit.ros2 import terminal
+
+
+def start(*words: str, env: dict[str, str], **options) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, '-m', 'labkit', 'ros2', *words],
+        env=env,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        **options,
+    )
+
+
+@pytest.mark.usefixtures('robot')
+def test_one_command_after_the_other(domain, lab_env):
+    process = start('topic', 'list', env={**lab_env, **domain})
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (0, '')
+    assert out.splitlines()[:3] == ['/chatter', '/cmd_vel', '/heard']
+    process = start('topic', 'info', '/nowhere', env={**lab_env, **domain})
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, out) == (1, '')
+    assert err.startswith("Unknown topic '/nowhere'\n")
+
+
+@pytest.mark.usefixtures('robot')
+def test_ctrl_c_ends_a_stream(domain, lab_env):
+    process = start('topic', 'echo', '/chatter', env={**lab_env, **domain})
+    assert process.stdout is not None
+    assert process.stdout.readline().startswith('data: Hello ')
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (2, '')
+
+
+@pytest.mark.usefixtures('robot')
+def test_a_pipe_that_ends_early(domain, lab_env):
+    process = start('topic', 'echo', '/chatter', env={**lab_env, **domain})
+    assert process.stdout is not None and process.stderr is not None
+    assert process.stdout.readline()
+    process.stdout.close()
+    assert process.wait(60) == 1
+    assert process.stderr.read() == ''
+    process.stderr.close()
+
+
+def test_run_stays_in_front(domain, lab_env):
+    env = {**lab_env, **domain, 'PYTHONUNBUFFERED': '1'}
+    process = start('run', 'demo_nodes_py', 'talker', env=env, start_new_session=True)
+    assert process.stderr is not None
+    for line in process.stderr:
+        if 'Publishing: "Hello World: 1"' in line:
+            break
+    os.killpg(process.pid, signal.SIGINT)  # as Ctrl-C does
+    process.communicate(timeout=60)
+    assert process.returncode == 0
+
+
+def test_a_notebook_tells_its_domain(domain):
+    # The fixture holds a domain as a notebook does.
+    assert int(domain['ROS_DOMAIN_ID']) in settings.claimed_domains()
+
+
+def test_domain_of_the_one_running_notebook(monkeypatch):
+    monkeypatch.delenv('ROS_DOMAIN_ID', raising=False)
+    monkeypatch.setattr(settings, 'claimed_domains', lambda: {7: '04_odds.ipynb'})
+    terminal.choose_domain()
+    assert os.environ.pop('ROS_DOMAIN_ID') == '7'
+    monkeypatch.setattr(settings, 'claimed_domains', lambda: {})
+    terminal.choose_domain()
+    assert 'ROS_DOMAIN_ID' not in os.environ
+    two = {7: '04_odds.ipynb', 9: '05_my_name_is.ipynb'}
+    monkeypatch.setattr(settings, 'claimed_domains', lambda: two)
+    with pytest.raises(LabError) as caught:
+        terminal.choose_domain()
+    assert '  ROS_DOMAIN_ID=7  04_odds.ipynb\n  ROS_DOMAIN_ID=9  05_my' in str(caught.value)
+    monkeypatch.setenv('ROS_DOMAIN_ID', '3')
+    terminal.choose_domain()
+    assert os.environ['ROS_DOMAIN_ID'] == '3'
+
+
+def test_a_kernel_claims_its_domain_by_the_name_of_its_notebook(start_kernel):
+    kernel = start_kernel(JPY_SESSION_NAME='/some/where/04_odds.ipynb')
+    result = kernel.run(
+        'import labkit as lab\nlab.start()\nfrom labkit.runtime import runtime\n'
+        'print(runtime.domain_id)'
+    )
+    assert settings.claimed_domains()[int(result.text)] == '04_odds.ipynb'
+
+
+def test_steps_aside_for_a_real_one(tmp_path: Path, lab_env):
+    real = tmp_path / 'ros2'
+    real.write_text('#!/bin/sh\necho the real one: "$@" "[$LD_LIBRARY_PATH]"\n')
+    real.chmod(0o755)
+    env = {**lab_env, 'PATH': f'{tmp_path}{os.pathsep}{lab_env["PATH"]}'}
+    process = start('topic', 'list', env=env)
+    out, err = process.communicate(timeout=60)
+    assert (out, err) == ('the real one: topic list []\n', '')
+
+
+def test_does_not_step_aside_for_itself(tmp_path: Path, monkeypatch):
+    own = tmp_path / 'ros2'
+    own.write_text('#!/usr/bin/python3\nfrom labkit.ros2 import main\n')
+    own.chmod(0o755)
+    monkeypatch.setenv('PATH', str(tmp_path))
+    assert terminal.real_ros2() is None
