@@ -1,0 +1,280 @@
+"""How a robot with two driven wheels moves: pure math in SI units, without ROS.
+
+The robot is a unicycle: it drives along its own heading with v (m/s) and turns with w (rad/s).
+Both are piecewise linear in time, since motors need time to speed up. While they are constant the
+path is an arc and has a closed form; while they change it is integrated to the last digit. So
+where the robot ends does not depend on the steps in which it is taken there.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+__all__ = [
+    'BURGER',
+    'DriveLimits',
+    'Motion',
+    'Pose',
+    'Robot',
+    'Twist2',
+    'believed',
+    'ramp',
+    'wheel_speeds',
+    'wrap_angle',
+    'yaw_from_quaternion',
+    'yaw_to_quaternion',
+]
+
+
+class Pose(NamedTuple):
+    """Where the robot is.
+
+    Attributes:
+        x: Position along the x axis, m.
+        y: Position along the y axis, m.
+        yaw: Heading, rad, counter-clockwise from the x axis, in (-pi, pi].
+    """
+
+    x: float = 0.0
+    y: float = 0.0
+    yaw: float = 0.0
+
+
+class Twist2(NamedTuple):
+    """How fast the robot moves in the plane, or how fast that changes.
+
+    Attributes:
+        v: Speed along the heading, m/s (or m/s²); negative is backwards.
+        w: Turning rate, rad/s (or rad/s²); positive is to the left.
+    """
+
+    v: float = 0.0
+    w: float = 0.0
+
+
+class DriveLimits(NamedTuple):
+    """The most that the drive can do, forwards and backwards, to the left and to the right.
+
+    Attributes:
+        v: Speed, m/s.
+        w: Turning rate, rad/s.
+        v_rate: Acceleration, m/s².
+        w_rate: Acceleration of the turning, rad/s².
+    """
+
+    v: float
+    w: float
+    v_rate: float
+    w_rate: float
+
+    def clip(self, target: Twist2) -> Twist2:
+        """Return what the drive makes of a command: each component cut to its limit."""
+        return Twist2(
+            min(max(target.v, -self.v), self.v),
+            min(max(target.w, -self.w), self.w),
+        )
+
+
+@dataclass(frozen=True)
+class Robot:
+    """The measures of a robot.
+
+    Attributes:
+        radius: Radius of the disc around the middle of the axle that holds the robot, m.
+        wheel_radius: m.
+        wheel_separation: Distance between the wheels, m.
+        limits: What the drive can do.
+        scan_x: Place of the laser scanner along the heading, from the middle of the axle, m.
+        scan_beams: Rays in one turn of the scanner; the first looks ahead, the next to its left.
+        scan_rate: Turns of the scanner in a second, Hz.
+        range_min: Shortest distance that the scanner measures, m.
+        range_max: Longest distance that the scanner measures, m.
+    """
+
+    radius: float
+    wheel_radius: float
+    wheel_separation: float
+    limits: DriveLimits
+    scan_x: float
+    scan_beams: int
+    scan_rate: float
+    range_min: float
+    range_max: float
+
+
+# Sources:
+# - speeds: ROBOTIS e-manual, TurtleBot3, "Features > Specifications" (emanual.robotis.com):
+#   0.22 m/s, 2.84 rad/s;
+# - wheels: ROBOTIS-GIT/turtlebot3, turtlebot3_bringup/param/*/burger.yaml: 0.160 m, 0.033 m;
+# - radius: ROBOTIS-GIT/OpenCR, turtlebot3_ros2/src/turtlebot3/turtlebot3.cpp, burger_info:
+#   0.105 m;
+# - accelerations: ROBOTIS-GIT/turtlebot3, turtlebot3_navigation2/param/jazzy/burger.yaml,
+#   decel_lim_x 2.5 m/s² and acc_lim_theta 3.2 rad/s² (the motors' own profile is unlimited);
+# - scanner LDS-01: e-manual, "Appendix > LDS-01": 360 beams of 1 degree, 0.12 m to 3.5 m,
+#   300 turns a minute; its place: ROBOTIS-GIT/turtlebot3_simulations, turtlebot3_gazebo/models/
+#   turtlebot3_burger/model.sdf, lidar_joint: 0.032 m behind the axle.
+BURGER = Robot(
+    radius=0.105,
+    wheel_radius=0.033,
+    wheel_separation=0.160,
+    limits=DriveLimits(v=0.22, w=2.84, v_rate=2.5, w_rate=3.2),
+    scan_x=-0.032,
+    scan_beams=360,
+    scan_rate=5.0,
+    range_min=0.12,
+    range_max=3.5,
+)
+
+
+def wrap_angle(angle: float) -> float:
+    """Return the same direction as an angle in (-pi, pi], rad."""
+    wrapped = math.remainder(angle, math.tau)
+    return math.pi if wrapped <= -math.pi else wrapped
+
+
+def yaw_to_quaternion(yaw: float) -> tuple[float, float, float, float]:
+    """Return the quaternion (x, y, z, w) of a turn by `yaw` rad about the z axis."""
+    return 0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)
+
+
+def yaw_from_quaternion(x: float, y: float, z: float, w: float) -> float:
+    """Return the heading of a quaternion, rad, in (-pi, pi].
+
+    The quaternion need not have length 1; tilt (roll and pitch) is left out.
+    Source: Diebel, "Representing Attitude" (2006), equation 290.
+    """
+    return math.atan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z)
+
+
+def wheel_speeds(twist: Twist2, robot: Robot = BURGER) -> tuple[float, float]:
+    """Return how fast the left and the right wheel turn, rad/s."""
+    half = twist.w * robot.wheel_separation / 2
+    return (twist.v - half) / robot.wheel_radius, (twist.v + half) / robot.wheel_radius
+
+
+def believed(twist: Twist2, mismatch: float, robot: Robot = BURGER) -> Twist2:
+    """Return the twist that odometry reads off wheels whose radii differ.
+
+    The left wheel is smaller than it should be, so it turns more often, and odometry believes
+    that it came further; the right wheel the other way round. This is the most common
+    systematic error of odometry. Source: Borenstein and Feng, "Measurement and correction of
+    systematic odometry errors in mobile robots", IEEE Trans. Robotics and Automation 12 (1996).
+
+    Args:
+        twist: The true twist, or the true acceleration.
+        mismatch: Difference of the radii by their mean, without unit; 0 for perfect wheels.
+        robot: The robot's measures.
+    """
+    width = robot.wheel_separation
+    return Twist2(
+        twist.v - mismatch * twist.w * width / 4,
+        twist.w - mismatch * twist.v / width,
+    )
+
+
+def ramp(twist: Twist2, target: Twist2, limits: DriveLimits) -> tuple[Twist2, float]:
+    """Return the acceleration towards `target`, and for how many seconds it stays the same.
+
+    Args:
+        twist: The present twist.
+        target: The twist wanted.
+        limits: What the drive can do.
+
+    Returns:
+        The acceleration, and the time until a component reaches its target; infinity if both
+        are there.
+    """
+    v_gap, w_gap = target.v - twist.v, target.w - twist.w
+    v_time = abs(v_gap) / limits.v_rate if v_gap else math.inf
+    w_time = abs(w_gap) / limits.w_rate if w_gap else math.inf
+    acceleration = Twist2(
+        math.copysign(limits.v_rate, v_gap) if v_gap else 0.0,
+        math.copysign(limits.w_rate, w_gap) if w_gap else 0.0,
+    )
+    return acceleration, min(v_time, w_time)
+
+
+class Motion(NamedTuple):
+    """Motion with constant acceleration.
+
+    Attributes:
+        start: Pose at time 0.
+        twist: Twist at time 0.
+        acceleration: How fast the twist changes.
+    """
+
+    start: Pose
+    twist: Twist2
+    acceleration: Twist2 = Twist2()
+
+    def twist_at(self, time: float) -> Twist2:
+        """Return the twist after `time` seconds."""
+        return Twist2(
+            self.twist.v + self.acceleration.v * time,
+            self.twist.w + self.acceleration.w * time,
+        )
+
+    def turned(self, time: float) -> float:
+        """Return how far the heading has turned after `time` seconds, rad, not wrapped."""
+        return (self.twist.w + self.acceleration.w * time / 2) * time
+
+    def pose_at(self, time: float) -> Pose:
+        """Return the pose after `time` seconds."""
+        yaw = wrap_angle(self.start.yaw + self.turned(time))
+        if self.acceleration.w or (self.acceleration.v and self.twist.w):
+            ahead, aside = self._integrate(time)
+        else:
+            # An arc; or a straight line, on which the speed may change.
+            length = (self.twist.v + self.acceleration.v * time / 2) * time
+            ahead, aside = _chord(length, self.twist.w * time)
+        cos, sin = math.cos(self.start.yaw), math.sin(self.start.yaw)
+        return Pose(
+            self.start.x + cos * ahead - sin * aside,
+            self.start.y + sin * ahead + cos * aside,
+            yaw,
+        )
+
+    def _integrate(self, time: float) -> tuple[float, float]:
+        """Return the way made ahead and to the left, seen from the start, m."""
+        # The way is a Fresnel integral. Gauss-Legendre quadrature with 6 points is exact to
+        # rounding as long as the heading turns by no more than half a radian in a panel.
+        top_w = max(abs(self.twist.w), abs(self.twist_at(time).w))
+        panels = max(1, math.ceil(2 * top_w * time))
+        half = time / panels / 2
+        ahead = aside = 0.0
+        for panel in range(panels):
+            middle = (2 * panel + 1) * half
+            for node, weight in _GAUSS_6:
+                at = middle + node * half
+                way = weight * half * (self.twist.v + self.acceleration.v * at)
+                angle = self.turned(at)
+                ahead += way * math.cos(angle)
+                aside += way * math.sin(angle)
+        return ahead, aside
+
+
+def _chord(length: float, angle: float) -> tuple[float, float]:
+    """Return the end of an arc, ahead and to the left of its start, m.
+
+    The chord of an arc of length s that turns by a is s sin(a/2) / (a/2) long and points along
+    a/2. Unlike v/w (sin ...) this loses no digits when the arc is nearly straight.
+    Source: Thrun, Burgard and Fox, "Probabilistic Robotics" (2005), equation 5.9, rearranged.
+    """
+    half = angle / 2
+    # Where sin(half)/half would divide 0 by 0, its series is exact to rounding.
+    factor = math.sin(half) / half if abs(half) > 1e-4 else 1 - half * half / 6
+    return length * factor * math.cos(half), length * factor * math.sin(half)
+
+
+# Nodes and weights on [-1, 1]. Source: Abramowitz and Stegun (1964), table 25.4, n = 6.
+_GAUSS_6 = tuple(
+    (sign * node, weight)
+    for node, weight in (
+        (0.238619186083196909, 0.467913934572691047),
+        (0.661209386466264514, 0.360761573048138608),
+        (0.932469514203152028, 0.171324492379170345),
+    )
+    for sign in (-1, 1)
+)

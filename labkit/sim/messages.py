@@ -1,0 +1,105 @@
+"""What a TurtleBot3 Burger publishes, as ROS messages made from the simulation.
+
+Frames, fields and units are those of the real robot. Sources: ROBOTIS-GIT/turtlebot3,
+turtlebot3_node/src/odometry.cpp and sensors/joint_state.cpp; ROBOTIS-GIT/hls_lfcd_lds_driver,
+src/hlds_laser_publisher.cpp.
+"""
+
+from __future__ import annotations
+
+import math
+from array import array
+
+import numpy as np
+from builtin_interfaces.msg import Time
+from nav_msgs.msg import Odometry
+from numpy.typing import NDArray
+from sensor_msgs.msg import JointState, LaserScan
+
+from labkit.sim.kinematics import yaw_to_quaternion
+from labkit.sim.simulator import Simulator
+
+__all__ = ['joint_state_message', 'odometry_message', 'scan_message', 'time_message']
+
+
+def _diagonal(*values: float) -> NDArray[np.float64]:
+    return np.diag(np.array(values)).flatten()
+
+
+# How sure the robot is of x, y, z, roll, pitch and yaw, m² and rad². Source: the values that
+# ROBOTIS proposes in odometry.cpp. What can't change on a floor is certain.
+POSE_COVARIANCE = _diagonal(0.05, 0.05, 1e-9, 1e-9, 1e-9, 0.0872665)
+TWIST_COVARIANCE = _diagonal(0.001, 1e-9, 1e-9, 1e-9, 1e-9, 0.001)
+
+
+def time_message(seconds: float) -> Time:
+    """Return a simulated time as a time stamp.
+
+    Args:
+        seconds: Time since the start of the simulation, s.
+    """
+    sec, nanosec = divmod(round(seconds * 1e9), 10**9)
+    return Time(sec=sec, nanosec=nanosec)
+
+
+def odometry_message(robot: Simulator, stamp: Time, prefix: str = '') -> Odometry:
+    """Return where the robot believes to be and how fast it believes to move.
+
+    Args:
+        robot: The robot.
+        stamp: When.
+        prefix: What comes before the names of its frames, such as `'robot1/'`.
+    """
+    message = Odometry()
+    message.header.stamp = stamp
+    message.header.frame_id = f'{prefix}odom'
+    message.child_frame_id = f'{prefix}base_footprint'
+    pose, twist = message.pose.pose, message.twist.twist
+    pose.position.x, pose.position.y, yaw = robot.odometry
+    turn = pose.orientation
+    turn.x, turn.y, turn.z, turn.w = yaw_to_quaternion(yaw)
+    twist.linear.x, twist.angular.z = robot.odometry_twist
+    message.pose.covariance = POSE_COVARIANCE
+    message.twist.covariance = TWIST_COVARIANCE
+    return message
+
+
+def joint_state_message(robot: Simulator, stamp: Time, prefix: str = '') -> JointState:
+    """Return how far and how fast the wheels have turned, in rad and rad/s.
+
+    Args:
+        robot: The robot.
+        stamp: When.
+        prefix: What comes before the name of its frame.
+    """
+    message = JointState()
+    message.header.stamp = stamp
+    message.header.frame_id = f'{prefix}base_link'
+    message.name = ['wheel_left_joint', 'wheel_right_joint']
+    message.position = array('d', robot.wheels)
+    message.velocity = array('d', robot.wheel_rates)
+    return message
+
+
+def scan_message(robot: Simulator, stamp: Time, prefix: str = '') -> LaserScan:
+    """Return what the laser scanner sees.
+
+    Args:
+        robot: The robot.
+        stamp: When.
+        prefix: What comes before the name of its frame.
+    """
+    spec = robot.robot
+    message = LaserScan()
+    message.header.stamp = stamp
+    message.header.frame_id = f'{prefix}base_scan'
+    # The last beam is one increment short of a full turn. (The real driver announces 2 pi, which
+    # does not agree with its 360 beams.) All beams are of the same moment.
+    message.angle_min = 0.0
+    message.angle_increment = math.tau / spec.scan_beams
+    message.angle_max = message.angle_increment * (spec.scan_beams - 1)
+    message.scan_time = 1 / spec.scan_rate
+    message.range_min = spec.range_min
+    message.range_max = spec.range_max
+    message.ranges = array('f', robot.scan())
+    return message

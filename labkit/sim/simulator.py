@@ -1,0 +1,234 @@
+"""One simulated robot in a world: takes commands, moves through time, looks around. No ROS."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from labkit.errors import LabError
+from labkit.sim.kinematics import (
+    BURGER,
+    Motion,
+    Pose,
+    Robot,
+    Twist2,
+    believed,
+    ramp,
+    wheel_speeds,
+    wrap_angle,
+)
+from labkit.sim.world import Contact, Post, World, playground
+
+__all__ = ['COMMAND_TIMEOUT', 'Simulator']
+
+# How long a command holds, s. Source: ROBOTIS-GIT/turtlebot3_simulations,
+# turtlebot3_fake_node/src/turtlebot3_fake_node.cpp, cmd_vel_timeout_.
+COMMAND_TIMEOUT = 1.0
+# A command beyond this is a mistake, not a wish to go fast, in m/s or rad/s. Degrees that were
+# meant to be radians are below it, and cut to the limits as on the real robot.
+NONSENSE = 1000.0
+# A contact is sought in pieces of this length, s, so that a day without commands is no long loop.
+LONGEST_PIECE = 1.0
+# Speeds nearer than this to the target are there, in m/s or rad/s.
+SAME_SPEED = 1e-12
+
+
+class Simulator:
+    """A robot in a world. Time passes in `step`, and in nothing else.
+
+    Where the robot ends does not depend on the steps in which it is taken there.
+
+    Args:
+        world: What surrounds it; `playground()` if None. Robots in the same world see each other.
+        start: Where it stands at first.
+        robot: Its measures.
+        command_timeout: It stops when no command came for this long, s.
+        drift: Error of its odometry: how much the wheels' radii differ, by their mean.
+        noise: Standard deviation of a measured range, m.
+        seed: Of the noise: the same seed, the same noise.
+        name: What it is called in the world; a robot of the same name is replaced.
+
+    Attributes:
+        time: Simulated time since the start, s.
+        pose: Where it is.
+        twist: How fast it moves.
+        target: The last command, cut to what the drive can do.
+        odometry: Where it believes to be, from its wheels.
+        wheels: How far the left and the right wheel have turned by their encoders, rad.
+        collisions: All contacts into which it drove, with the time in which they happened.
+
+    Raises:
+        LabError: An argument makes no sense, or there is no room at `start`.
+    """
+
+    def __init__(
+        self,
+        world: World | None = None,
+        *,
+        start: Pose | tuple[float, float, float] = Pose(),  # noqa: B008 - it can't be changed
+        robot: Robot = BURGER,
+        command_timeout: float = COMMAND_TIMEOUT,
+        drift: float = 0.0,
+        noise: float = 0.0,
+        seed: int = 0,
+        name: str = 'turtlebot',
+    ) -> None:
+        _check('command_timeout', command_timeout, command_timeout > 0, 'more than 0 s')
+        _check('drift', drift, abs(drift) < 1, 'a share such as 0.01')
+        _check('noise', noise, 0 <= noise < math.inf, 'a distance in metres, 0 or more')
+        self.world = world if world is not None else playground()
+        self.robot = robot
+        self.command_timeout = command_timeout
+        self.drift = drift
+        self.noise = noise
+        self.name = name
+        self.time = 0.0
+        self.wheels = (0.0, 0.0)
+        self.collisions: list[Contact] = []
+        self._random = np.random.default_rng(seed)
+        self.place(start)
+
+    def __repr__(self) -> str:
+        x, y, yaw = self.pose
+        return f'<Simulator {self.name!r}: x={x:.3f} y={y:.3f} yaw={yaw:.3f} t={self.time:.3f} s>'
+
+    def place(self, start: Pose | tuple[float, float, float]) -> None:
+        """Put the robot somewhere, standing; its odometry agrees.
+
+        Raises:
+            LabError: There is no room for it.
+        """
+        x, y, yaw = start
+        if not (math.isfinite(x) and math.isfinite(y) and math.isfinite(yaw)):
+            raise LabError(f'x, y and yaw must be finite numbers, but they are {x}, {y}, {yaw}.')
+        # Another robot may stand there: it is about to be replaced, or they drive apart.
+        spare = min((t.away(x, y)[0] for t in self.world.fixed), default=math.inf)
+        if spare < self.robot.radius:
+            raise LabError(
+                f'The robot needs {self.robot.radius} m of room around it, but at x={x}, y={y} '
+                f'the next wall or post is {max(spare, 0.0):.3f} m away.',
+                todo='Let it start further away from walls and posts.',
+            )
+        self.pose = self.odometry = Pose(x, y, wrap_angle(yaw))
+        self.twist = self.target = Twist2()
+        self._command_left = math.inf
+        self._show()
+
+    def close(self) -> None:
+        """Take the robot out of its world, unless another of its name has replaced it."""
+        if self.world.robots.get(self.name) is self._post:
+            del self.world.robots[self.name]
+
+    def command(self, v: float, w: float) -> bool:
+        """Set the speeds to be reached as fast as the drive can, until the next command.
+
+        Args:
+            v: Speed along the heading, m/s.
+            w: Turning rate, rad/s.
+
+        Returns:
+            Whether the command makes sense. If it does not (not finite, or beyond all reason) the
+            robot stops.
+        """
+        # Written so that NaN, for which every comparison is false, is refused too.
+        sensible = abs(v) <= NONSENSE and abs(w) <= NONSENSE
+        self.target = self.robot.limits.clip(Twist2(v, w)) if sensible else Twist2()
+        self._command_left = self.command_timeout
+        return sensible
+
+    def step(self, dt: float) -> None:
+        """Let time pass.
+
+        Args:
+            dt: How much, s.
+
+        Raises:
+            LabError: It is negative or not finite.
+        """
+        if not 0 <= dt < math.inf:
+            raise LabError(f'dt must be a time in seconds, 0 or more, but it is {dt!r}.')
+        while dt > 0:
+            dt -= self._advance(dt)
+
+    def scan(self) -> list[float]:
+        """Return what the laser scanner sees now, beam after beam to the left, m.
+
+        Nothing within the range gives +inf, something nearer than the range -inf.
+        Source: REP 117, "Informational Distance Measurements" (ros.org/reps/rep-0117.html).
+        """
+        ranges = self.world.ranges(self.pose, robot=self.robot, but=self.name)
+        if self.noise:
+            ranges += self._random.normal(0.0, self.noise, len(ranges))
+        ranges[ranges > self.robot.range_max] = math.inf
+        ranges[ranges < self.robot.range_min] = -math.inf
+        numbers: list[float] = ranges.tolist()
+        return numbers
+
+    @property
+    def odometry_twist(self) -> Twist2:
+        """How fast it believes to move, from its wheels."""
+        return believed(self.twist, self.drift, self.robot)
+
+    @property
+    def wheel_rates(self) -> tuple[float, float]:
+        """How fast the left and the right wheel turn by their encoders, rad/s."""
+        return wheel_speeds(self.odometry_twist, self.robot)
+
+    def _advance(self, dt: float) -> float:
+        """Move until something changes: a speed is reached, a contact, the command ends."""
+        acceleration, change = ramp(self.twist, self.target, self.robot.limits)
+        longest = min(dt, self._command_left, LONGEST_PIECE)
+        used = min(longest, change)
+        motion = Motion(self.pose, self.twist, acceleration)
+        contact = self.world.first_contact(motion, used, self.robot.radius, but=self.name)
+        if contact is None:
+            self._move(motion, used)
+        elif contact.time == 0 and self.twist == Twist2():
+            # It pushes against what it touches: time passes, the robot stands.
+            used = longest
+            self._pass(used)
+        else:
+            used = contact.time
+            self._move(motion, used)
+            if self.twist.v:
+                self.collisions.append(contact._replace(time=self.time))
+            self.twist = Twist2()
+        return used
+
+    def _move(self, motion: Motion, time: float) -> None:
+        mean, acceleration = motion.twist_at(time / 2), motion.acceleration
+        left, right = wheel_speeds(believed(mean, self.drift, self.robot), self.robot)
+        self.wheels = (self.wheels[0] + left * time, self.wheels[1] + right * time)
+        self.pose = motion.pose_at(time)
+        if self.drift:
+            # Seen from the wheels it is the same kind of motion, with other numbers.
+            seen = believed(self.twist, self.drift, self.robot)
+            change = believed(acceleration, self.drift, self.robot)
+            self.odometry = Motion(self.odometry, seen, change).pose_at(time)
+        else:
+            self.odometry = self.pose
+        v, w = motion.twist_at(time)
+        self.twist = Twist2(
+            self.target.v if abs(self.target.v - v) < SAME_SPEED else v,
+            self.target.w if abs(self.target.w - w) < SAME_SPEED else w,
+        )
+        self._show()
+        self._pass(time)
+
+    def _pass(self, time: float) -> None:
+        self.time += time
+        self._command_left -= time
+        if self._command_left <= 0:
+            self.target = Twist2()
+            self._command_left = math.inf
+
+    def _show(self) -> None:
+        """Let the other robots in the world see where this one is."""
+        self._post = Post(self.pose.x, self.pose.y, self.robot.radius)
+        self.world.robots[self.name] = self._post
+
+
+def _check(name: str, value: float, right: bool, expected: str) -> None:
+    if not right:
+        raise LabError(f'{name} must be {expected}, but it is {value!r}.')

@@ -1,0 +1,335 @@
+"""The simulated robot as a ROS node, with the topics of a TurtleBot3 Burger.
+
+Names, types, frames and QoS are those of the real one, so what is written against this node runs
+unchanged there. Sources: ROBOTIS-GIT/turtlebot3, turtlebot3_node/src (KeepLast(10), reliable), and
+ROBOTIS-GIT/hls_lfcd_lds_driver, src/hlds_laser_publisher.cpp (SensorDataQoS).
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import rclpy.utilities
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import qos_profile_sensor_data
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState, LaserScan
+
+from labkit import runtime
+from labkit.errors import LabError
+from labkit.sim.kinematics import Pose, Twist2
+from labkit.sim.messages import (
+    joint_state_message,
+    odometry_message,
+    scan_message,
+    time_message,
+)
+from labkit.sim.simulator import COMMAND_TIMEOUT, Simulator
+from labkit.sim.world import Contact, Wall, World
+
+__all__ = ['ODOM_RATE', 'Turtlebot']
+
+# How often /odom and /joint_states are published, Hz, in simulated time.
+ODOM_RATE = 30.0
+QUEUE_DEPTH = 10
+# Beyond this rclpy can't keep up with the messages, simulated seconds in a second.
+MAX_SPEED = 100.0
+# A timer is not called more often than this, s: when time runs fast, a call does several rounds.
+SHORTEST_PERIOD = 0.004
+
+
+class Turtlebot(Node):
+    """A simulated TurtleBot3 Burger on real topics.
+
+    It hears `cmd_vel` (geometry_msgs/msg/Twist) and publishes `odom` (nav_msgs/msg/Odometry) and
+    `joint_states` (sensor_msgs/msg/JointState) 30 times a second, and `scan`
+    (sensor_msgs/msg/LaserScan) 5 times a second. It stops when commands stop coming, and where it
+    touches a wall. The origin of the frame `odom` is that of the world, wherever the robot starts.
+
+    There are three ways for time to pass. By default it is real time. With `speed` it runs faster
+    or slower, and `/clock` tells it to nodes that have the parameter `use_sim_time`. With
+    `lockstep` it stands still until a command comes, and then that many seconds pass: the same
+    commands lead to the same numbers, however busy the machine is.
+
+    Args:
+        name: The node's name.
+        namespace: For several robots: `namespace='robot1'` gives `/robot1/cmd_vel` and so on.
+        world: What surrounds the robot, `playground()` by default. Robots that are given the same
+            world see each other.
+        x: Where it starts, m.
+        y: Where it starts, m.
+        yaw: Where it looks at the start, rad.
+        speed: Simulated seconds in a second.
+        lockstep: Simulated seconds that pass with each command; None if time passes by itself.
+        command_timeout: It stops when no command came for this long, s.
+        drift: Error of its odometry: the difference of the wheels' radii by their mean.
+        noise: Standard deviation of a measured range, m. The real sensor has about 0.01.
+        seed: Of the noise: the same seed, the same noise.
+        use_sim_time: Follow the `/clock` of another node, such as that of a robot with `speed`.
+
+    Attributes:
+        simulator: The robot itself, without ROS.
+
+    Raises:
+        LabError: An argument makes no sense, or there is no room where it should start.
+    """
+
+    def __init__(
+        self,
+        *,
+        name: str = 'turtlebot',
+        namespace: str = '',
+        world: World | None = None,
+        x: float = 0.0,
+        y: float = 0.0,
+        yaw: float = 0.0,
+        speed: float = 1.0,
+        lockstep: float | None = None,
+        command_timeout: float = COMMAND_TIMEOUT,
+        drift: float = 0.0,
+        noise: float = 0.0,
+        seed: int = 0,
+        use_sim_time: bool = False,
+    ) -> None:
+        _check_time(speed, lockstep, use_sim_time)
+        space = namespace.strip('/')
+        self.simulator = Simulator(
+            world,
+            start=Pose(x, y, yaw),
+            # In lock-step a command holds for its step, however long that is.
+            command_timeout=command_timeout if lockstep is None else math.inf,
+            drift=drift,
+            noise=noise,
+            seed=seed,
+            name=f'{space}/{name}',
+        )
+        if not rclpy.utilities.ok():
+            runtime.start()
+        # It has no parameters for others to set, and services cost time at every wake-up.
+        overrides = {'use_sim_time': use_sim_time, 'start_type_description_service': False}
+        super().__init__(
+            name,
+            namespace=namespace,
+            parameter_overrides=[
+                Parameter(key, value=value)  # type: ignore[no-untyped-call]
+                for key, value in overrides.items()
+            ],
+            start_parameter_services=False,
+        )
+        self._prefix = f'{space}/' if space else ''
+        self._lock = threading.RLock()
+        self._scan_due = 0.0
+        self._said: set[str] = set()
+        self._reported = 0
+        self._lockstep = lockstep
+        self._clock_publisher = None
+        if lockstep is not None or speed != 1.0:
+            self._clock_publisher = self.create_publisher(Clock, '/clock', QUEUE_DEPTH)
+        self._open_topics()
+        if lockstep is None:
+            self._start_time(speed)
+
+    def _open_topics(self) -> None:
+        self._odom = self.create_publisher(
+            Odometry, 'odom', QUEUE_DEPTH, event_callbacks=self._on_join(self._publish_odometry)
+        )
+        self._scan = self.create_publisher(
+            LaserScan,
+            'scan',
+            qos_profile_sensor_data,
+            event_callbacks=self._on_join(self._publish_scan),
+        )
+        self._joints = self.create_publisher(JointState, 'joint_states', QUEUE_DEPTH)
+        self.create_subscription(Twist, 'cmd_vel', self._on_command, QUEUE_DEPTH)
+
+    def _on_join(self, publish: Callable[[], None]) -> PublisherEventCallbacks | None:
+        # In lock-step nothing is published before the first command, yet a controller may have to
+        # know where the robot is before it can give one. So whoever joins is told.
+        if self._lockstep is None:
+            return None
+
+        def matched(info: Any) -> None:
+            if info.current_count_change > 0:
+                publish()
+
+        return PublisherEventCallbacks(matched=matched)
+
+    # -- for cells and checks -------------------------------------------------------------------
+
+    @property
+    def pose(self) -> Pose:
+        """Where the robot is in truth. A program for a robot can't know it: use `/odom`."""
+        return self.simulator.pose
+
+    @property
+    def twist(self) -> Twist2:
+        """How fast the robot moves in truth."""
+        return self.simulator.twist
+
+    @property
+    def collisions(self) -> list[Contact]:
+        """All contacts into which the robot drove."""
+        return list(self.simulator.collisions)
+
+    def place(self, x: float = 0.0, y: float = 0.0, yaw: float = 0.0) -> None:
+        """Put the robot somewhere, standing. Its odometry agrees.
+
+        Args:
+            x: m.
+            y: m.
+            yaw: rad.
+
+        Raises:
+            LabError: There is no room for it.
+        """
+        with self._lock:
+            self.simulator.place((x, y, yaw))
+
+    def destroy_node(self) -> None:
+        """Destroy the node, and take the robot out of its world."""
+        self.simulator.close()
+        super().destroy_node()  # type: ignore[no-untyped-call]
+
+    # -- time -----------------------------------------------------------------------------------
+
+    def _start_time(self, speed: float) -> None:
+        if speed == 1.0:
+            self._last = self.get_clock().now()
+            self.create_timer(1 / ODOM_RATE, self._on_timer)
+            return
+        period = max(1 / (ODOM_RATE * speed), SHORTEST_PERIOD)
+        self._owed = 0.0
+        self._rounds = period * speed * ODOM_RATE
+        self.create_timer(period, self._on_fast_timer)
+
+    def _on_timer(self) -> None:
+        """Real time: catch up with the clock, then tell."""
+        with self._lock:
+            self._catch_up()
+            self._publish_all()
+
+    def _on_fast_timer(self) -> None:
+        """Simulated time: rounds of equal length, so the numbers don't depend on the machine."""
+        with self._lock:
+            self._owed += self._rounds
+            # The margin keeps a round from being late because 0.1 * 10 is not quite 1.
+            while self._owed > 1 - 1e-9:
+                self._owed -= 1
+                self._step(1 / ODOM_RATE)
+                self._publish_all()
+
+    def _catch_up(self) -> None:
+        now = self.get_clock().now()
+        passed = (now - self._last).nanoseconds * 1e-9
+        self._last = now
+        # A clock that is set back does not make time run backwards.
+        self._step(max(0.0, passed))
+
+    def _step(self, seconds: float) -> None:
+        self.simulator.step(seconds)
+        new = self.simulator.collisions[self._reported :]
+        self._reported += len(new)
+        for contact in new:
+            thing = 'a wall' if isinstance(contact.thing, Wall) else 'an obstacle'
+            self._warn(
+                f'Bumped into {thing} at x={contact.x:.2f} m, y={contact.y:.2f} m, and stopped. '
+                'Back off, or turn on the spot, to go on.'
+            )
+
+    # -- commands -------------------------------------------------------------------------------
+
+    def _on_command(self, message: Twist) -> None:
+        with self._lock:
+            if self._clock_publisher is None:
+                # What was commanded before holds until this moment.
+                self._catch_up()
+            self._obey(message)
+            if self._lockstep is not None:
+                self._step(self._lockstep)
+                self._publish_all()
+
+    def _obey(self, message: Twist) -> None:
+        v, w = message.linear.x, message.angular.z
+        others = {
+            'linear.y': message.linear.y,
+            'linear.z': message.linear.z,
+            'angular.x': message.angular.x,
+            'angular.y': message.angular.y,
+        }
+        # A number that is none makes the whole command doubtful, wherever it stands.
+        sensible = all(math.isfinite(value) for value in others.values())
+        if not self.simulator.command(v if sensible else math.nan, w):
+            fields = {'linear.x': v, **others, 'angular.z': w}
+            text = ', '.join(f'{name}={value!r}' for name, value in fields.items() if value)
+            self._warn_once('refused', f'Refused a command without sense: {text}. Stopping.')
+            return
+        self._said.discard('refused')
+        ignored = ', '.join(name for name, value in others.items() if value)
+        if ignored:
+            self._warn_once(
+                'ignored',
+                f"Can't obey {ignored} of /cmd_vel: a robot with two wheels drives along linear.x "
+                'and turns about angular.z.',
+            )
+        limits = self.simulator.robot.limits
+        if abs(v) > limits.v or abs(w) > limits.w:
+            self._warn_once(
+                'cut',
+                f'The robot drives at most {limits.v} m/s and turns at most {limits.w} rad/s. '
+                'Commands beyond that are cut.',
+            )
+
+    def _warn_once(self, what: str, text: str) -> None:
+        """Warn, but not again of the same: commands come ten times a second."""
+        if what not in self._said:
+            self._said.add(what)
+            self._warn(text)
+
+    def _warn(self, text: str) -> None:
+        self.get_logger().warning(text)  # type: ignore[no-untyped-call]
+
+    # -- messages -------------------------------------------------------------------------------
+
+    def _publish_all(self) -> None:
+        if self._clock_publisher is not None:
+            self._clock_publisher.publish(Clock(clock=self._stamp()))
+        self._publish_odometry()
+        self._joints.publish(joint_state_message(self.simulator, self._stamp(), self._prefix))
+        # Half a round early is on time: real rounds are a little shorter or longer.
+        time, turn = self.simulator.time, 1 / self.simulator.robot.scan_rate
+        if time > self._scan_due - 0.5 / ODOM_RATE:
+            self._scan_due += turn
+            if self._scan_due < time:
+                self._scan_due = time + turn
+            self._publish_scan()
+
+    def _publish_odometry(self) -> None:
+        self._odom.publish(odometry_message(self.simulator, self._stamp(), self._prefix))
+
+    def _publish_scan(self) -> None:
+        self._scan.publish(scan_message(self.simulator, self._stamp(), self._prefix))
+
+    def _stamp(self) -> Any:
+        if self._clock_publisher is None:
+            return self.get_clock().now().to_msg()
+        return time_message(self.simulator.time)
+
+
+def _check_time(speed: float, lockstep: float | None, use_sim_time: bool) -> None:
+    if not 0 < speed <= MAX_SPEED:
+        raise LabError(f'speed must be more than 0, up to {MAX_SPEED}, but it is {speed!r}.')
+    if lockstep is not None and not 0 < lockstep <= 60:
+        raise LabError(f'lockstep must be more than 0 s, up to 60 s, but it is {lockstep!r}.')
+    if [speed != 1.0, lockstep is not None, use_sim_time].count(True) > 1:
+        raise LabError(
+            f'speed={speed!r}, lockstep={lockstep!r} and use_sim_time={use_sim_time!r} exclude '
+            'each other: each is another way for time to pass.',
+            todo='Give one of them only.',
+        )

@@ -1,0 +1,323 @@
+"""What surrounds the robot: walls, round posts, other robots. Contact and laser scan.
+
+NumPy casts the rays: 360 beams against every wall would take Python milliseconds. It comes with
+every installation of rclpy, whose message classes need it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from labkit.errors import LabError
+from labkit.sim.kinematics import BURGER, Motion, Pose, Robot
+
+__all__ = ['Contact', 'Post', 'Wall', 'World', 'open_field', 'pillars', 'playground', 'room']
+
+# Closer than this the robot touches, m. It is far below what can be seen and far above rounding.
+TOUCH = 1e-9
+# Approaching more slowly than this is rounding, m/s.
+STILL = 1e-12
+# A row of steps towards a contact converges in about 5; more means a graze, where it stops short.
+MAX_STEPS = 1000
+
+
+class Wall(NamedTuple):
+    """A thin straight wall from (x1, y1) to (x2, y2), m."""
+
+    x1: float
+    y1: float
+    x2: float
+    y2: float
+
+    def away(self, x: float, y: float) -> tuple[float, float, float]:
+        """Return the distance of (x, y) from the wall, m, and the direction that leads away."""
+        along_x, along_y = self.x2 - self.x1, self.y2 - self.y1
+        share = ((x - self.x1) * along_x + (y - self.y1) * along_y) / (along_x**2 + along_y**2)
+        share = min(max(share, 0.0), 1.0)
+        off_x, off_y = x - self.x1 - share * along_x, y - self.y1 - share * along_y
+        distance = math.hypot(off_x, off_y)
+        return distance, off_x / (distance or 1.0), off_y / (distance or 1.0)
+
+
+class Post(NamedTuple):
+    """A round obstacle with its middle at (x, y) and a radius, m."""
+
+    x: float
+    y: float
+    radius: float
+
+    def away(self, x: float, y: float) -> tuple[float, float, float]:
+        """Return the distance of (x, y) from the post, m, and the direction that leads away.
+
+        The distance is negative inside.
+        """
+        off_x, off_y = x - self.x, y - self.y
+        distance = math.hypot(off_x, off_y)
+        return distance - self.radius, off_x / (distance or 1.0), off_y / (distance or 1.0)
+
+
+class Contact(NamedTuple):
+    """The robot touches something.
+
+    Attributes:
+        time: When, s.
+        x: Where they touch, m.
+        y: Where they touch, m.
+        thing: What it touches: a `Wall`, or a `Post`, which may be another robot.
+    """
+
+    time: float
+    x: float
+    y: float
+    thing: Wall | Post
+
+
+class World:
+    """Walls and posts, and the robots among them.
+
+    Attributes:
+        walls: The walls.
+        posts: The round obstacles.
+        fixed: All of these.
+        robots: The robots in this world by name, as posts where they are now. Robots that are
+            given the same world see each other, and stop when they meet.
+    """
+
+    def __init__(self, walls: Iterable[Wall] = (), posts: Iterable[Post] = ()) -> None:
+        self.walls = tuple(Wall(*wall) for wall in walls)
+        self.posts = tuple(Post(*post) for post in posts)
+        self.robots: dict[str, Post] = {}
+        self.fixed: tuple[Wall | Post, ...] = (*self.walls, *self.posts)
+        for thing in self.fixed:
+            _check(thing)
+        self._lines = np.array(self.walls, dtype=float).reshape(-1, 4)
+
+    def __repr__(self) -> str:
+        return f'<World: {len(self.walls)} walls, {len(self.posts)} posts>'
+
+    def things(self, but: str = '') -> list[Wall | Post]:
+        """Return all that can be met, except the robot named `but`."""
+        others = [post for name, post in list(self.robots.items()) if name != but]
+        return [*self.fixed, *others]
+
+    def clearance(self, x: float, y: float, *, but: str = '') -> float:
+        """Return the distance of (x, y) from the nearest thing, m; infinity if there is none.
+
+        Args:
+            x: m.
+            y: m.
+            but: Name of a robot that is left out.
+        """
+        return min((thing.away(x, y)[0] for thing in self.things(but)), default=math.inf)
+
+    def first_contact(
+        self, motion: Motion, duration: float, radius: float, *, but: str = ''
+    ) -> Contact | None:
+        """Return where a disc first touches something on its way.
+
+        Args:
+            motion: How the middle of the disc moves.
+            duration: How long, s.
+            radius: Radius of the disc, m.
+            but: Name of a robot that is left out: the disc itself.
+
+        Returns:
+            The first contact, its time counted from the start of the motion. None if there is
+            none: the disc does not come near anything, or moves away from what it touches.
+        """
+        path = _Path(motion, duration)
+        first: Contact | None = None
+        x, y, _ = motion.start
+        for thing in self.things(but):
+            if thing.away(x, y)[0] - radius > path.reach + TOUCH:
+                continue
+            time = _touch_time(path, thing, radius, first.time if first else duration)
+            if time is not None:
+                x_then, y_then, _ = motion.pose_at(time)
+                distance, away_x, away_y = thing.away(x_then, y_then)
+                touch_x, touch_y = x_then - distance * away_x, y_then - distance * away_y
+                first = Contact(time, touch_x, touch_y, thing)
+        return first
+
+    def ranges(self, pose: Pose, *, robot: Robot = BURGER, but: str = '') -> NDArray[np.float64]:
+        """Return what the robot's laser scanner sees, beam after beam to the left, m.
+
+        Args:
+            pose: The robot's pose.
+            robot: The robot's measures, its scanner among them.
+            but: Name of a robot that is left out: the one that looks.
+
+        Returns:
+            Distances from the scanner, not cut to its range; infinity where nothing is.
+        """
+        eye_x = pose.x + robot.scan_x * math.cos(pose.yaw)
+        eye_y = pose.y + robot.scan_x * math.sin(pose.yaw)
+        angles = pose.yaw + np.arange(robot.scan_beams) * (math.tau / robot.scan_beams)
+        beam_x, beam_y = np.cos(angles)[:, None], np.sin(angles)[:, None]
+        nearest = np.full(robot.scan_beams, math.inf)
+        if self.walls:
+            seen = _see_walls(beam_x, beam_y, self._lines - (eye_x, eye_y, eye_x, eye_y))
+            np.minimum(nearest, seen, out=nearest)
+        posts = [thing for thing in self.things(but) if isinstance(thing, Post)]
+        if posts:
+            seen = _see_posts(beam_x, beam_y, np.array(posts, dtype=float) - (eye_x, eye_y, 0))
+            np.minimum(nearest, seen, out=nearest)
+        return nearest
+
+
+class _Path:
+    """A motion with what bounds it, for the search for a contact.
+
+    Attributes:
+        motion: The motion.
+        reach: The longest way that it can come, m.
+    """
+
+    def __init__(self, motion: Motion, duration: float) -> None:
+        end = motion.twist_at(duration)
+        # Speeds are linear in time, so the largest ones are at an end.
+        top_v = max(abs(motion.twist.v), abs(end.v))
+        top_w = max(abs(motion.twist.w), abs(end.w))
+        self.motion = motion
+        self.reach = top_v * duration
+        self._turn = top_w * duration
+        self._across = top_v * top_w
+
+    def bend(self, share: float) -> float:
+        """Return the largest acceleration in a direction, m/s².
+
+        Args:
+            share: Cosine of the angle between the direction and the heading at some time.
+        """
+        # Along its way the disc speeds up, across its way it follows the curve.
+        along = abs(self.motion.acceleration.v) * min(1.0, abs(share) + self._turn)
+        return along + self._across
+
+
+def _touch_time(path: _Path, thing: Wall | Post, radius: float, until: float) -> float | None:
+    """Return when the disc first touches one thing, None if it does not before `until`.
+
+    Things are convex, so the gap g to one of them is a convex function of place. With g' its
+    rate of change now and A the largest acceleration away from it, after h seconds it is still
+    at least g + g' h - A h²/2. Where this bound becomes 0 is reached safely; from there, again.
+    On a straight line this is Newton's method. Nothing is stepped over, however long the way.
+    """
+    motion = path.motion
+    time = 0.0
+    for _ in range(MAX_STEPS):
+        pose = motion.pose_at(time)
+        distance, away_x, away_y = thing.away(pose.x, pose.y)
+        gap = distance - radius
+        # How much of a way along the heading leads away from the thing.
+        share = away_x * math.cos(pose.yaw) + away_y * math.sin(pose.yaw)
+        rate = share * motion.twist_at(time).v
+        if gap <= TOUCH:
+            start = rate if abs(rate) > STILL else share * motion.acceleration.v
+            if start < -STILL:
+                return time
+        # A disc that touches and slips along, or away, may come closer by no more than TOUCH.
+        time += _safe_step(max(gap, TOUCH), rate, path.bend(share))
+        if time >= until:
+            return None
+    return time
+
+
+def _safe_step(gap: float, rate: float, bend: float) -> float:
+    """Return for how long `gap + rate h - bend h²/2` stays positive, s."""
+    root = math.sqrt(rate * rate + 2 * bend * gap)
+    if rate < 0:
+        return 2 * gap / (root - rate)
+    return (rate + root) / bend if bend else math.inf
+
+
+def _see_walls(
+    beam_x: NDArray[np.float64], beam_y: NDArray[np.float64], lines: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return for each beam the distance of the nearest wall; `lines` are seen from the eye."""
+    x, y = lines[:, 0], lines[:, 1]
+    along_x, along_y = lines[:, 2] - x, lines[:, 3] - y
+    with np.errstate(divide='ignore', invalid='ignore', over='ignore'):
+        # beam * distance = start + along * share, solved by Cramer's rule.
+        cross = beam_x * along_y - beam_y * along_x
+        distance = (x * along_y - y * along_x) / cross
+        share = (x * beam_y - y * beam_x) / cross
+    # The margin closes the corners, where two walls share a point.
+    hit = (distance >= 0) & (share >= -TOUCH) & (share <= 1 + TOUCH)
+    nearest: NDArray[np.float64] = np.where(hit, distance, math.inf).min(axis=1)
+    return nearest
+
+
+def _see_posts(
+    beam_x: NDArray[np.float64], beam_y: NDArray[np.float64], posts: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return for each beam the distance of the nearest post; `posts` are seen from the eye."""
+    x, y, radius = posts[:, 0], posts[:, 1], posts[:, 2]
+    middle = beam_x * x + beam_y * y
+    under = radius**2 - (beam_x * y - beam_y * x) ** 2
+    distance = middle - np.sqrt(np.maximum(under, 0))
+    hit = (under >= 0) & (distance >= 0)
+    nearest: NDArray[np.float64] = np.where(hit, distance, math.inf).min(axis=1)
+    return nearest
+
+
+def _check(thing: Wall | Post) -> None:
+    if not all(math.isfinite(number) for number in thing):
+        raise LabError(f'All numbers of a wall or a post must be finite, but this is {thing!r}.')
+    if isinstance(thing, Wall) and (thing.x1, thing.y1) == (thing.x2, thing.y2):
+        raise LabError(
+            f'A wall needs two different ends, but this is {thing!r}.',
+            todo='For a round obstacle write Post(x, y, radius).',
+        )
+    if isinstance(thing, Post) and thing.radius <= 0:
+        raise LabError(f'The radius of a post must be positive, but this is {thing!r}.')
+
+
+def open_field() -> World:
+    """Return a world without anything in it."""
+    return World()
+
+
+def room(width: float = 5.0, height: float = 5.0, posts: Iterable[Post] = ()) -> World:
+    """Return a room with its middle in the origin.
+
+    Args:
+        width: Size along x, m.
+        height: Size along y, m.
+        posts: Round obstacles in it.
+    """
+    x, y = width / 2, height / 2
+    return World(_ring([(x, y), (-x, y), (-x, -y), (x, -y)]), posts)
+
+
+def playground() -> World:
+    """Return a room of 5 m by 5 m with a post in three of its corners.
+
+    One metre around the origin is free, and no two views of it are alike.
+    """
+    return room(posts=[Post(1.6, 1.6, 0.2), Post(-1.7, 1.3, 0.15), Post(-1.2, -1.7, 0.25)])
+
+
+def pillars() -> World:
+    """Return nine pillars within six walls, like the world that ROBOTIS ships for Gazebo.
+
+    Source: ROBOTIS-GIT/turtlebot3_simulations, turtlebot3_gazebo/models/turtlebot3_world/
+    model.sdf: pillars of radius 0.15 m, 1.1 m apart. The six walls stand 2.5 m from the middle
+    here. A robot starts well at x=-1.65, y=-0.55.
+    """
+    far = 2.5 / math.cos(math.pi / 6)
+    angles = [corner * math.tau / 6 for corner in range(6)]
+    grid = (-1.1, 0.0, 1.1)
+    return World(
+        _ring([(far * math.cos(angle), far * math.sin(angle)) for angle in angles]),
+        [Post(x, y, 0.15) for x in grid for y in grid],
+    )
+
+
+def _ring(corners: list[tuple[float, float]]) -> list[Wall]:
+    ends = zip(corners, corners[1:] + corners[:1], strict=True)
+    return [Wall(*one, *other) for one, other in ends]
