@@ -1,0 +1,159 @@
+"""Lines as a still picture: numbers over the number of their message, one panel a unit.
+
+Not over time: what is stored in a notebook has to be the same each time.
+"""
+
+from __future__ import annotations
+
+import html
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ['COLOURS', 'DASHES', 'Line', 'limits', 'thin', 'ticks', 'to_svg']
+
+Floats = NDArray[np.float64]
+
+# Okabe and Ito, "Color Universal Design" (2008), those that are dark enough on white. The dashes
+# tell lines apart without any colour.
+COLOURS = ('#0072b2', '#d55e00', '#007a59', '#a8427f', '#3d3d3d', '#8a6d00')
+DASHES = ('', '8 4', '2 3', '10 3 2 3', '5 2', '1 4')
+
+WIDTH, PANEL, LEFT, RIGHT, TOP, BOTTOM = 640, 170, 64, 12, 14, 40
+
+
+@dataclass(frozen=True)
+class Line:
+    """One line: what it is called, its unit, and its values."""
+
+    label: str
+    unit: str
+    values: Sequence[float]
+
+
+def limits(values: Sequence[float]) -> tuple[float, float]:
+    """Return what an axis shows: all finite values, and some room."""
+    finite = [value for value in values if math.isfinite(value)] or [0.0]
+    low, high = min(finite), max(finite)
+    if low == high:
+        room = abs(low) / 2 or 0.5
+        return low - room, high + room
+    room = (high - low) * 0.06
+    return low - room, high + room
+
+
+def ticks(low: float, high: float, most: int = 5) -> list[float]:
+    """Return round numbers between two others, at most so many and two at least."""
+    rough = (high - low) / most
+    power = 10.0 ** math.floor(math.log10(rough))
+    step = next(step * power for step in (1, 2, 5, 10) if step * power >= rough * 0.999)
+    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    return [number * step for number in range(first, last + 1)]
+
+
+def thin(times: Floats, values: Floats, step: float) -> tuple[Floats, Floats]:
+    """Return fewer samples that look the same: least and greatest of each step of time.
+
+    Args:
+        times: When they came, s, ascending.
+        values: What came.
+        step: How long the time is that one column of the picture shows, s.
+    """
+    columns = np.floor(times / step)
+    starts = np.flatnonzero(np.diff(columns, prepend=np.nan))
+    if len(values) <= 2 * len(starts) + 1:
+        return times, values
+    ends = np.append(starts[1:], len(values)) - 1
+    least, greatest = np.fmin.reduceat(values, starts), np.fmax.reduceat(values, starts)
+    # The last one, too: it is what is shown as the latest value.
+    return (
+        np.append(np.stack([times[starts], times[ends]], axis=1).ravel(), times[-1]),
+        np.append(np.stack([least, greatest], axis=1).ravel(), values[-1]),
+    )
+
+
+def to_svg(lines: Sequence[Line], text: str) -> str:
+    """Return lines as an SVG picture.
+
+    Args:
+        lines: The lines.
+        text: The picture's text alternative.
+    """
+    units = list(dict.fromkeys(line.unit for line in lines))
+    legend = 18 * len(lines) + 8
+    height = legend + len(units) * (PANEL + TOP) + BOTTOM
+    count = max([len(line.values) for line in lines] + [2])
+    parts: list[str] = []
+    for number, line in enumerate(lines):
+        y = 16 + 18 * number
+        label = f'{line.label} [{line.unit}]' if line.unit else line.label
+        parts.append(f'<path d="M{LEFT} {y}h34" {_stroke(number)}/>')
+        parts.append(f'<text x="{LEFT + 44}" y="{y + 4}">{html.escape(label)}</text>')
+    for row, unit in enumerate(units):
+        top = legend + TOP + row * (PANEL + TOP)
+        parts += _panel(lines, unit, top, count, row == len(units) - 1)
+    middle = (LEFT + WIDTH - RIGHT) / 2
+    parts.append(f'<text x="{middle}" y="{height - 6}" text-anchor="middle">message</text>')
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" '
+        f'width="{WIDTH}" height="{height}" role="img" font-family="sans-serif" font-size="12" '
+        f'fill="#424242"><title>{html.escape(text)}</title>'
+        f'<rect width="{WIDTH}" height="{height}" fill="#ffffff"/>\n'
+        + '\n'.join(parts)
+        + '\n</svg>'
+    )
+
+
+def _panel(lines: Sequence[Line], unit: str, top: float, count: int, is_last: bool) -> list[str]:
+    low, high = limits([value for line in lines if line.unit == unit for value in line.values])
+
+    def px(number: float) -> float:
+        return LEFT + 8 + (WIDTH - RIGHT - LEFT - 16) * (number - 1) / (count - 1)
+
+    def py(value: float) -> float:
+        return top + PANEL * (high - value) / (high - low)
+
+    parts = []
+    for value in ticks(low, high):
+        y = f'{py(value):.1f}'
+        parts.append(f'<path d="M{LEFT} {y}H{WIDTH - RIGHT}" stroke="#e0e0e0"/>')
+        parts.append(
+            f'<text x="{LEFT - 6}" y="{py(value) + 4:.1f}" text-anchor="end">{value:.4g}</text>'
+        )
+    for number in ticks(1, count, 8):
+        if number == round(number):
+            x = f'{px(number):.1f}'
+            parts.append(f'<path d="M{x} {top}v{PANEL}" stroke="#e0e0e0"/>')
+            if is_last:
+                parts.append(
+                    f'<text x="{x}" y="{top + PANEL + 14}" text-anchor="middle">{number:.0f}'
+                    '</text>'
+                )
+    parts.append(
+        f'<rect x="{LEFT}" y="{top}" width="{WIDTH - RIGHT - LEFT}" height="{PANEL}" '
+        'fill="none" stroke="#9e9e9e"/>'
+    )
+    middle = top + PANEL / 2
+    parts.append(
+        f'<text transform="translate(14 {middle}) rotate(-90)" text-anchor="middle">'
+        f'{html.escape(unit)}</text>'
+    )
+    for number, line in enumerate(lines):
+        if line.unit == unit:
+            points = [(px(i), py(v)) for i, v in enumerate(line.values, 1) if math.isfinite(v)]
+            path = 'L'.join(f'{x:.1f} {y:.1f}' for x, y in points)
+            # A single value is a short line: one of no length can't be seen.
+            dash = 'h3' if len(points) == 1 else ''
+            parts.append(f'<path d="M{path}{dash}" {_stroke(number)}/>' if points else '')
+    return parts
+
+
+def _stroke(number: int) -> str:
+    dash = DASHES[number % len(DASHES)]
+    return (
+        f'fill="none" stroke="{COLOURS[number % len(COLOURS)]}" stroke-width="2" '
+        'stroke-linejoin="round"'
+    ) + (f' stroke-dasharray="{dash}"' if dash else '')

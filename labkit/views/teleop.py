@@ -1,0 +1,252 @@
+"""Drive a robot by hand: keys, mouse or touch become Twist messages. `lab.teleop()`.
+
+The page says which way to go as long as a key is held; the node publishes. Whatever goes wrong
+between the two, the robot stops: the page stops it when it is left, and the node stops it when it
+hears nothing of the page.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import anywidget
+
+from labkit import settings
+from labkit.errors import LabError
+from labkit.nodes import destroy_node, node_exists
+from labkit.runtime import runtime
+from labkit.sim.kinematics import BURGER
+from labkit.views.arena_picture import two
+
+__all__ = ['Teleop', 'teleop']
+
+# Commands are published this often while a key is held, Hz.
+RATE = 10.0
+# The page repeats itself ten times a second. When it does not, it is gone, or can't be heard.
+SILENCE_SEC = 0.5
+QUEUE_DEPTH = 10
+# What `+` and `-` step through: shares of the highest speeds.
+STEPS = (0.25, 0.5, 0.75, 1.0)
+FIRST_STEP = 1
+
+_KEYS = """\
+  w or ↑   forward       x or ↓   backward
+  a or ←   turn left     d or →   turn right
+  s or space   stop      + or -   faster or slower"""
+
+# By the full name of their node: the next one of that name takes its place.
+_live: dict[str, Teleop] = {}
+
+
+class _Pad(anywidget.AnyWidget):
+    """The keys and the pad in the page. It sends which way to go, and is sent what is published.
+
+    A way is two numbers from -1 to 1: `v` forwards and `w` to the left.
+    """
+
+    _esm = Path(__file__).with_name('teleop.js')
+    _css = Path(__file__).with_name('teleop.css')
+
+
+class Teleop:
+    """A node that publishes what a person does, to be shown in a cell; see `teleop`.
+
+    Attributes:
+        node: The node.
+        topic: Full name of its topic.
+        published: The speeds of the last command, in m/s and rad/s; None if there was none.
+        count: How many commands have been published.
+    """
+
+    def __init__(
+        self,
+        *,
+        topic: str,
+        namespace: str,
+        name: str,
+        max_speed: float,
+        max_turn: float,
+        stamped: bool,
+    ) -> None:
+        for label, value in (('max_speed', max_speed), ('max_turn', max_turn)):
+            if not (isinstance(value, (int, float)) and 0 < value < math.inf):
+                raise LabError(f'{label} must be a number above 0, but it is {value!r}.')
+        runtime.start()
+        self.max_speed, self.max_turn = float(max_speed), float(max_turn)
+        self.published: tuple[float, float] | None = None
+        self.count = 0
+        # The way to go, None while no key is held; and when the page said so.
+        self._way: tuple[float, float] | None = None
+        self._heard = 0.0
+        # A stop must come after the last command that moves, whichever thread publishes it.
+        self._lock = threading.Lock()
+        self._msg_type = _message_class(stamped)
+        self._open(topic, namespace, name)
+        self._pad: _Pad | None = None
+        if not settings.headless():
+            self._pad = _Pad()
+            self._pad.on_msg(self._on_message)
+
+    def _open(self, topic: str, namespace: str, name: str) -> None:
+        from rclpy.node import Node
+        from rclpy.parameter import Parameter
+
+        earlier = _live.get(f'/{namespace.strip("/")}/{name}'.replace('//', '/'))
+        if earlier is not None:
+            earlier.close()
+        # It has no parameters for others to set, and services cost time at every wake-up.
+        self.node = Node(
+            name,
+            namespace=namespace or None,
+            start_parameter_services=False,
+            parameter_overrides=[Parameter('start_type_description_service', value=False)],  # type: ignore[no-untyped-call]
+        )
+        self._publisher = self.node.create_publisher(self._msg_type, topic, QUEUE_DEPTH)
+        self.topic: str = self._publisher.topic_name
+        self.node.create_timer(1 / RATE, self._on_timer)
+        runtime.add(self.node)
+        _live[self.node.get_fully_qualified_name()] = self
+
+    # -- for cells ------------------------------------------------------------------------------
+
+    def stop(self) -> None:
+        """Let the robot stop, whatever key is held."""
+        with self._lock:
+            self._way = None
+            self._publish(0.0, 0.0)
+
+    def close(self) -> None:
+        """Stop the robot and end the node."""
+        for name, other in list(_live.items()):
+            if other is self:
+                del _live[name]
+        if node_exists(self.node):
+            self.stop()
+            entry = runtime.entry_of(self.node)
+            if entry is not None:
+                runtime.discard(entry)
+            else:
+                destroy_node(self.node)
+        self._tell(ended=True)
+
+    def __enter__(self) -> Teleop:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        share = STEPS[FIRST_STEP]
+        return (
+            f'Teleop publishes geometry_msgs/msg/{self._msg_type.__name__} on {self.topic}, '
+            f'{RATE:.0f} times a second while a key is held.\n{_KEYS}\n'
+            f'  at first {share:.0%} of full speed: {two(share * self.max_speed)} m/s, '
+            f'{two(share * self.max_turn)} rad/s'
+        )
+
+    def _repr_mimebundle_(self, **_: object) -> dict[str, Any]:
+        bundle: dict[str, Any] = {'text/plain': repr(self)}
+        if self._pad is not None:
+            shown: Any = self._pad._repr_mimebundle_()
+            bundle = {**(shown[0] if isinstance(shown, tuple) else shown or {}), **bundle}
+        return bundle
+
+    # -- the page -------------------------------------------------------------------------------
+
+    def _on_message(self, _: object, content: dict[str, Any], __: object) -> None:
+        """The page says which way to go, to stop, or that it has been opened."""
+        if content.get('hello'):
+            self._tell(
+                topic=self.topic,
+                speeds=[self.max_speed, self.max_turn],
+                steps=STEPS,
+                step=FIRST_STEP,
+            )
+        if not node_exists(self.node):
+            self._tell(ended=True)
+            return
+        way = content.get('v'), content.get('w')
+        if content.get('stop'):
+            self.stop()
+        elif all(isinstance(part, (int, float)) and math.isfinite(part) for part in way):
+            v, w = (max(-1.0, min(1.0, float(part))) for part in way if part is not None)
+            with self._lock:
+                self._way, self._heard = (v, w), time.monotonic()
+
+    def _on_timer(self) -> None:
+        with self._lock:
+            if self._way is None:
+                return
+            if time.monotonic() - self._heard <= SILENCE_SEC:
+                v, w = self._way
+                self._publish(v * self.max_speed, w * self.max_turn)
+                return
+        self.stop()
+        self._tell(silent=True)
+
+    def _publish(self, v: float, w: float) -> None:
+        if not node_exists(self.node):
+            return
+        message = self._msg_type()
+        if hasattr(message, 'header'):
+            message.header.stamp = self.node.get_clock().now().to_msg()
+        twist = getattr(message, 'twist', message)
+        twist.linear.x, twist.angular.z = v, w
+        self._publisher.publish(message)
+        self.published, self.count = (v, w), self.count + 1
+        listeners = self._publisher.get_subscription_count()
+        self._tell(published=[v, w], count=self.count, listeners=listeners)
+
+    def _tell(self, **content: object) -> None:
+        if self._pad is not None:
+            self._pad.send(content)
+
+
+def _message_class(stamped: bool) -> Any:
+    """Return the class of what is published."""
+    from geometry_msgs.msg import Twist, TwistStamped
+
+    return TwistStamped if stamped else Twist
+
+
+def teleop(
+    *,
+    topic: str = 'cmd_vel',
+    namespace: str = '',
+    name: str = 'teleop',
+    max_speed: float = BURGER.limits.v,
+    max_turn: float = BURGER.limits.w,
+    stamped: bool = False,
+) -> Teleop:
+    """Drive a robot with keys, mouse or touch.
+
+    A node publishes `geometry_msgs/msg/Twist` ten times a second while a key is held. The robot
+    stops when the key is let go, when the page is left, and when the page can't be heard.
+
+    Args:
+        topic: Where the commands go.
+        namespace: For one of several robots: `'robot1'` makes it `/robot1/cmd_vel`.
+        name: Name of the node.
+        max_speed: Full speed, m/s.
+        max_turn: Full turning rate, rad/s.
+        stamped: Publish `geometry_msgs/msg/TwistStamped` instead, as the TurtleBot3 packages of
+            Jazzy expect by default, on the robot and in Gazebo.
+
+    Returns:
+        What a cell shows as keys and a pad. `.close()` ends it.
+
+    Raises:
+        LabError: A speed makes no sense.
+    """
+    return Teleop(
+        topic=topic,
+        namespace=namespace,
+        name=name,
+        max_speed=max_speed,
+        max_turn=max_turn,
+        stamped=stamped,
+    )

@@ -1,0 +1,109 @@
+"""One card for what an exercise or a quiz has to say: HTML in a notebook, plain text elsewhere.
+
+A card never relies on colour: its tone is also a sign and a word. Its colours are those of
+JupyterLab's theme; elsewhere it inherits the page's.
+"""
+
+from __future__ import annotations
+
+import html
+import re
+import textwrap
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+__all__ = ['Card', 'rich']
+
+# tone -> (sign, colour of the edge)
+_TONES = {
+    'good': ('✔', 'var(--jp-success-color1, #2e7d32)'),
+    'bad': ('✘', 'var(--jp-error-color1, #c62828)'),
+    'warn': ('⚠', 'var(--jp-warn-color1, #ef6c00)'),
+    'quiet': ('○', 'var(--jp-border-color1, #9e9e9e)'),
+    'info': ('ℹ', 'var(--jp-info-color1, #0277bd)'),
+}
+_WIDTH = 92
+_EDGE = (
+    'border-left:0.4em solid {colour};padding:0.5em 1em;margin:0.3em 0;max-width:60em;'
+    'color:var(--jp-content-font-color1, inherit)'
+)
+_ROWS = 'display:grid;grid-template-columns:max-content 1fr;gap:0.2em 1em;margin:0.4em 0 0'
+# JupyterLab has rules of its own for lists of this kind.
+_LABEL = 'font-weight:bold;float:none;width:auto;white-space:nowrap'
+# Spaces are shown as they are: one too many may be the mistake.
+_TEXT = 'margin:0;padding:0;overflow-wrap:anywhere;white-space:break-spaces'
+_CODE = (
+    'margin:0.5em 0 0;padding:0.5em;overflow-x:auto;white-space:pre;'
+    'border:1px solid var(--jp-border-color2, #9e9e9e)'
+)
+
+
+@dataclass(frozen=True, repr=False)
+class Card:
+    """What is said, and how it is shown: as text in a terminal, as a box in a notebook.
+
+    Attributes:
+        tone: `'good'`, `'bad'`, `'warn'`, `'quiet'` or `'info'`.
+        word: The tone as a word, such as `'PASS'`.
+        title: What it is about, such as the name of an exercise.
+        text: Sentences under the title. A word in backticks is shown as code.
+        rows: Pairs of a label and a text; pairs without a text are left out.
+        code: Lines shown as they are: a solution, a traceback.
+    """
+
+    tone: str
+    word: str
+    title: str
+    text: str = ''
+    rows: Sequence[tuple[str, str]] = ()
+    code: str = ''
+
+    def __repr__(self) -> str:
+        """Return the card as lines of text."""
+        lines = [f'{self.word}: {self.title}' if self.title else self.word]
+        for paragraph in filter(None, self.text.splitlines()):
+            lines += textwrap.wrap(paragraph, _WIDTH, initial_indent='  ', subsequent_indent='  ')
+        rows = [row for row in self.rows if row[1]]
+        width = max((len(label) for label, _ in rows), default=0) + 2
+        for label, text in rows:
+            # Each line of a text stays one: a list of things seen reads as a list.
+            start = f'  {label + ":":<{width}}'
+            for line in text.splitlines():
+                lines += textwrap.wrap(
+                    line, _WIDTH, initial_indent=start, subsequent_indent=' ' * len(start)
+                ) or ['']
+                start = ' ' * len(start)
+        if self.code:
+            lines.append(textwrap.indent(self.code.rstrip(), '    '))
+        return '\n'.join(lines)
+
+    def _repr_html_(self) -> str:
+        """Return the card as HTML; everything in it is escaped."""
+        sign, colour = _TONES[self.tone]
+        title = f': {rich(self.title)}' if self.title else ''
+        parts = [
+            f'<div role="status" style="{_EDGE.format(colour=colour)}">',
+            f'<div><span aria-hidden="true">{sign}</span> '
+            f'<strong>{html.escape(self.word)}</strong>{title}</div>',
+        ]
+        parts += [f'<div>{rich(line)}</div>' for line in self.text.splitlines() if line]
+        rows = [
+            f'<dt style="{_LABEL}">{html.escape(label)}</dt><dd style="{_TEXT}">{rich(text)}</dd>'
+            for label, text in self.rows
+            if text
+        ]
+        if rows:
+            parts.append(f'<dl style="{_ROWS}">{"".join(rows)}</dl>')
+        if self.code:
+            # Reachable by keyboard, because a wide one scrolls.
+            parts.append(
+                f'<pre tabindex="0" style="{_CODE}">{html.escape(self.code.rstrip())}</pre>'
+            )
+        return '\n'.join([*parts, '</div>'])
+
+
+def rich(text: str) -> str:
+    """Return text as HTML: escaped, `code` in backticks, one line break for each newline."""
+    escaped = html.escape(text)
+    marked = re.sub(r'`([^`\n]+)`', r'<code>\1</code>', escaped)
+    return marked.replace('\n', '<br>')

@@ -1,0 +1,188 @@
+"""The arena: what it hears of a real robot, what it tells the page, and that it lets go."""
+
+from __future__ import annotations
+
+import math
+import re
+from xml.etree import ElementTree
+
+import pytest
+
+from labkit.sim.kinematics import Pose, Twist2
+from labkit.views.arena_picture import Scene, bounds, joined, row, to_svg
+
+ROBOT = """
+import labkit as lab
+from geometry_msgs.msg import Twist
+from labkit.runtime import runtime
+from rclpy.node import Node
+robot = lab.spin(lab.Turtlebot(lockstep=0.1))
+pilot = lab.spin(Node('pilot'))
+commands = pilot.create_publisher(Twist, '/cmd_vel', 10)
+
+def drive(v, w, steps):
+    for _ in range(steps):
+        before = robot.simulator.time
+        message = Twist()
+        message.linear.x, message.angular.z = v, w
+        commands.publish(message)
+        lab.wait_until(lambda: robot.simulator.time > before)
+"""
+# The hidden node's subscriptions and timers: what an arena has, and what is left of it.
+COUNT = 'print(len(list(runtime.helper.subscriptions)), len(list(runtime.helper.timers)))'
+# Keeps what goes to the page, as a page would get it.
+SPY = """
+sent = []
+canvas = view._canvas
+canvas.send = lambda content, buffers=None: sent.append((content, buffers))
+"""
+
+
+def shown(result):
+    assert not result.error, result.traceback
+    return result.outputs[-1]['data']
+
+
+def test_words_and_picture_of_a_robot(kernel):
+    kernel.run(ROBOT)
+    data = shown(kernel.run('view = lab.arena(goals=[(1.0, 0.5)])\nview'))
+    assert data['text/plain'] == (
+        'Robot at x = 0.00 m, y = 0.00 m, heading 0°. It stands. '
+        'Nearest obstacle 1.81 m away, 124° to the right.'
+    )
+    assert 'application/vnd.jupyter.widget-view+json' in data
+    picture = ElementTree.fromstring(data['image/svg+xml'])
+    assert data['text/plain'] in ''.join(picture.itertext())
+    kernel.run('drive(0.2, 0.0, 20)')
+    text = 'x = 0.39 m, y = 0.00 m, heading 0°. It drives at 0.20 m/s and turns at 0.00 rad/s.'
+    assert text in kernel.run('print(view)').text
+    assert 'polyline' in shown(kernel.run('view'))['image/svg+xml']
+
+
+def test_before_a_robot_is_heard_it_says_what_to_do(kernel):
+    kernel.run('import labkit as lab')
+    data = shown(kernel.run('lab.arena()'))
+    assert 'Nothing was heard on /odom yet. Start a robot' in data['text/plain']
+    data = shown(kernel.run("lab.arena(namespace='robot1')"))
+    assert '/robot1/odom' in data['text/plain']
+
+
+def test_headless_it_is_a_picture_and_no_widget(start_kernel):
+    kernel = start_kernel(LABKIT_HEADLESS='1')
+    kernel.run(ROBOT)
+    before = kernel.run(COUNT).text
+    data = shown(kernel.run('view = lab.arena()\nview'))
+    assert set(data) == {'text/plain', 'image/svg+xml'}
+    # Then it listens no more: nobody looks on, and a robot may say much.
+    assert kernel.run(COUNT).text == before
+    kernel.run('drive(0.2, 0.0, 10)')
+    assert 'x = 0.19 m' in shown(kernel.run('view'))['text/plain']
+    kernel.run('robot.place()\ndrive(0.0, 0.0, 1)')
+    data = shown(kernel.run('lab.arena()'))
+    # The same again: what is stored must not depend on the run.
+    assert shown(kernel.run('lab.arena()')) == data
+
+
+def test_closing_leaves_nothing(kernel):
+    kernel.run(ROBOT)
+    before = kernel.run(COUNT).text
+    kernel.run('with lab.arena() as view:\n    pass')
+    assert kernel.run(COUNT).text == before
+    kernel.run('view = lab.arena()')
+    assert kernel.run(COUNT).text != before
+    # Nobody sees it any more, then somebody does again.
+    kernel.run("view._canvas._handle_custom_msg({'view': 'gone'}, [])")
+    assert kernel.run(COUNT).text == before
+    kernel.run("view._canvas._handle_custom_msg({'view': 'seen'}, [])")
+    assert kernel.run(COUNT).text != before
+    kernel.run('view.close()')
+    kernel.run("view._canvas._handle_custom_msg({'view': 'seen'}, [])")
+    assert kernel.run(COUNT).text == before
+    kernel.run('view.close(); lab.stop(); view.close(); print(view)')
+
+
+def test_page_is_told_what_is_new_and_no_more(kernel):
+    kernel.run(ROBOT)
+    kernel.run(f'view = lab.arena()\nlab.wait_until(lambda: view.scene.scan)\n{SPY}')
+    kernel.run("canvas._handle_custom_msg({'view': 'seen'}, [])")
+    first = eval(kernel.run('print(sent[0][0])').text)  # what this test has sent itself
+    assert first['pose'] == (0, 0, 0, 0, 0) and first['trail'] == [0, 0]
+    assert first['topic'] == '/odom' and 'It stands' in first['text']
+    kernel.run(
+        'drive(0.2, 0.0, 10)\n'
+        'lab.wait_until(lambda: any("pose" in c and c["pose"][0] > 0.19 for c, _ in sent))'
+    )
+    code = 'print([n for c, _ in sent for n in c["trail"]], sum(b is not None for _, b in sent))'
+    trail, scans = kernel.run(code).text.rsplit(' ', 1)
+    # The whole path in order, though there may be fewer messages than there was odometry.
+    xs = eval(trail)[::2]
+    assert xs == sorted(xs) and xs[-1] == pytest.approx(0.19, abs=0.02) and len(xs) == 11
+    assert 1 <= int(scans) <= 6
+    assert kernel.run('print({len(b[0]) for _, b in sent if b})').text == '{2880}\n'
+    # The words of where it has come to follow even if nothing else is said any more.
+    kernel.run('lab.wait_until(lambda: "x = 0.19 m" in str([c.get("text") for c, _ in sent]))')
+
+
+def test_robot_that_was_put_elsewhere_has_a_new_trail(kernel):
+    kernel.run(ROBOT)
+    kernel.run('view = lab.arena()\ndrive(0.2, 0.0, 5)\nrobot.place(x=-1.0)\ndrive(0.2, 0.0, 5)')
+    kernel.run('lab.wait_until(lambda: view.scene.pose.x < -0.9)')
+    assert float(kernel.run('print(max(x for x, _ in view._trail))').text) < -0.8
+
+
+def test_goals_that_are_none_are_refused(kernel):
+    kernel.run('import labkit as lab')
+    for goals in ('[1, 2]', '3', "[('a', 'b')]", '[(1.0, float("nan"))]'):
+        assert 'goals must be pairs of numbers' in kernel.run(f'lab.arena(goals={goals})').error
+
+
+@pytest.mark.parametrize(
+    ('scene', 'words'),
+    [
+        (Scene(), ''),
+        (
+            Scene(pose=Pose(-0.001, 2.0, math.pi)),
+            'Robot at x = 0.00 m, y = 2.00 m, heading 180°. It stands.',
+        ),
+        (Scene(pose=Pose(), twist=Twist2(-0.1, 0.5)), 'It drives at -0.10 m/s and turns at 0.50'),
+        (Scene(pose=Pose(), reach=3.5), 'Nothing within 3.5 m.'),
+        (Scene(pose=Pose(), reach=3.5, nearest=(1.0, 0.05)), '1.00 m away, ahead.'),
+        (Scene(pose=Pose(), reach=3.5, nearest=(1.0, -3.14)), '1.00 m away, behind.'),
+        (Scene(pose=Pose(), reach=3.5, nearest=(1.0, -1.0)), '57° to the right.'),
+    ],
+)
+def test_scene_in_words(scene, words):
+    assert words in scene.words()
+
+
+def test_walls_are_joined_and_gaps_are_not():
+    # Two beams on a wall ahead, then one on a wall far behind it, then one into nothing.
+    ends = [(1.0, 0.0), (1.0, 0.2), (9.0, 2.0), None, *[None] * 28]
+    assert joined(ends, (0.0, 0.0)) == [(ends[0], ends[1])]
+    assert joined([], (0.0, 0.0)) == []
+
+
+def test_picture_shows_everything_that_is_there():
+    left, bottom, right, top = bounds([(3.1, -2.2)])
+    assert (left, bottom, right, top) == (-1.5, -2.5, 3.5, 1.5)
+    scene = Scene(pose=Pose(0.5, 0.5, 1.0), trail=[(0, 0), (0.5, 0.5)], goals=[(1, 1), (3.1, -2)])
+    picture = to_svg(scene, '<script>')
+    root = ElementTree.fromstring(picture)
+    assert 'script' not in {element.tag.rpartition('}')[2] for element in root.iter()}
+    numbers = [float(n) for n in re.findall(r'c[xy]="([\d.-]+)"', picture)]
+    assert len(numbers) == 6 and all(0 <= number <= 520 for number in numbers)
+
+
+def test_pictures_in_a_row_are_as_large_as_what_happens_in_them():
+    near = Scene(pose=Pose(0.1, 0.0, 0.0), trail=[(0.0, 0.0), (0.1, 0.0)], goals=[(0.2, 0.0)])
+    far = Scene(pose=Pose(3.0, 0.0, 0.0), trail=[(0.0, 0.0), (3.0, 0.0)])
+    picture = row([near, far], 'two & drives')
+    root = ElementTree.fromstring(picture)
+    name = '{http://www.w3.org/2000/svg}'
+    first, second = root.findall(f'{name}svg')
+    assert root.findtext(f'{name}title') == 'two & drives'
+    assert first.get('x') == '0' and int(second.get('x')) >= int(first.get('width'))
+    sizes = [float(part.findall(f'.//{name}circle')[0].get('r')) for part in (first, second)]
+    assert sizes[0] > 3 * sizes[1]
+    labels = {text.text for text in first.iter(f'{name}text')}
+    assert {'0 m', '0.2', '-0.2'} <= labels

@@ -1,0 +1,157 @@
+"""Teleop: what it publishes for what a page sends, and that the robot stops whatever happens."""
+
+from __future__ import annotations
+
+import pytest
+
+PILOT = """
+import labkit as lab
+from geometry_msgs.msg import Twist
+from labkit.runtime import runtime
+from rclpy.node import Node
+
+heard = []
+ear = lab.spin(Node('ear'))
+ear.create_subscription(
+    Twist, '/cmd_vel', lambda m: heard.append((round(m.linear.x, 3), round(m.angular.z, 3))), 100)
+pilot = lab.teleop(max_speed=0.2, max_turn=2.0)
+
+def page(**content):
+    pilot._pad._handle_custom_msg(content, [])
+
+def wait_for(command):
+    lab.wait_until(lambda: command in heard)
+"""
+# Keeps what goes to the page, as a page would get it.
+SPY = """
+told = []
+pilot._pad.send = told.append
+"""
+
+
+@pytest.fixture
+def pilot(kernel):
+    def run(code):
+        result = kernel.run(code)
+        assert not result.error, result.traceback
+        return result.text.strip()
+
+    run(PILOT)
+    return run
+
+
+def test_publishes_while_a_key_is_held_and_stops_at_once(pilot):
+    assert pilot('print(heard)') == '[]'
+    # A page repeats itself, so that it is known to be there.
+    pilot("""
+repeat = ear.create_timer(0.1, lambda: page(v=0.5, w=-0.25))
+lab.wait_until(lambda: heard.count((0.1, -0.5)) >= 5)
+ear.destroy_timer(repeat)
+page(stop=True)
+wait_for((0.0, 0.0))
+""")
+    assert pilot('print(heard[-1], set(heard[:-1]))') == '(0.0, 0.0) {(0.1, -0.5)}'
+    assert pilot('print(pilot.published, pilot.count == len(heard))') == '(0.0, 0.0) True'
+
+
+def test_stamped_commands_for_robots_that_expect_them(pilot):
+    pilot("""
+from geometry_msgs.msg import TwistStamped
+
+stamped = []
+ear.create_subscription(TwistStamped, '/tb3/cmd_vel', stamped.append, 100)
+pilot = lab.teleop(namespace='tb3', stamped=True, max_speed=0.2)
+page(v=1, w=0)
+lab.wait_until(lambda: stamped)
+pilot.stop()
+lab.wait_until(lambda: stamped[-1].twist.linear.x == 0.0)
+""")
+    told = pilot('print(stamped[0].twist.linear.x, stamped[0].header.stamp.sec > 0, pilot)')
+    assert told.startswith('0.2 True Teleop publishes geometry_msgs/msg/TwistStamped on /tb3/')
+
+
+def test_silence_of_the_page_stops_the_robot(pilot):
+    pilot(SPY + 'page(v=1, w=0)\nwait_for((0.2, 0.0))\nwait_for((0.0, 0.0))')
+    assert pilot('print(heard[-1])') == '(0.0, 0.0)'
+    # Once: a stop that is repeated would disturb others that drive.
+    assert pilot('print(heard.count((0.0, 0.0)), {"silent": True} in told)') == '1 True'
+
+
+NONSENSE = (
+    *("v=float('nan'), w=0", "v='fast', w=0", 'v=1', 'v=None, w=None', 'w=[1], v={}'),
+    *('', 'stop=0', 'v=True'),
+)
+
+
+def test_nonsense_of_a_page_moves_nothing_and_too_much_is_cut(pilot):
+    for content in NONSENSE:
+        pilot(f'page({content})')
+    pilot('page(v=5, w=-5)\nwait_for((0.2, -2.0))\nwait_for((0.0, 0.0))')
+    assert pilot('print(sorted(set(heard)))') == '[(0.0, 0.0), (0.2, -2.0)]'
+
+
+def test_commands_that_waited_for_a_busy_kernel_do_not_move_the_robot(pilot):
+    # In a callback, so that no timer ticks in between: they are all taken at once.
+    pilot("""
+def catch_up():
+    ear.destroy_timer(timer)
+    for _ in range(50):
+        page(v=1, w=0)
+    page(stop=True)
+
+timer = ear.create_timer(0.01, catch_up)
+wait_for((0.0, 0.0))
+""")
+    pilot('page(v=0.5, w=0)\nwait_for((0.1, 0.0))')
+    assert pilot('print((0.2, 0.0) in heard)') == 'False'
+
+
+def test_closing_stops_the_robot_and_ends_the_node(pilot):
+    pilot(SPY + 'page(v=1, w=0)\nwait_for((0.2, 0.0))\npilot.close()\nwait_for((0.0, 0.0))')
+    assert pilot('print([entry.name for entry in runtime.nodes()])') == "['/ear']"
+    pilot('page(v=1, w=0)\npilot.stop()\npilot.close()')
+    assert pilot('print(heard[-1], told[-1])') == "(0.0, 0.0) {'ended': True}"
+
+
+def test_a_second_one_takes_the_place_of_the_first(pilot):
+    pilot('page(v=1, w=0)\nwait_for((0.2, 0.0))\nfirst = pilot\npilot = lab.teleop()')
+    assert pilot('print(heard[-1])') == '(0.0, 0.0)'
+    assert pilot('print([e.name for e in runtime.nodes()])') == "['/ear', '/teleop']"
+    pilot("first._pad._handle_custom_msg({'v': 1, 'w': 0}, [])\npage(v=-1, w=0)")
+    pilot('wait_for((-0.22, 0.0))')
+    assert pilot('print(heard.count((0.2, 0.0)) < len(heard))') == 'True'
+    # Another name is another robot's.
+    pilot("other = lab.teleop(namespace='robot1')\nprint(other.topic)")
+    assert pilot('print([e.name for e in runtime.nodes()][1:])') == (
+        "['/teleop', '/robot1/teleop']"
+    )
+
+
+def test_after_the_end_of_its_node_it_says_so(pilot):
+    pilot(SPY + "lab.remove('teleop')\npage(v=1, w=0)")
+    assert pilot('print(told)') == "[{'ended': True}]"
+    pilot('told.clear()\nlab.stop()\npage(hello=True)')
+    assert 'ended' in pilot('print(told)')
+
+
+def test_page_is_told_what_is_published_and_who_listens(pilot):
+    pilot(SPY + 'page(hello=True)\npage(v=1, w=0)\nwait_for((0.2, 0.0))')
+    first, second = eval(pilot('print(told[:2])'))  # what this test has sent itself
+    assert first['topic'] == '/cmd_vel' and first['speeds'] == [0.2, 2.0]
+    assert second == {'published': [0.2, 0.0], 'count': 1, 'listeners': 1}
+
+
+def test_headless_it_is_text(start_kernel):
+    kernel = start_kernel(LABKIT_HEADLESS='1')
+    kernel.run('import labkit as lab')
+    data = kernel.run('lab.teleop()').outputs[-1]['data']
+    assert set(data) == {'text/plain'}
+    assert 'w or ↑   forward' in data['text/plain']
+    assert 'at first 50% of full speed: 0.11 m/s, 1.42 rad/s' in data['text/plain']
+
+
+def test_speeds_that_make_no_sense_are_refused(kernel):
+    kernel.run('import labkit as lab')
+    for option in ('max_speed=0', 'max_turn=-1', "max_speed='fast'", 'max_turn=float("inf")'):
+        assert 'must be a number above 0' in kernel.run(f'lab.teleop({option})').error
+    assert 'teleop' not in kernel.run('lab.start()\nprint(lab.graph())').text
