@@ -1,0 +1,120 @@
+"""What the learner's callbacks do during a check: whether they raise, and whether they return."""
+
+from __future__ import annotations
+
+import sys
+import threading
+import time
+from collections.abc import Collection
+from typing import Any, Protocol
+
+from labkit.exercises.mishaps import where_it_hangs
+from labkit.exercises.verdict import LearnerError
+
+__all__ = ['Callbacks', 'find_node']
+
+# A callback that runs longer than this keeps the others waiting.
+HANG_SEC = 0.4
+POLL_SEC = 0.004
+
+
+class Scope(Protocol):
+    """Which nodes a check is about; see `Probe`."""
+
+    @property
+    def given(self) -> Collection[str]:
+        """Names of nodes that are not the learner's."""
+
+    @property
+    def known(self) -> Collection[str]:
+        """Topics of the lesson."""
+
+    @property
+    def touched(self) -> Collection[str]:
+        """Topics that this check has asked about."""
+
+
+class Callbacks:
+    """The callbacks of this notebook's nodes, from now on."""
+
+    def __init__(self) -> None:
+        from labkit.runtime import runtime
+
+        self._runtime = runtime
+        self._before = {id(error): error.count for error in runtime.console.errors}
+
+    def count(self, node: Any, entity: Any) -> int | None:
+        """Return how often the callback of a timer or subscription has been run.
+
+        None if somebody else than labkit runs it, such as an executor of the learner's.
+        """
+        entry = self._runtime.entry_of(node)
+        return None if entry is None else entry.counts.get(entity, 0)
+
+    def hanging(self) -> tuple[str, str, str] | None:
+        """Return node, callback and line of a callback that does not return, None if all do."""
+        running, count = self._progress()
+        if running is None:
+            return None
+        end = time.monotonic() + HANG_SEC
+        while time.monotonic() < end:
+            time.sleep(POLL_SEC)
+            if self._progress() != (running, count):
+                return None
+        thread = next((t for t in threading.enumerate() if t.name == 'labkit'), None)
+        frame = sys._current_frames().get(thread.ident or 0) if thread else None
+        return (*running, where_it_hangs(frame))
+
+    def _progress(self) -> tuple[tuple[str, str] | None, int]:
+        count = sum(entry.callbacks for entry in self._runtime.nodes())
+        return self._runtime.executor.running_callback(), count
+
+    def raise_new_error(self, scope: Scope) -> None:
+        """Raise LearnerError if a callback of a node under test has raised during the check."""
+        for error in self._runtime.console.errors:
+            if error.count > self._before.get(id(error), 0) and _is_under_test(error, scope):
+                raise _learner_error(error)
+
+    def raise_old_error(self, scope: Scope) -> None:
+        """Raise LearnerError if a node under test that still runs raised before the check."""
+        for error in reversed(self._runtime.console.errors):
+            if _is_under_test(error, scope) and _is_of_running_node(error):
+                raise _learner_error(error)
+
+
+def find_node(name: str) -> Any:
+    """Return the node of that name as an object, None if it is not in this process."""
+    from labkit.runtime import runtime
+
+    for entry in runtime.nodes():
+        if entry.name == name:
+            return entry.node
+    for node in runtime.unspun_nodes():
+        if node.get_fully_qualified_name() == name:
+            return node
+    return None
+
+
+def _is_under_test(error: Any, scope: Scope) -> bool:
+    node = find_node(error.node_name)
+    if node is None or error.node_name in scope.given:
+        return False
+    names = {endpoint.topic_name for endpoint in (*node.publishers, *node.subscriptions)}
+    # A node that has none of the lesson's topics may be a first try with wrong names.
+    return bool(names & set(scope.touched)) or not names & set(scope.known)
+
+
+def _is_of_running_node(error: Any) -> bool:
+    """Tell a node's own error from one of an earlier node of the same name."""
+    node = find_node(error.node_name)
+    traceback = error.error.__traceback__
+    while traceback is not None:
+        if any(value is node for value in traceback.tb_frame.f_locals.values()):
+            return True
+        traceback = traceback.tb_next
+    return False
+
+
+def _learner_error(error: Any) -> LearnerError:
+    where = f'The callback {error.callback} of {error.node_name}'
+    return LearnerError(where, error.error, error.text)

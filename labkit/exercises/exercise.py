@@ -1,0 +1,288 @@
+"""An exercise: task, check on the live graph, hints in steps, a solution with its reason."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from labkit.errors import LabError
+from labkit.exercises.finding import alone
+from labkit.exercises.mishaps import explain_error, last_cell
+from labkit.exercises.noting import progress_store
+from labkit.exercises.probe import Probe
+from labkit.exercises.recorder import Recorder
+from labkit.exercises.verdict import Fail, LearnerError, NotAttempted, Outcome, Verdict
+from labkit.views.verdict import Card
+
+__all__ = ['Exercise', 'Solution', 'Style', 'Wrong', 'changed']
+
+NOTHING_YET = (
+    'Not attempted yet. Write your code in the cell above, run that cell, then run this one again.'
+)
+
+STARTING = (
+    'Nothing to see yet, but a process has been started here a moment ago. '
+    'Run this cell again when it is up.'
+)
+
+
+@dataclass(frozen=True)
+class Solution:
+    """One right answer, to be shown.
+
+    Attributes:
+        code: What the learner would write in the starter cell.
+        reason: Why it is done so.
+    """
+
+    code: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Style:
+    """The same solution in another style, for the tests.
+
+    Attributes:
+        name: Such as `'functions'` or `'own process'`.
+        code: The code.
+        process: Whether it is a script for a process of its own.
+    """
+
+    name: str
+    code: str
+    process: bool = False
+
+
+@dataclass(frozen=True)
+class Wrong:
+    """A typical wrong answer, for the tests.
+
+    Attributes:
+        name: Such as `'starts at 0'`.
+        code: The code.
+        says: A sentence, or a part of one, that the verdict must contain.
+        outcome: The outcome that it must get: FAIL, or ERROR if the code raises.
+        process: Whether it is a script for a process of its own.
+    """
+
+    name: str
+    code: str
+    says: str
+    outcome: Outcome = Outcome.FAIL
+    process: bool = False
+
+
+def changed(code: str, *changes: tuple[str, str]) -> str:
+    """Return code with some parts of it replaced, as a wrong answer or another style has them.
+
+    Args:
+        code: The code.
+        changes: Pairs of what is there, exactly, and what stands there instead.
+
+    Raises:
+        ValueError: One of them is not there.
+    """
+    for old, new in changes:
+        if old not in code:
+            raise ValueError(f'{old!r} is not in the code:\n{code}')
+        code = code.replace(old, new)
+    return code
+
+
+@dataclass(eq=False, kw_only=True)
+class Exercise:
+    """An exercise of a lesson. `check()`, `hint()` and `solution()` are for the learner.
+
+    Attributes:
+        name: Its name as a Python name: `lesson.count_up`.
+        task: The task in a sentence or two.
+        topics: Full names of the topics that the learner's code works with.
+        judge: Looks at the graph and at messages, with a probe and the matchers of `expect`.
+            It raises what is wrong, and returns a sentence on what was seen, or None.
+        hints: From a nudge to nearly the answer.
+        answer: The solution that is shown.
+        styles: The solution in other styles, for the tests.
+        wrong: Typical wrong answers, for the tests.
+        given: Full names of nodes that the lesson itself leaves running for this exercise.
+        records: Topics, with their types, that are recorded from the setup cell on: for what
+            happens once, and before the check. The judge finds them in `probe.recorded`.
+        once: Whether the check uses up what it checks, as a node that is removed. The same
+            nodes then get the same verdict again.
+        starter_id: Id of the notebook cell to edit; `'count-up-starter'` if empty.
+        check_id: Id of the cell with the check; `'count-up-check'` if empty.
+    """
+
+    name: str
+    task: str
+    topics: Sequence[str]
+    judge: Callable[[Probe], str | None]
+    hints: Sequence[str]
+    answer: Solution
+    styles: Sequence[Style] = ()
+    wrong: Sequence[Wrong] = ()
+    given: Sequence[str] = ()
+    records: Mapping[str, str] = field(default_factory=dict)
+    once: bool = False
+    starter_id: str = ''
+    check_id: str = ''
+
+    def __post_init__(self) -> None:
+        self.lesson = ''
+        self.known: frozenset[str] = frozenset(self.topics)
+        self.starter_id = self.starter_id or f'{self.name.replace("_", "-")}-starter'
+        self.check_id = self.check_id or f'{self.name.replace("_", "-")}-check'
+        self._recorder = Recorder(self.records) if self.records else None
+        self._hints_shown = 0
+        self._before: tuple[frozenset[bytes], Verdict] | None = None
+
+    def begin(self) -> None:
+        """Get ready: called in the setup cell of the notebook."""
+        if self._recorder is not None:
+            from labkit.runtime import start
+
+            start()
+            self._recorder.keep()
+            last_cell.after_each(self._recorder.keep)
+
+    def forget(self) -> None:
+        """Forget earlier attempts."""
+        self._before = None
+        if self._recorder is not None:
+            self._recorder.forget()
+
+    def check(self) -> Verdict:
+        """Look at what your nodes do, and say whether it is what the task asks for."""
+        last_cell.asked()
+        verdict = self._examine()
+        note = progress_store.note_check(self.lesson, self.name, verdict.outcome.value)
+        return verdict if not note else verdict.with_note(note)
+
+    def hint(self, number: int | None = None) -> Card:
+        """Show the next hint, or the one with this number.
+
+        Args:
+            number: From 1; the next one that was not shown yet if None.
+        """
+        last_cell.asked()
+        count = len(self.hints)
+        if number is not None and not (isinstance(number, int) and 1 <= number <= count):
+            raise LabError(f'There are hints 1 to {count}, but the number is {number!r}.')
+        if number is None and self._hints_shown >= count:
+            text = f'These were all {count} hints. lesson.{self.name}.solution() shows one way.'
+            return Card('info', 'HINT', self.name, text=text)
+        shown = self._hints_shown + 1 if number is None else number
+        self._hints_shown = max(self._hints_shown, shown)
+        progress_store.note_hint(self.lesson, self.name, shown)
+        return Card('info', f'HINT {shown} of {count}', self.name, text=self.hints[shown - 1])
+
+    def solution(self) -> Card:
+        """Show one solution, and why it is done so."""
+        last_cell.asked()
+        progress_store.note_solution(self.lesson, self.name)
+        text = f'{self.answer.reason}\nYours may look different: what counts is what it does.'
+        return Card('info', 'SOLUTION', self.name, text=text, code=self.answer.code.strip())
+
+    def __dir__(self) -> list[str]:
+        # What the tab key offers: the rest is for those who write lessons.
+        return ['check', 'hint', 'solution']
+
+    def _card(self) -> Card:
+        text = f'`lesson.{self.name}.check()`, `.hint()`, `.solution()`'
+        return Card('info', 'EXERCISE', self.name, text=f'{self.task}\n{text}')
+
+    def __repr__(self) -> str:
+        return repr(self._card())
+
+    def _repr_html_(self) -> str:
+        return self._card()._repr_html_()
+
+    # -- the check ------------------------------------------------------------------------------
+
+    def _examine(self) -> Verdict:
+        recorded = self._recorder.watches() if self._recorder is not None else {}
+        try:
+            with Probe(self.name, given=self.given, known=self.known, recorded=recorded) as probe:
+                new = any(map(len, recorded.values()))
+                if self._before is not None and not new:
+                    # If the same nodes run, it is the same attempt.
+                    nodes, earlier = self._before
+                    if nodes == probe.fingerprint():
+                        # Without nodes there may be other evidence, as of a refused command.
+                        if nodes or earlier.passed:
+                            return earlier
+                        verdict = self._judge(probe)
+                        return earlier if verdict.outcome is Outcome.NOT_ATTEMPTED else verdict
+                verdict = self._judge(probe)
+                new = any(map(len, recorded.values()))
+                if (self.once or new) and verdict.outcome is not Outcome.NOT_ATTEMPTED:
+                    self.forget()
+                    self._before = (probe.fingerprint(), verdict)
+                return verdict
+        except LabError as error:  # ROS can't be started here, for one
+            return Verdict(
+                Outcome.ERROR,
+                self.name,
+                'Nothing could be checked.',
+                seen=str(error.message),
+                todo=error.todo,
+            )
+        except Exception as error:  # a check never raises, whatever is wrong with it
+            return self._own_fault(error)
+
+    def _judge(self, probe: Probe) -> Verdict:
+        try:
+            try:
+                text = self.judge(probe)
+                _look_again(probe)
+            except (Fail, NotAttempted):
+                # Consequences look like another mistake, so their cause is the better answer.
+                _look_again(probe)
+                probe.callbacks.raise_old_error(probe)
+                error = last_cell.learner_error()
+                if error is not None:
+                    raise error from None
+                raise
+        except LearnerError as error:
+            return self._learner_error(error)
+        except NotAttempted as nothing:
+            text = str(nothing) or (STARTING if probe.something_is_starting() else NOTHING_YET)
+            return Verdict(Outcome.NOT_ATTEMPTED, self.name, text)
+        except Fail as fail:
+            return Verdict(
+                Outcome.FAIL,
+                self.name,
+                expected=fail.expected,
+                seen=fail.seen,
+                why=fail.why,
+                todo=fail.todo,
+            )
+        return Verdict(Outcome.PASS, self.name, text or 'It does what the task asks for.')
+
+    def _learner_error(self, error: LearnerError) -> Verdict:
+        why, todo = explain_error(error.error)
+        return Verdict(
+            Outcome.ERROR,
+            self.name,
+            f'{error.where} raised {type(error.error).__name__}.',
+            why=why,
+            todo=todo or 'Read the last line first: it says what is wrong; the line above, where.',
+            trace=error.trace,
+        )
+
+    def _own_fault(self, error: Exception) -> Verdict:
+        import traceback
+
+        return Verdict(
+            Outcome.ERROR,
+            self.name,
+            'The check itself has failed. That is a fault of the course, not yours.',
+            todo='Run the check again. If it stays, please report it with the lines below.',
+            trace=''.join(traceback.format_exception(error)[-4:]),
+        )
+
+
+def _look_again(probe: Probe) -> None:
+    """Raise Fail if a second publisher has come since it was looked for."""
+    for topic in probe.sole:
+        alone(probe, topic)

@@ -1,0 +1,269 @@
+"""Matchers for the graph: is it there, of the right type, once, and by whom.
+
+What is missing is looked for under the names that beginners give it, and a wrong name is told
+from no attempt at all.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Sequence
+
+from labkit.exercises.probe import Endpoint, Probe
+from labkit.exercises.verdict import Fail, NotAttempted
+
+__all__ = ['alone', 'node', 'publisher', 'qos', 'subscription']
+
+_KINDS = {
+    'publisher': ('publisher on', 'publishes'),
+    'subscription': ('subscription to', 'subscribes'),
+}
+
+
+def publisher(
+    probe: Probe, topic: str, msg_type: str, *, only: bool = True, by: str = ''
+) -> Endpoint:
+    """Expect a publisher of the learner's on a topic.
+
+    Args:
+        probe: The probe of the check.
+        topic: Full name of the topic, such as `'/odds'`.
+        msg_type: Name of its type, such as `'std_msgs/msg/Int16'`.
+        only: Whether nobody else may publish there, see `alone`.
+        by: Full name of the node it must belong to; any node if empty.
+
+    Returns:
+        The publisher.
+
+    Raises:
+        NotAttempted: Nothing of the learner's is there.
+        Fail: It is missing, misnamed, of another type, or not the only one.
+    """
+    found = _find(probe, 'publisher', topic, msg_type, by)
+    if only:
+        alone(probe, topic)
+    return found
+
+
+def subscription(probe: Probe, topic: str, msg_type: str, *, by: str = '') -> Endpoint:
+    """Expect a subscription of the learner's to a topic. Arguments as for `publisher`."""
+    return _find(probe, 'subscription', topic, msg_type, by)
+
+
+def node(probe: Probe, name: str) -> str:
+    """Expect exactly one node of a name.
+
+    Args:
+        probe: The probe of the check.
+        name: Full name of the node, such as `'/odd_publisher'`.
+
+    Returns:
+        The name.
+
+    Raises:
+        NotAttempted: None of the learner's nodes is there.
+        Fail: There is none of that name, or more than one.
+    """
+    if not probe.wait_to_appear(lambda: name in probe.node_names()):
+        names = probe.node_names()
+        near = _near(name, names)
+        if not near and not probe.evidence:
+            raise NotAttempted
+        raise Fail(
+            f'a node called {name}',
+            f'{_list(names) or "no node"}',
+            why=_name_trouble(name, near) if near else '',
+            todo=f'The name is what super().__init__() gets: {name.rsplit("/", 1)[-1]!r}.',
+        )
+    copies = probe.node_names().count(name)
+    if copies > 1:
+        raise Fail(
+            f'one node called {name}',
+            f'{copies} nodes of that name',
+            why='Two copies of the node run at once. Each does its work, so everything happens '
+            'twice.',
+            todo='End one of them: lab.remove(...), or stop the other process or notebook.',
+        )
+    return name
+
+
+def alone(probe: Probe, topic: str) -> None:
+    """Expect one publisher on a topic at most, and name who else publishes there.
+
+    It is looked at again when the check ends: a second one may come late.
+
+    Raises:
+        Fail: There are several.
+    """
+    probe.sole.add(topic)
+    found = probe.publishers(topic)
+    if len(found) < 2:
+        return
+    nodes = {endpoint.node for endpoint in found}
+    places = {endpoint.place for endpoint in found}
+    seen = f'{len(found)} publishers on {topic}: {_list([str(endpoint) for endpoint in found])}'
+    expected = f'one publisher on {topic}'
+    if len(nodes) == 1 and len(places) == 1 and probe.node_names().count(found[0].node) == 1:
+        raise Fail(
+            expected,
+            seen,
+            why=f'{found[0].node} makes a publisher again and again: create_publisher() is called '
+            'in a callback or in a loop.',
+            todo='Make the publisher once, in __init__, keep it as self.publisher, and only '
+            'publish in the callback.',
+        )
+    if len(nodes) == 1:
+        raise Fail(
+            expected,
+            seen,
+            why='Two copies of the node run at once, and their messages mix on the topic.',
+            todo='End one of them: stop the other process, or shut the other notebook down.',
+        )
+    raise Fail(
+        expected,
+        seen,
+        why='Another node publishes on the same topic. A subscriber hears both, and cannot tell '
+        'them apart.',
+        todo="End the one that does not belong here, such as lab.remove('name'); "
+        'a node of another notebook ends there.',
+    )
+
+
+def qos(endpoint: Endpoint, *, reliability: str = '', durability: str = '') -> None:
+    """Expect a QoS profile. The graph does not know the depth, so it can't be asked for.
+
+    Args:
+        endpoint: What `publisher` or `subscription` returned.
+        reliability: `'reliable'` or `'best_effort'`; not looked at if empty.
+        durability: `'volatile'` or `'transient_local'`; not looked at if empty.
+
+    Raises:
+        Fail: The profile is another one.
+    """
+    for policy, wanted in (('reliability', reliability), ('durability', durability)):
+        seen = getattr(endpoint.qos, policy).name.lower()
+        if wanted and seen != wanted:
+            raise Fail(
+                f'{endpoint.topic} with {policy} {wanted}',
+                f'{endpoint.node} uses {policy} {seen}',
+                why='A number alone as the last argument is the depth; everything else is then '
+                'the default: reliable and volatile.'
+                if seen in ('reliable', 'volatile')
+                else '',
+                todo=f'Pass a QoSProfile with {policy}={policy.title()}Policy.{wanted.upper()}.',
+            )
+
+
+def _find(probe: Probe, kind: str, topic: str, msg_type: str, by: str) -> Endpoint:
+    ask = probe.publishers if kind == 'publisher' else probe.subscriptions
+
+    def matching() -> list[Endpoint]:
+        return [endpoint for endpoint in ask(topic) if by in ('', endpoint.node)]
+
+    if not probe.wait_to_appear(matching):
+        _explain_missing(probe, kind, topic, msg_type, by)
+    for endpoint in matching():
+        if endpoint.msg_type != msg_type:
+            _refuse_type(endpoint, kind, msg_type)
+    found = matching()[0]
+    probe.evidence.append(found)
+    return found
+
+
+def _refuse_type(endpoint: Endpoint, kind: str, msg_type: str) -> None:
+    raise Fail(
+        f'{endpoint.topic} with messages of type {msg_type}',
+        f'{endpoint.node} {_KINDS[kind][1]} {endpoint.msg_type} there',
+        why='A topic carries one type of message. Two sides with different types never hear each '
+        'other, and nobody says so.',
+        todo=f'Import {msg_type.rsplit("/", 1)[-1]} from {msg_type.split("/")[0]}.msg and use it '
+        'for this topic.',
+    )
+
+
+def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str) -> None:
+    """Raise Fail with the likeliest reason why an endpoint is missing, or NotAttempted."""
+    expected = f'{by or "a node"} with a {_KINDS[kind][0]} {topic} ({msg_type})'
+    others = _others(probe, kind)
+    near = _near(topic, [other.topic for other in others if other.topic not in probe.known])
+    if near:
+        other = next(other for other in others if other.topic == near)
+        raise Fail(
+            expected,
+            f'{other.node} {_KINDS[kind][1]} on {near}'
+            if kind == 'publisher'
+            else f'{other.node} {_KINDS[kind][1]} to {near}',
+            why=_name_trouble(topic, near),
+            todo=f'Write the topic as {topic!r}.',
+        )
+    _explain_echo(probe, kind, expected, others)
+    strange = [o for o in others if o.topic not in probe.known and o.msg_type == msg_type]
+    if strange and not probe.evidence:
+        raise Fail(
+            expected,
+            f'{strange[0].node} {_KINDS[kind][1]} on {strange[0].topic}',
+            why='The node works with a topic of another name, so nobody who looks for '
+            f'{topic} finds it.',
+            todo=f'Write the topic as {topic!r}.',
+        )
+    if not probe.evidence:
+        raise NotAttempted
+    names = sorted({endpoint.node for endpoint in probe.evidence})
+    mine = [f'{o.node} {_KINDS[kind][1]} {o.topic}' for o in others if o.node in names]
+    call = f'create_{kind}()'
+    raise Fail(
+        expected,
+        _list(mine) or f'{_list(names)} without any {kind}',
+        why=f'{call} for this topic has not been called, or not yet.',
+        todo=f'Call it in __init__ with {msg_type.rsplit("/", 1)[-1]} and {topic!r}.',
+    )
+
+
+def _explain_echo(probe: Probe, kind: str, expected: str, others: Sequence[Endpoint]) -> None:
+    """Raise Fail if a node publishes on the topic that it subscribes to."""
+    heard = {(endpoint.node, endpoint.topic) for endpoint in probe.evidence}
+    for other in others:
+        if kind == 'publisher' and (other.node, other.topic) in heard:
+            raise Fail(
+                expected,
+                f'{other.node} publishes on {other.topic}, the topic that it subscribes to',
+                why='The node hears what it says itself, answers that too, and so on for ever.',
+                todo='Publish on a topic of its own.',
+            )
+
+
+def _others(probe: Probe, kind: str) -> list[Endpoint]:
+    """Return the learner's endpoints of one kind, on all topics."""
+    ask = probe.all_publishers if kind == 'publisher' else probe.all_subscriptions
+    return ask()
+
+
+def _near(name: str, names: Sequence[str]) -> str:
+    """Return the name that was probably meant to be `name`, '' if none looks like it."""
+    last = _plain(name.rsplit('/', 1)[-1])
+    for other in names:
+        if _plain(other.rsplit('/', 1)[-1]) == last:
+            return other
+    near = difflib.get_close_matches(name, names, n=1, cutoff=0.7)
+    return near[0] if near else ''
+
+
+def _plain(name: str) -> str:
+    return name.lower().replace('_', '')
+
+
+def _name_trouble(wanted: str, seen: str) -> str:
+    if wanted.lower() == seen.lower():
+        return f'Capital and small letters differ in names: {seen} and {wanted} are two names.'
+    if wanted.rsplit('/', 1)[-1] == seen.rsplit('/', 1)[-1]:
+        return (
+            'The last part is right, but it lies in another namespace: names must be equal from '
+            'the first slash to the last letter. A "~" puts the name of the node before it. '
+        ).strip()
+    if _plain(wanted) == _plain(seen):
+        return 'The names differ in an underscore; names must be equal to the last character.'
+    return f'{seen} is not {wanted}: names must be equal to the last letter. A slip of the pen?'
+
+
+def _list(names: Sequence[str]) -> str:
+    return ', '.join(names)

@@ -1,0 +1,174 @@
+"""The exercises and quizzes of one notebook, under one name: `lesson = lab.lesson('odds')`."""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+import pkgutil
+import re
+from collections.abc import Sequence
+
+from labkit.errors import LabError
+from labkit.exercises.exercise import Exercise
+from labkit.exercises.mishaps import last_cell
+from labkit.exercises.quiz import Quiz
+from labkit.views.verdict import Card
+
+__all__ = ['Lesson', 'NoSuchNameError', 'all_lessons', 'lesson', 'lesson_names']
+
+# Lessons are found by name, so that a new one is a new file and nothing else.
+PACKAGE = 'labkit.lessons'
+
+
+class NoSuchNameError(LabError, AttributeError):
+    """Report that a lesson has no exercise of a name."""
+
+
+class Lesson:
+    """The exercises and quizzes of one notebook. Exercises are its attributes.
+
+    Args:
+        name: Its name, such as `'odds'`; the module in `labkit.lessons` is called the same.
+        notebook: File name of the notebook, such as `'04_odds.ipynb'`.
+        exercises: In the order of the notebook.
+        quizzes: In the order of the notebook.
+        topics: Further topics that the lesson's own cells use.
+        given: Full names of nodes that the lesson's own cells leave running.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        notebook: str,
+        *,
+        exercises: Sequence[Exercise] = (),
+        quizzes: Sequence[Quiz] = (),
+        topics: Sequence[str] = (),
+        given: Sequence[str] = (),
+    ) -> None:
+        self.name = name
+        self.notebook = notebook
+        self._exercises = {exercise.name: exercise for exercise in exercises}
+        self._quizzes = {quiz.name: quiz for quiz in quizzes}
+        known = frozenset(topics).union(*(exercise.topics for exercise in exercises))
+        for exercise in exercises:
+            exercise.lesson = name
+            exercise.known = known
+            exercise.given = (*given, *exercise.given)
+        for quiz in quizzes:
+            quiz.lesson = name
+
+    def begin(self) -> Lesson:
+        """Get ready: called by `lab.lesson` in the setup cell."""
+        last_cell.follow()
+        for exercise in self.exercises:
+            exercise.begin()
+        return self
+
+    @property
+    def exercises(self) -> list[Exercise]:
+        """The exercises, in the order of the notebook."""
+        return list(self._exercises.values())
+
+    @property
+    def quizzes(self) -> list[Quiz]:
+        """The quizzes, in the order of the notebook."""
+        return list(self._quizzes.values())
+
+    def quiz(self, name: str = '') -> Quiz:
+        """Return a quiz, to be shown by the notebook.
+
+        Args:
+            name: Its name; it may be left out if the lesson has one quiz only.
+
+        Raises:
+            LabError: There is no such quiz.
+        """
+        if not name and len(self._quizzes) == 1:
+            return self.quizzes[0]
+        if name not in self._quizzes:
+            names = [repr(other) for other in self._quizzes]
+            raise LabError(
+                f'Lesson {self.name!r} has no quiz {name!r}.' if name else 'Which quiz?',
+                todo=_suggest(name, list(self._quizzes))
+                or f'Its quizzes: {", ".join(names) or "none"}.',
+            )
+        return self._quizzes[name]
+
+    def __getattr__(self, name: str) -> Exercise:
+        if name.startswith('_'):
+            raise AttributeError(name)
+        exercise = self._exercises.get(name)
+        if exercise is None:
+            raise NoSuchNameError(
+                f'Lesson {self.name!r} has no exercise {name!r}.',
+                todo=_suggest(name, list(self._exercises))
+                or f'Its exercises: {", ".join(self._exercises) or "none"}.',
+            )
+        return exercise
+
+    def __dir__(self) -> list[str]:
+        return [*self._exercises, 'quiz']
+
+    def _card(self) -> Card:
+        rows = [(exercise.name, exercise.task) for exercise in self.exercises]
+        rows += [
+            (f'quiz({quiz.name!r})', f'{len(quiz)} question' + 's' * (len(quiz) != 1))
+            for quiz in self.quizzes
+        ]
+        return Card('info', 'LESSON', self.name, rows=rows)
+
+    def __repr__(self) -> str:
+        return repr(self._card())
+
+    def _repr_html_(self) -> str:
+        return self._card()._repr_html_()
+
+
+def lesson(name: str) -> Lesson:
+    """Return the exercises and quizzes of a lesson. Called in the setup cell of its notebook.
+
+    Args:
+        name: Name of the lesson, such as `'odds'` or `'04_odds'`.
+
+    Raises:
+        LabError: There is no such lesson.
+    """
+    return load(name).begin()
+
+
+def load(name: str) -> Lesson:
+    """Return a lesson without getting ready for it.
+
+    Raises:
+        LabError: There is no such lesson.
+    """
+    names = lesson_names()
+    bare = re.sub(r'^\d+_|\.ipynb$', '', name) if isinstance(name, str) else name
+    if bare not in names:
+        raise LabError(
+            f'There is no lesson {name!r}.',
+            todo=_suggest(str(bare), names) or f'The lessons: {", ".join(names)}.',
+        )
+    found: Lesson = importlib.import_module(f'{PACKAGE}.{bare}').LESSON
+    return found
+
+
+def lesson_names() -> list[str]:
+    """Return the names of all lessons that have exercises or quizzes.
+
+    A module whose name starts with `_` is a part of others.
+    """
+    package = importlib.import_module(PACKAGE)
+    names = (module.name for module in pkgutil.iter_modules(package.__path__))
+    return sorted(name for name in names if not name.startswith('_'))
+
+
+def all_lessons() -> list[Lesson]:
+    """Return all lessons, in the order of their notebooks."""
+    return sorted(map(load, lesson_names()), key=lambda found: found.notebook)
+
+
+def _suggest(name: str, names: Sequence[str]) -> str:
+    near = difflib.get_close_matches(name.lower(), names, n=1)
+    return f'Did you mean {near[0]!r}?' if near else ''

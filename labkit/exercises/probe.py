@@ -1,0 +1,296 @@
+"""What a check may look at: the live graph, real messages, and what becomes of those it sends.
+
+A probe is a hidden node for the time of one check. It looks on while the learner's nodes run as
+they were started, and nothing of it is left when the check ends.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import time
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from labkit.exercises.callbacks import Callbacks, find_node
+from labkit.exercises.places import interrupt_child, place, same_process, starting_children
+from labkit.exercises.verdict import Fail
+from labkit.exercises.watch import Watch, build, message_class
+
+__all__ = ['Endpoint', 'Probe', 'is_hidden']
+
+# A check answers within 5 s; the rest is for making and ending the probe.
+TIMEOUT_SEC = 4.5
+# How often messages and graph are looked at; it bounds how long an answer waits to be seen.
+POLL_SEC = 0.004
+# How long something that is not there may still be on its way: from a thread of this process,
+# from a process that was started a moment ago, or because ROS itself was.
+THREAD_GRACE_SEC = 0.15
+PROCESS_GRACE_SEC = 3.0
+ENDPOINT_GRACE_SEC = 1.0
+
+_EVERY_NODE_HAS = ('/rosout', '/parameter_events')
+
+
+@dataclass(frozen=True)
+class Endpoint:
+    """A publisher or a subscription as the graph shows it.
+
+    Attributes:
+        node: Full name of its node.
+        topic: Full name of its topic.
+        msg_type: Name of its type, such as `'std_msgs/msg/Int16'`.
+        gid: Its global id; another run of the same cell has another one.
+        qos: Its QoS profile. The graph does not know history and depth.
+        place: Where it runs, in words that follow the node's name.
+    """
+
+    node: str
+    topic: str
+    msg_type: str
+    gid: bytes
+    qos: Any
+    place: str
+
+    def __str__(self) -> str:
+        return f'{self.node} {self.place}'
+
+
+def is_hidden(name: str) -> bool:
+    """Tell whether a node or topic is nobody's business: a part of its name starts with `_`."""
+    return any(part.startswith('_') for part in name.split('/'))
+
+
+class Probe:
+    """The graph and the messages, for the time of a `with` block.
+
+    Args:
+        name: Name of the exercise.
+        given: Full names of nodes that the lesson itself leaves running: not the learner's.
+        known: Topics that the lesson is about. What the learner does on others is a wrong name.
+        recorded: What was recorded before the check, by topic.
+        timeout_sec: Seconds after which every wait ends.
+
+    Attributes:
+        node: The hidden node.
+        evidence: Endpoints of the learner's that a matcher has found to be as they should be.
+        sole: Topics that may have one publisher only; see `expect.alone`.
+        touched: Topics that were asked about.
+        callbacks: What the learner's callbacks do meanwhile.
+        logs: The log messages of all nodes, from the start of the check.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        given: Collection[str] = (),
+        known: Collection[str] = (),
+        recorded: Mapping[str, Watch] | None = None,
+        timeout_sec: float = TIMEOUT_SEC,
+    ) -> None:
+        self.name = name
+        self.given = frozenset(given)
+        self.known = frozenset(known)
+        self.recorded = dict(recorded or {})
+        self.evidence: list[Endpoint] = []
+        self.sole: set[str] = set()
+        self.touched: set[str] = set()
+        self._watches: list[Watch] = []
+        self._publishers: list[Any] = []
+        self._end = time.monotonic() + timeout_sec
+
+    def __enter__(self) -> Probe:
+        from rclpy.node import Node
+        from rclpy.parameter import Parameter
+
+        from labkit.runtime import runtime
+
+        self._fresh = not runtime.started
+        runtime.start()
+        self.callbacks = Callbacks()
+        self.node = Node(
+            f'_check_{self.name}',
+            enable_rosout=False,
+            start_parameter_services=False,
+            use_global_arguments=False,
+            parameter_overrides=[Parameter('start_type_description_service', value=False)],  # type: ignore[no-untyped-call]
+        )
+        self.logs = self.watch('/rosout', 'rcl_interfaces/msg/Log')
+        self._gid = self._own_gid()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        from rclpy.exceptions import InvalidHandle
+
+        with contextlib.suppress(InvalidHandle):  # a learner's thread has shut ROS down
+            self.node.destroy_node()  # type: ignore[no-untyped-call]
+
+    # -- time -----------------------------------------------------------------------------------
+
+    @property
+    def time_left(self) -> float:
+        """Seconds until every wait of this check ends."""
+        return max(0.0, self._end - time.monotonic())
+
+    def wait(self, condition: Callable[[], object], timeout_sec: float | None = None) -> bool:
+        """Wait until `condition()` is true, while messages are taken.
+
+        Args:
+            condition: A function without arguments.
+            timeout_sec: Seconds to wait, cut to what is left for the check; all of it if None.
+
+        Returns:
+            Whether it became true.
+
+        Raises:
+            LearnerError: A callback of a node under test raised meanwhile.
+        """
+        left = self.time_left
+        end = time.monotonic() + (left if timeout_sec is None else min(timeout_sec, left))
+        while True:
+            for watch in self._watches:
+                watch.pump()
+            if condition():
+                return True
+            self.callbacks.raise_new_error(self)
+            if time.monotonic() >= end:
+                return False
+            time.sleep(POLL_SEC)
+
+    def wait_to_appear(self, condition: Callable[[], object]) -> bool:
+        """Wait for something that is not there, as long as it may be on its way."""
+        return self.wait(condition, THREAD_GRACE_SEC) or self.wait(condition, self._grace())
+
+    def _grace(self) -> float:
+        """Return how long what is not there may still be on its way, in seconds."""
+        if os.environ.get('ROS_AUTOMATIC_DISCOVERY_RANGE') == 'OFF':
+            return 0.0
+        # Every node publishes there.
+        infos = self.node.get_publishers_info_by_topic('/parameter_events')
+        new, known = starting_children([bytes(info.endpoint_gid) for info in infos])
+        if self._fresh or new:
+            return PROCESS_GRACE_SEC
+        return ENDPOINT_GRACE_SEC if known else 0.0
+
+    def something_is_starting(self) -> bool:
+        """Tell whether a process, or ROS itself, was started a moment ago."""
+        return self._grace() > 0.0
+
+    # -- the graph ------------------------------------------------------------------------------
+
+    def publishers(self, topic: str) -> list[Endpoint]:
+        """Return the learner's publishers on a topic."""
+        self.touched.add(topic)
+        return self._endpoints(topic, self.node.get_publishers_info_by_topic(topic))
+
+    def subscriptions(self, topic: str) -> list[Endpoint]:
+        """Return the learner's subscriptions to a topic."""
+        self.touched.add(topic)
+        return self._endpoints(topic, self.node.get_subscriptions_info_by_topic(topic))
+
+    def all_publishers(self) -> list[Endpoint]:
+        """Return the learner's publishers on all topics."""
+        ask = self.node.get_publishers_info_by_topic
+        return [found for topic in self.topics() for found in self._endpoints(topic, ask(topic))]
+
+    def all_subscriptions(self) -> list[Endpoint]:
+        """Return the learner's subscriptions to all topics."""
+        ask = self.node.get_subscriptions_info_by_topic
+        return [found for topic in self.topics() for found in self._endpoints(topic, ask(topic))]
+
+    def topics(self) -> dict[str, list[str]]:
+        """Return the topics that are not part of every node, with their types."""
+        return {
+            name: types
+            for name, types in self.node.get_topic_names_and_types()
+            if name not in _EVERY_NODE_HAS and not is_hidden(name)
+        }
+
+    def node_names(self) -> list[str]:
+        """Return the full names of the learner's nodes; one that runs twice is there twice."""
+        names = (
+            f'{namespace.rstrip("/")}/{name}'
+            for name, namespace in self.node.get_node_names_and_namespaces()
+        )
+        return sorted(name for name in names if not is_hidden(name) and name not in self.given)
+
+    def node_object(self, name: str) -> Any:
+        """Return the node of that name as an object, None if it runs in another process."""
+        return find_node(name)
+
+    def fingerprint(self) -> frozenset[bytes]:
+        """Return the ids of all of the learner's endpoints: they tell one run from another."""
+        found = self.all_publishers() + self.all_subscriptions()
+        return frozenset(endpoint.gid for endpoint in found)
+
+    def in_this_process(self, endpoint: Endpoint) -> bool:
+        """Tell whether an endpoint belongs to this notebook's process."""
+        return same_process(endpoint.gid, self._gid)
+
+    def _endpoints(self, topic: str, infos: Sequence[Any]) -> list[Endpoint]:
+        found = []
+        for info in infos:
+            node = f'{info.node_namespace.rstrip("/")}/{info.node_name}'
+            if not is_hidden(node) and node not in self.given:
+                gid = bytes(info.endpoint_gid)
+                where = place(gid, self._gid)
+                found.append(Endpoint(node, topic, info.topic_type, gid, info.qos_profile, where))
+        return found
+
+    def _own_gid(self) -> bytes:
+        for info in self.node.get_subscriptions_info_by_topic('/rosout'):
+            if info.node_name == self.node.get_name():
+                return bytes(info.endpoint_gid)
+        return bytes(16)
+
+    # -- messages -------------------------------------------------------------------------------
+
+    def watch(self, topic: str, msg_type: str, *, latched: bool = False) -> Watch:
+        """Start to collect the messages of a topic."""
+        from rclpy.qos import ReliabilityPolicy
+
+        infos = self.node.get_publishers_info_by_topic(topic)
+        best_effort = ReliabilityPolicy.BEST_EFFORT
+        reliable = all(info.qos_profile.reliability != best_effort for info in infos)
+        watch = Watch(self.node, topic, msg_type, reliable=reliable, latched=latched)
+        self._watches.append(watch)
+        return watch
+
+    def sender(self, topic: str, msg_type: str) -> Callable[[Mapping[str, Any]], float]:
+        """Return a function that publishes; it waits for the subscriptions that are there now.
+
+        Returns:
+            A function of the fields (see `watch.build`) that publishes one message and returns
+            when that was, in seconds of the clock that message stamps use.
+        """
+        publisher = self.node.create_publisher(message_class(msg_type), topic, 10)
+        self._publishers.append(publisher)
+        count = len(self.node.get_subscriptions_info_by_topic(topic))
+        self.wait(lambda: publisher.get_subscription_count() >= count, 2.0)
+
+        def send(fields: Mapping[str, Any]) -> float:
+            now = time.time()
+            publisher.publish(build(msg_type, fields))
+            return now
+
+        return send
+
+    def stop_node(self, endpoint: Endpoint) -> None:
+        """End the node of an endpoint, as the learner would: remove it, or press Ctrl-C.
+
+        Raises:
+            Fail: It runs in a process that this notebook has not started.
+        """
+        node = self.node_object(endpoint.node) if self.in_this_process(endpoint) else None
+        if node is not None:
+            from labkit.runtime import remove
+
+            remove(node)
+        elif not interrupt_child(endpoint.gid):
+            raise Fail(
+                f'{endpoint.node} runs in this notebook, so that the check can end it',
+                f'it runs {endpoint.place}',
+                todo='End it there, start it here, and check again.',
+            )

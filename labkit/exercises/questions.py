@@ -1,0 +1,264 @@
+"""The kinds of quiz questions, and how an answer to each is judged and explained."""
+
+from __future__ import annotations
+
+import math
+import zlib
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from labkit.errors import LabError
+
+__all__ = [
+    'LETTERS',
+    'Choice',
+    'Feedback',
+    'Number',
+    'Option',
+    'Question',
+    'Several',
+    'Word',
+    'right',
+    'wrong',
+]
+
+LETTERS = 'abcdefghijklmnopqrstuvwxyz'
+
+
+@dataclass(frozen=True)
+class Option:
+    """An answer that can be chosen; see `right` and `wrong`.
+
+    Attributes:
+        text: The answer.
+        why: Why it is right, or wrong.
+        is_right: Which of the two it is.
+    """
+
+    text: str
+    why: str
+    is_right: bool
+
+
+def right(text: str, why: str) -> Option:
+    """Return a right answer with the reason why it is."""
+    return Option(text, why, True)
+
+
+def wrong(text: str, why: str) -> Option:
+    """Return a wrong answer with the reason why it is."""
+    return Option(text, why, False)
+
+
+@dataclass(frozen=True)
+class Feedback:
+    """What is said to an answer.
+
+    Attributes:
+        is_right: Whether it is right.
+        lines: Pairs of a label, such as `'b'`, and an explanation.
+    """
+
+    is_right: bool
+    lines: Sequence[tuple[str, str]]
+
+
+class Question:
+    """A question; one of `Choice`, `Several`, `Number` and `Word`.
+
+    Attributes:
+        text: The question.
+        kind: How it is shown: `'radio'`, `'checkbox'` or `'text'`.
+        how: How to answer it, in words.
+    """
+
+    text: str
+    kind = 'text'
+    how = ''
+
+    def labels(self) -> list[str]:
+        """Return the answers to choose from, in the order in which they are shown."""
+        return []
+
+    def example(self) -> str:
+        """Return an answer as code."""
+        return "'b'"
+
+    def judge(self, given: Any) -> Feedback:
+        """Say whether an answer is right, and why.
+
+        Raises:
+            LabError: It is no answer to this question.
+        """
+        raise NotImplementedError
+
+
+class _Options(Question):
+    """What `Choice` and `Several` share."""
+
+    def __init__(self, text: str, *options: Option) -> None:
+        self.text = text
+        # The right one is mostly written first. Shown is another order, the same each time.
+        self.options = sorted(options, key=lambda option: zlib.crc32(option.text.encode()))
+
+    def labels(self) -> list[str]:
+        """Return the answers to choose from, in the order in which they are shown."""
+        return [option.text for option in self.options]
+
+    def _chosen(self, given: Any) -> list[int]:
+        letters = given.replace(',', '').replace(' ', '') if isinstance(given, str) else given
+        known = LETTERS[: len(self.options)]
+        if not isinstance(letters, Iterable):
+            letters = [letters]
+        chosen = [str(letter).strip().lower() for letter in letters]
+        if not chosen or not all(letter in known and len(letter) == 1 for letter in chosen):
+            raise LabError(
+                f'The answer must be a letter, {known[0]} to {known[-1]}, but it is {given!r}.',
+                todo=f'For instance: {self.example()}',
+            )
+        return sorted({known.index(letter) for letter in chosen})
+
+    def _explain(self, numbers: Iterable[int]) -> list[tuple[str, str]]:
+        return [(LETTERS[number], self.options[number].why) for number in numbers]
+
+
+class Choice(_Options):
+    """A question with one right answer.
+
+    Args:
+        text: The question.
+        options: The answers, made by `right` and `wrong`.
+    """
+
+    kind = 'radio'
+    how = 'one answer'
+
+    def judge(self, given: Any) -> Feedback:
+        """Say whether an answer is right, and why."""
+        chosen = self._chosen(given)
+        if len(chosen) != 1:
+            raise LabError(f'This question has one answer, but {given!r} names {len(chosen)}.')
+        if not self.options[chosen[0]].is_right:
+            return Feedback(False, self._explain(chosen))
+        others = [number for number in range(len(self.options)) if number not in chosen]
+        return Feedback(True, self._explain(chosen + others))
+
+
+class Several(_Options):
+    """A question with any number of right answers, all of which must be chosen, and no others.
+
+    Args:
+        text: The question.
+        options: The answers, made by `right` and `wrong`.
+    """
+
+    kind = 'checkbox'
+    how = 'all that are right'
+
+    def example(self) -> str:
+        """Return an answer as code."""
+        return "'ac'"
+
+    def judge(self, given: Any) -> Feedback:
+        """Say whether an answer is right, and why."""
+        chosen = self._chosen(given)
+        wanted = [number for number, option in enumerate(self.options) if option.is_right]
+        if chosen == wanted:
+            return Feedback(True, self._explain(range(len(self.options))))
+        lines = self._explain(number for number in chosen if number not in wanted)
+        missing = len([number for number in wanted if number not in chosen])
+        if missing:
+            count = 'One right answer is' if missing == 1 else f'{missing} right answers are'
+            lines.append(('missing', f'{count} not among those you chose.'))
+        return Feedback(False, lines)
+
+
+@dataclass(frozen=True)
+class Number(Question):
+    """A question whose answer is a number.
+
+    Attributes:
+        text: The question.
+        answer: The number, or a function that reads it off the live graph.
+        why: Why it is that number.
+        otherwise: What to think of when it is another one.
+        wrong: Typical wrong numbers, with what is wrong about each.
+        explain: Says what is wrong about a number by the live graph, '' if it can't tell.
+        tolerance: How far the answer may be off.
+        unit: The unit, such as `'Hz'`.
+    """
+
+    text: str
+    answer: float | Callable[[], float]
+    why: str
+    otherwise: str
+    wrong: Mapping[float, str] = field(default_factory=dict)
+    explain: Callable[[float], str] = lambda number: ''
+    tolerance: float = 0.0
+    unit: str = ''
+
+    @property
+    def how(self) -> str:  # type: ignore[override]
+        """Return how to answer it, in words."""
+        return f'a number, in {self.unit}' if self.unit else 'a number'
+
+    def example(self) -> str:
+        """Return an answer as code."""
+        return '2.5'
+
+    def judge(self, given: Any) -> Feedback:
+        """Say whether an answer is right, and why."""
+        try:
+            number = float(str(given).strip().replace(',', '.'))
+        except ValueError:
+            number = math.nan
+        if math.isnan(number):
+            raise LabError(f'The answer must be a number, but it is {given!r}.')
+        answer = _value(self.answer)
+        if abs(number - answer) <= self.tolerance + 1e-9 * abs(answer):
+            return Feedback(True, [('why', self.why)])
+        for value, why in self.wrong.items():
+            if math.isclose(number, value, rel_tol=1e-9, abs_tol=self.tolerance / 2):
+                return Feedback(False, [('why', why)])
+        return Feedback(False, [('why', self.explain(number) or self.otherwise)])
+
+
+@dataclass(frozen=True)
+class Word(Question):
+    """A question whose answer is a word, such as the name of a node or a type.
+
+    Attributes:
+        text: The question.
+        answer: The word, several that are right, or a function that reads them off the graph.
+        why: Why it is that word.
+        otherwise: What to think of when it is another one.
+        wrong: Typical wrong words, with what is wrong about each.
+        explain: Says what is wrong about a word by the live graph, '' if it can't tell.
+    """
+
+    text: str
+    answer: str | Collection[str] | Callable[[], str | Collection[str]]
+    why: str
+    otherwise: str
+    wrong: Mapping[str, str] = field(default_factory=dict)
+    explain: Callable[[str], str] = lambda word: ''
+    how = 'a word'
+
+    def example(self) -> str:
+        """Return an answer as code."""
+        return "'/talker'"
+
+    def judge(self, given: Any) -> Feedback:
+        """Say whether an answer is right, and why."""
+        word = str(given).strip().strip('\'"`')
+        answer = _value(self.answer)
+        if word in ([answer] if isinstance(answer, str) else answer):
+            return Feedback(True, [('why', self.why)])
+        why = self.wrong.get(word) or self.explain(word) or self.otherwise
+        return Feedback(False, [('why', why)])
+
+
+def _value(answer: Any) -> Any:
+    """Return an answer, read off the graph if that is how it is given."""
+    return answer() if callable(answer) else answer

@@ -1,0 +1,92 @@
+"""Quizzes: questions whose every answer is explained, the wrong ones too.
+
+In a notebook a quiz is a form; anywhere else, and where a program runs the notebook, it is text,
+and `quiz.answer(1, 'b')` answers it. Answers may be read off the live graph at that moment.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from typing import Any
+
+from labkit import settings
+from labkit.errors import LabError
+from labkit.exercises.mishaps import last_cell
+from labkit.exercises.noting import progress_store
+from labkit.exercises.questions import LETTERS, Question
+from labkit.views.verdict import Card
+
+__all__ = ['Quiz']
+
+
+class Quiz:
+    """Some questions. Displayed, it is a form; `answer()` answers it in code.
+
+    Args:
+        name: Its name, for `lesson.quiz('name')` and for the progress.
+        questions: The questions, in their order.
+    """
+
+    def __init__(self, name: str, *questions: Question) -> None:
+        self.name = name
+        self.questions = questions
+        self.lesson = ''
+        self._form: Any = None
+
+    def __len__(self) -> int:
+        return len(self.questions)
+
+    def answer(self, number: int, given: Any) -> Card:
+        """Answer a question.
+
+        Args:
+            number: Which one, from 1.
+            given: A letter, several letters, a number or a word.
+
+        Returns:
+            What is right or wrong about it, and why.
+
+        Raises:
+            LabError: There is no such question, or this is no answer to it.
+        """
+        last_cell.asked()
+        if not isinstance(number, int) or not 1 <= number <= len(self):
+            raise LabError(f'Questions are numbered 1 to {len(self)}, but this is {number!r}.')
+        feedback = self.questions[number - 1].judge(given)
+        note = progress_store.note_answer(self.lesson, self.name, number, feedback.is_right)
+        word, tone = ('RIGHT', 'good') if feedback.is_right else ('NOT YET', 'bad')
+        rows = [*feedback.lines, ('note', note)]
+        return Card(tone, word, f'question {number}', rows=rows)
+
+    def __repr__(self) -> str:
+        call = f"lesson.quiz('{self.name}').answer"
+        example = self.questions[0].example() if self.questions else ''
+        lines = [f'Quiz {self.name!r}. To answer question 1: {call}(1, {example})']
+        for number, question in enumerate(self.questions, start=1):
+            lines.append(f'{number:2}. {question.text} ({question.how})')
+            labels = zip(LETTERS, question.labels(), strict=False)
+            lines += [f'      {letter}) {label}' for letter, label in labels]
+        return '\n'.join(lines)
+
+    def _repr_mimebundle_(self, **_: object) -> dict[str, Any]:
+        bundle: dict[str, Any] = {'text/plain': repr(self)}
+        if not settings.headless():
+            # Without ipywidgets and anywidget the text is shown.
+            with contextlib.suppress(ImportError):
+                from labkit.views.quiz import quiz_form
+
+                self._form = self._form or quiz_form(self.form_data(), self.answer)
+                bundle = {**self._form.bundle(), **bundle}
+        return bundle
+
+    def form_data(self) -> list[dict[str, Any]]:
+        """Return the questions as a form needs them, without what is right."""
+        return [
+            {
+                'text': question.text,
+                'how': question.how,
+                'kind': question.kind,
+                'labels': question.labels(),
+            }
+            for question in self.questions
+        ]

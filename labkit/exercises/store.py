@@ -1,0 +1,170 @@
+"""The file that remembers a learner's progress, and survives what happens to files.
+
+It is replaced as a whole: written beside the old one, forced to disk, renamed. So a process that
+is killed at any moment leaves the old file or the new one. Two kernels that write at once wait
+for each other at a lock. A damaged file is kept aside, and said so.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import copy
+import fcntl
+import json
+import os
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from labkit import settings
+
+__all__ = ['Store']
+
+VERSION = 1
+LOCK_TIMEOUT_SEC = 1.0
+
+Data = dict[str, Any]
+
+
+class Store:
+    """Read and change the progress file.
+
+    Where a program runs the notebook, nothing is read from the learner's file or written to it:
+    what happens is remembered for as long as the kernel runs.
+
+    Args:
+        folder: Where the file is; labkit's state folder if None.
+    """
+
+    def __init__(self, folder: Path | None = None) -> None:
+        self._folder = folder
+        self._memory: Data | None = _empty() if folder is None and settings.headless() else None
+
+    @property
+    def path(self) -> Path:
+        """The file."""
+        return (self._folder or settings.state_dir()) / 'progress.json'
+
+    def read(self) -> tuple[Data, str]:
+        """Return what is known, and a note if something is wrong with the file."""
+        if self._memory is not None:
+            return copy.deepcopy(self._memory), ''
+        try:
+            return self._load(), ''
+        except OSError as error:
+            return _empty(), f'Your progress cannot be read: {error}'
+        except ValueError:
+            return self._update(lambda data: None)
+
+    def update(self, change: Callable[[Data], None]) -> str:
+        """Change what is known.
+
+        Args:
+            change: Changes the data it is called with.
+
+        Returns:
+            A note if something is wrong with the file, else `''`. It never raises.
+        """
+        if self._memory is not None:
+            change(self._memory)
+            return ''
+        return self._update(change)[1]
+
+    def damaged_files(self) -> list[Path]:
+        """Return the damaged files that were kept aside."""
+        return sorted(self.path.parent.glob('progress-damaged-*.json'))
+
+    def _update(self, change: Callable[[Data], None]) -> tuple[Data, str]:
+        note = ''
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            with self._locked():
+                try:
+                    data = self._load()
+                except ValueError:
+                    note = self._keep_aside()
+                    data = _empty()
+                change(data)
+                self._replace(data)
+        except OSError as error:
+            return _empty(), f'Your progress could not be saved: {error}'
+        return data, note
+
+    @contextlib.contextmanager
+    def _locked(self) -> Iterator[None]:
+        with self.path.with_suffix('.lock').open('w') as lock:
+            end = time.monotonic() + LOCK_TIMEOUT_SEC
+            while True:
+                try:
+                    fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                    break
+                except BlockingIOError:
+                    if time.monotonic() > end:
+                        raise OSError('another notebook keeps the file locked') from None
+                    time.sleep(0.005)
+            yield
+
+    def _load(self) -> Data:
+        """Return what the file holds.
+
+        Raises:
+            ValueError: It is damaged.
+            OSError: It can't be read.
+        """
+        try:
+            text = self.path.read_text(encoding='utf-8')
+        except FileNotFoundError:
+            return _empty()
+        data = json.loads(text)
+        if not _is_sound(data):
+            raise ValueError('not a progress file')
+        return data  # type: ignore[no-any-return]
+
+    def _keep_aside(self) -> str:
+        number = 1
+        while (aside := self.path.with_name(f'progress-damaged-{number}.json')).exists():
+            number += 1
+        os.replace(self.path, aside)
+        return (
+            f'The progress file was damaged. It is kept as {aside.name} in {aside.parent}, and '
+            'counting starts anew.'
+        )
+
+    def _replace(self, data: Data) -> None:
+        # One name is enough: whoever writes has the lock. What a killed process left behind is
+        # written over.
+        new = self.path.with_suffix('.new')
+        with new.open('w', encoding='utf-8') as file:
+            json.dump(data, file, indent=1, sort_keys=True)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(new, self.path)
+        folder = os.open(self.path.parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
+
+
+def _empty() -> Data:
+    return {'version': VERSION, 'lessons': {}}
+
+
+def _is_sound(data: object) -> bool:
+    """Tell whether data has the form that the rest of labkit relies on."""
+    if not isinstance(data, dict) or not isinstance(data.get('lessons'), dict):
+        return False
+    return all(
+        isinstance(lesson, dict)
+        and all(
+            isinstance(entry, dict)
+            for kind in ('exercises', 'questions')
+            for entry in _values(lesson.get(kind, {}))
+        )
+        for lesson in data['lessons'].values()
+    )
+
+
+def _values(group: object) -> list[object]:
+    return list(group.values()) if isinstance(group, dict) else [None]

@@ -1,0 +1,123 @@
+"""What a check says: PASS, FAIL, NOT ATTEMPTED or ERROR, and how a judge says it.
+
+Inside a check an outcome is an exception: a matcher raises `Fail` or `NotAttempted`, and a check
+that returns has passed. Outside there is one `Verdict`, which shows itself and never raises.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import enum
+from dataclasses import dataclass
+
+from labkit.views.verdict import Card
+
+__all__ = ['Fail', 'LearnerError', 'NotAttempted', 'Outcome', 'Verdict']
+
+
+class Outcome(enum.Enum):
+    """The four answers of a check."""
+
+    PASS = 'PASS'
+    FAIL = 'FAIL'
+    NOT_ATTEMPTED = 'NOT ATTEMPTED'
+    ERROR = 'ERROR'
+
+
+_TONES = {
+    Outcome.PASS: 'good',
+    Outcome.FAIL: 'bad',
+    Outcome.NOT_ATTEMPTED: 'quiet',
+    Outcome.ERROR: 'warn',
+}
+
+
+@dataclass(frozen=True, repr=False)
+class Verdict:
+    """The answer of a check, for people: text in a terminal, a card in a notebook.
+
+    Attributes:
+        outcome: PASS, FAIL, NOT ATTEMPTED or ERROR.
+        name: The exercise.
+        text: A sentence for the whole.
+        expected: What should have been observed.
+        seen: What was observed.
+        why: The likely misconception.
+        todo: The next step.
+        trace: The learner's lines of a traceback, and the message of the error.
+        note: Something beside the point, such as a progress file that can't be written.
+    """
+
+    outcome: Outcome
+    name: str
+    text: str = ''
+    expected: str = ''
+    seen: str = ''
+    why: str = ''
+    todo: str = ''
+    trace: str = ''
+    note: str = ''
+
+    @property
+    def passed(self) -> bool:
+        """Tell whether the outcome is PASS."""
+        return self.outcome is Outcome.PASS
+
+    def with_note(self, note: str) -> Verdict:
+        """Return the same verdict with a note."""
+        return dataclasses.replace(self, note=note)
+
+    def _card(self) -> Card:
+        rows = (
+            ('Expected', self.expected),
+            ('Seen', self.seen),
+            ('Why', self.why),
+            ('Next', self.todo),
+            ('Note', self.note),
+        )
+        word, tone = self.outcome.value, _TONES[self.outcome]
+        return Card(tone, word, self.name, text=self.text, rows=rows, code=self.trace)
+
+    def __repr__(self) -> str:
+        return repr(self._card())
+
+    def _repr_html_(self) -> str:
+        return self._card()._repr_html_()
+
+
+class Fail(Exception):
+    """Say that what was observed is not what the task asks for.
+
+    Args:
+        expected: What should have been observed.
+        seen: What was observed; values with `!r`.
+        why: The misconception that leads there, in a sentence a beginner understands.
+        todo: The next step.
+    """
+
+    def __init__(self, expected: str, seen: str, *, why: str = '', todo: str = '') -> None:
+        super().__init__(f'{expected} / {seen} / {why} / {todo}')
+        self.expected = expected
+        self.seen = seen
+        self.why = why
+        self.todo = todo
+
+
+class NotAttempted(Exception):
+    """Say that nothing of the learner's is there yet."""
+
+
+class LearnerError(Exception):
+    """Say that the learner's code raised.
+
+    Args:
+        where: What raised, such as `'The callback on_odd of /evener'`.
+        error: The exception.
+        trace: The learner's lines of the traceback, and the message.
+    """
+
+    def __init__(self, where: str, error: BaseException, trace: str) -> None:
+        super().__init__(where)
+        self.where = where
+        self.error = error
+        self.trace = trace

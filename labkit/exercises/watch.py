@@ -1,0 +1,160 @@
+"""Real messages as data: what came on a topic, when it was sent, and as which one.
+
+Messages are taken in the thread that asks, not by an executor. So they are seen even while a
+callback of the learner's keeps the background thread busy.
+"""
+
+from __future__ import annotations
+
+import importlib
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import reduce
+from itertools import pairwise
+from typing import Any
+
+from labkit.errors import LabError
+
+__all__ = ['Sample', 'Watch', 'build', 'message_class']
+
+DEPTH = 1000
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A message as it was received.
+
+    Attributes:
+        message: The message itself.
+        stamp: When it was published, by the publisher's clock, in seconds.
+        number: The how manieth message of its publisher it is, from 1; 0 if that is not known.
+    """
+
+    message: Any
+    stamp: float
+    number: int
+
+
+class Watch:
+    """The messages of a topic, from the moment it was made. Iterating gives the messages.
+
+    Args:
+        node: The node that subscribes; no executor needs to spin it.
+        topic: Full name of the topic.
+        msg_type: Name of its type, such as `'std_msgs/msg/Int16'`.
+        reliable: Whether the publishers are reliable, so that it can ask for all messages.
+        latched: Whether to ask for what was published before, too.
+    """
+
+    def __init__(
+        self, node: Any, topic: str, msg_type: str, *, reliable: bool = True, latched: bool = False
+    ) -> None:
+        from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+        self.topic = topic
+        self.msg_type = msg_type
+        self.samples: list[Sample] = []
+        self.last_arrival = self.started = time.monotonic()
+        self._node = node
+        durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
+        reliability = ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT
+        self._subscription = node.create_subscription(
+            message_class(msg_type),
+            topic,
+            lambda message: None,
+            QoSProfile(  # type: ignore[no-untyped-call]
+                depth=DEPTH, reliability=reliability, durability=durability
+            ),
+        )
+
+    def pump(self) -> None:
+        """Take what has arrived."""
+        handle, msg_class = self._subscription.handle, self._subscription.msg_type
+        with handle:
+            while (taken := handle.take_message(msg_class, False)) is not None:
+                message, info = taken
+                number = info.get('publication_sequence_number') or 0
+                self.samples.append(Sample(message, info['source_timestamp'] * 1e-9, number))
+                self.last_arrival = time.monotonic()
+
+    def values(self, field: str) -> list[Any]:
+        """Return one field of each message.
+
+        Args:
+            field: Name of the field; dots lead to inner ones, such as `'pose.position.x'`.
+        """
+        return [reduce(getattr, field.split('.'), sample.message) for sample in self.samples]
+
+    def streams(self) -> list[list[Sample]]:
+        """Return the messages of each publisher.
+
+        A message does not say who sent it, but as which one: publishers that take turns, each
+        counting its own messages, are told apart by that.
+        """
+        streams: list[list[Sample]] = []
+        for sample in self.samples:
+            following = [
+                s for s in streams if not sample.number or s[-1].number + 1 == sample.number
+            ]
+            if following:
+                # Of two that count alike, it is the turn of the one that has waited longer.
+                min(following, key=lambda stream: stream[-1].stamp).append(sample)
+            else:
+                streams.append([sample])
+        return streams
+
+    @property
+    def intervals(self) -> list[float]:
+        """The seconds from one message of a publisher to its next, by the publisher's clock."""
+        return [
+            later.stamp - earlier.stamp
+            for stream in self.streams()
+            for earlier, later in pairwise(stream)
+        ]
+
+    def close(self) -> None:
+        """Stop watching. What has come stays."""
+        self._node.destroy_subscription(self._subscription)
+
+    def __len__(self) -> int:
+        return len(self.samples)
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter([sample.message for sample in self.samples])
+
+    def __getitem__(self, index: int) -> Any:
+        return self.samples[index].message
+
+
+def message_class(msg_type: str) -> Any:
+    """Return the class of a message type.
+
+    Args:
+        msg_type: Its ROS name, such as `'std_msgs/msg/Int16'`.
+
+    Raises:
+        LabError: There is no such type.
+    """
+    package, _, rest = msg_type.partition('/')
+    try:
+        return getattr(importlib.import_module(f'{package}.msg'), rest.rpartition('/')[2])
+    except (ImportError, AttributeError, ValueError) as error:
+        raise LabError(
+            f'There is no message type {msg_type!r} here.',
+            todo="Its name has three parts, such as 'std_msgs/msg/String'.",
+        ) from error
+
+
+def build(msg_type: str, fields: Mapping[str, Any]) -> Any:
+    """Return a message with some of its fields set.
+
+    Args:
+        msg_type: Name of the type.
+        fields: Values by the name of the field; dots lead to inner ones: `{'linear.x': 0.1}`.
+    """
+    message = message_class(msg_type)()
+    for path, value in fields.items():
+        *outer, last = path.split('.')
+        setattr(reduce(getattr, outer, message), last, value)
+    return message

@@ -1,0 +1,27 @@
+"""What the tests of the exercises share: a state folder of their own, ROS that ends."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+import labkit
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Labkit's state folder."""
+    folder = tmp_path / 'home'
+    monkeypatch.setenv('LABKIT_HOME', str(folder))
+    return folder
+
+
+@pytest.fixture
+def lab() -> Iterator[ModuleType]:
+    """Labkit, with ROS stopped afterwards."""
+    labkit.start()
+    yield labkit
+    labkit.stop()

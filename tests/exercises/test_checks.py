@@ -1,0 +1,345 @@
+"""What holds for every check, whatever its judge: against real nodes in this process."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from types import ModuleType
+from typing import Any
+
+import pytest
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Int16, String
+
+from labkit.exercises import Exercise, Fail, NotAttempted, Outcome, Probe, Solution, expect
+
+INT16 = 'std_msgs/msg/Int16'
+STRING = 'std_msgs/msg/String'
+
+
+def exercise(judge: Callable[[Probe], str | None], **options: Any) -> Exercise:
+    options = {'topics': ['/odds'], **options}
+    return Exercise(
+        name='count_up',
+        task='A task.',
+        judge=judge,
+        hints=['A hint.'],
+        answer=Solution('pass', 'So.'),
+        **options,
+    )
+
+
+class Counter(Node):
+    """Publishes 1, 2, 3, ... often."""
+
+    def __init__(self, name: str = 'counter', topic: str = 'odds') -> None:
+        super().__init__(name)
+        self.publisher = self.create_publisher(Int16, topic, 10)
+        self.number = 0
+        self.create_timer(0.02, self.on_timer)
+
+    def on_timer(self) -> None:
+        self.number += 1
+        self.publisher.publish(Int16(data=self.number))
+
+
+def counts(probe: Probe) -> str:
+    source = expect.publisher(probe, '/odds', INT16)
+    messages = expect.messages(probe, source, count=4)
+    expect.steps(messages, 'data', 1)
+    return expect.show(messages.values('data'))
+
+
+def test_check_leaves_no_node_behind(lab: ModuleType) -> None:
+    node = lab.spin(Counter())
+    check = exercise(counts).check
+    assert [check().outcome for _ in range(3)] == [Outcome.PASS] * 3
+    assert [name for name in node.get_node_names() if 'check' in name] == []
+    lab.remove(node)
+    assert check().outcome is Outcome.NOT_ATTEMPTED
+
+
+@pytest.mark.parametrize('error', [ValueError('no'), RuntimeError('no'), IndexError(), KeyError()])
+def test_fault_of_the_check_is_said_and_never_raised(lab: ModuleType, error: Exception) -> None:
+    def judge(probe: Probe) -> None:
+        raise error
+
+    verdict = exercise(judge).check()
+    assert verdict.outcome is Outcome.ERROR
+    assert 'a fault of the course' in repr(verdict)
+    assert type(error).__name__ in verdict.trace
+
+
+def test_stop_button_ends_a_check(lab: ModuleType) -> None:
+    def judge(probe: Probe) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        exercise(judge).check()
+
+
+def test_all_waits_share_one_limit(lab: ModuleType) -> None:
+    left: list[float] = []
+
+    def judge(probe: Probe) -> None:
+        probe._end = time.monotonic() + 0.2
+        for _ in range(5):
+            probe.wait(lambda: False)
+            left.append(probe.time_left)
+
+    exercise(judge).check()
+    assert left == [0.0] * 5
+
+
+def test_nothing_there_is_no_attempt(lab: ModuleType) -> None:
+    verdict = exercise(counts).check()
+    assert repr(verdict).startswith('NOT ATTEMPTED: count_up\n  Not attempted yet.')
+
+
+def test_nodes_and_topics_of_the_lesson_are_no_attempt(lab: ModuleType) -> None:
+    lab.spin(Counter('background'))
+    lab.spin(Counter('demo', topic='demo'))
+    assert exercise(counts, given=['/background']).check().outcome is Outcome.FAIL
+    asked = exercise(counts, given=['/background'], topics=['/odds', '/demo'])
+    assert asked.check().outcome is Outcome.NOT_ATTEMPTED
+
+
+def test_callback_that_blocks_is_named(lab: ModuleType) -> None:
+    release = threading.Event()
+
+    class Blocker(Counter):
+        def on_timer(self) -> None:
+            release.wait()
+
+    lab.spin(Blocker())
+    try:
+        verdict = exercise(counts).check()
+    finally:
+        release.set()
+    assert verdict.outcome is Outcome.FAIL
+    assert 'on_timer of /counter is still running' in verdict.seen
+
+
+def test_messages_are_seen_while_another_callback_blocks(lab: ModuleType) -> None:
+    release, started = threading.Event(), threading.Event()
+    blocker = Node('blocker')
+
+    def block() -> None:
+        started.set()
+        release.wait()
+
+    timer = blocker.create_timer(0.01, block)
+    lab.spin(blocker)
+    node = Node('looper')
+    publisher = node.create_publisher(Int16, 'odds', 10)
+
+    def work() -> None:
+        value = 0
+        while not release.is_set():
+            value += 1
+            publisher.publish(Int16(data=value))
+            time.sleep(0.01)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    assert started.wait(10)
+    try:
+        verdict = exercise(counts).check()
+    finally:
+        release.set()
+        thread.join()
+        timer.cancel()
+    assert verdict.outcome is Outcome.PASS, verdict
+
+
+def test_error_in_a_callback_is_shown_with_its_misconception(
+    lab: ModuleType, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Raiser(Counter):
+        def on_timer(self) -> None:
+            self.publisher.publish(5)  # type: ignore[arg-type]
+
+    lab.spin(Raiser())
+    verdict = exercise(counts).check()
+    assert verdict.outcome is Outcome.ERROR
+    assert 'publish() takes a message' in verdict.why
+    assert 'self.publisher.publish(5)' in verdict.trace
+
+
+def test_error_of_a_repaired_node_is_history(
+    lab: ModuleType, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Raiser(Counter):
+        def on_timer(self) -> None:
+            raise ValueError('first try')
+
+    lab.spin(Raiser())
+    assert exercise(counts).check().outcome is Outcome.ERROR
+
+    lab.remove('counter')
+
+    class Twice(Counter):
+        def on_timer(self) -> None:
+            self.number += 1
+            super().on_timer()
+
+    lab.spin(Twice())
+    assert exercise(counts).check().outcome is Outcome.FAIL
+
+
+def test_intruder_is_named(lab: ModuleType) -> None:
+    lab.spin(Counter())
+    lab.spin(Counter('intruder'))
+    verdict = exercise(counts).check()
+    assert verdict.outcome is Outcome.FAIL
+    assert '/counter in this program, /intruder in this program' in verdict.seen
+
+
+def test_best_effort_publisher_is_heard_and_its_qos_seen(lab: ModuleType) -> None:
+    from rclpy.qos import qos_profile_sensor_data
+
+    class Fast(Counter):
+        def __init__(self) -> None:
+            super().__init__(topic='other')
+            self.publisher = self.create_publisher(Int16, 'odds', qos_profile_sensor_data)
+
+    def judge(probe: Probe) -> str:
+        source = expect.publisher(probe, '/odds', INT16)
+        expect.messages(probe, source, count=2)
+        expect.qos(source, reliability='best_effort')
+        expect.qos(source, reliability='reliable')
+        return ''
+
+    lab.spin(Fast())
+    verdict = exercise(judge).check()
+    assert verdict.seen == '/counter uses reliability best_effort'
+
+
+def test_verdict_of_a_check_that_uses_up_what_it_checks_is_repeated(lab: ModuleType) -> None:
+    def judge(probe: Probe) -> str:
+        source = expect.publisher(probe, '/odds', INT16)
+        return f'{expect.ends_with_node(probe, source)[-1].data}'
+
+    asked = exercise(judge, once=True)
+    lab.spin(Counter())
+    first, second = asked.check(), asked.check()
+    assert first.passed and second is first
+    lab.spin(Counter())
+    third = asked.check()
+    assert third.passed and third is not first
+
+
+def test_what_was_said_before_the_check_is_recorded(lab: ModuleType) -> None:
+    def judge(probe: Probe) -> str:
+        said = probe.recorded['/news'].values('data')
+        if not said:
+            raise NotAttempted
+        if said != ['once']:
+            raise Fail("'once'", repr(said))
+        return ''
+
+    asked = exercise(judge, topics=['/news'], records={'/news': STRING})
+    asked.begin()
+    assert asked.check().outcome is Outcome.NOT_ATTEMPTED
+    for said, outcome in ((['once', 'once'], Outcome.FAIL), (['once'], Outcome.PASS)):
+        node = rclpy.create_node('teller')
+        publisher = node.create_publisher(String, 'news', 10)
+        for text in said:
+            publisher.publish(String(data=text))
+        node.destroy_node()
+        assert asked.check().outcome is outcome
+        assert asked.check().outcome is outcome
+
+
+def test_recording_goes_on_after_ros_was_stopped(lab: ModuleType) -> None:
+    heard: list[list[str]] = []
+
+    def judge(probe: Probe) -> None:
+        heard.append(probe.recorded['/news'].values('data'))
+
+    asked = exercise(judge, topics=['/news'], records={'/news': STRING})
+    asked.begin()
+    for text in ('before', 'after'):
+        node = rclpy.create_node('teller')
+        node.create_publisher(String, 'news', 10).publish(String(data=text))
+        node.destroy_node()
+        asked.check()
+        lab.stop()
+        lab.start()
+        asked.begin()
+    assert heard == [['before'], ['after']]
+
+
+def test_other_type_on_a_recorded_topic_harms_nobody(lab: ModuleType) -> None:
+    node = lab.spin(Counter(topic='news'))
+    asked = exercise(lambda probe: None, topics=['/news'], records={'/news': STRING})
+    asked.begin()
+    assert asked.check().passed
+    lab.remove(node)
+    asked.begin()
+    assert '/news' in asked._recorder.watches()
+
+
+def test_slow_topic_is_judged_within_the_limit(lab: ModuleType) -> None:
+    class Slow(Counter):
+        def __init__(self, period: float) -> None:
+            super().__init__()
+            for timer in list(self.timers):
+                self.destroy_timer(timer)
+            self.create_timer(period, self.on_timer)
+
+    def judge(probe: Probe) -> str:
+        source = expect.publisher(probe, '/odds', INT16)
+        return str(len(expect.messages(probe, source, count=9, hz=0.5)))
+
+    lab.spin(Slow(2.0))
+    assert exercise(judge).check().passed
+    lab.remove('counter')
+    lab.spin(Slow(60.0))
+    verdict = exercise(judge).check()
+    assert verdict.outcome is Outcome.FAIL and 'period is 60 s' in repr(verdict)
+
+
+def test_check_that_has_no_time_left_does_not_condemn(lab: ModuleType) -> None:
+    def judge(probe: Probe) -> None:
+        source = expect.publisher(probe, '/odds', INT16)
+        probe._end = time.monotonic() + 0.1
+        expect.messages(probe, source, hz=0.001)
+
+    node = lab.spin(Counter())
+    node.destroy_timer(next(iter(node.timers)))
+    verdict = exercise(judge).check()
+    assert verdict.outcome is Outcome.NOT_ATTEMPTED
+    assert 'Too early to tell: no message so far on /odds' in verdict.text
+
+
+def test_rate_is_that_of_each_publisher(lab: ModuleType) -> None:
+    for name in ('first', 'second', 'third'):
+        lab.spin(Counter(name))
+
+    def judge(probe: Probe) -> str:
+        source = expect.publisher(probe, '/odds', INT16, only=False)
+        messages = expect.messages(probe, source, count=20, hz=50.0)
+        for stream in messages.streams():
+            values = [sample.message.data for sample in stream]
+            assert values == [sample.number for sample in stream]
+        return str(len(messages.streams()))
+
+    verdict = exercise(judge).check()
+    assert verdict.passed and verdict.text == '3', verdict
+
+
+def test_stamps_give_the_rate_and_numbers_the_first_value(lab: ModuleType) -> None:
+    node = lab.spin(Counter())
+    lab.wait_until(lambda: node.number > 20, timeout_sec=30)
+
+    def judge(probe: Probe) -> str:
+        source = expect.publisher(probe, '/odds', INT16)
+        messages = expect.messages(probe, source, count=3)
+        expect.first(messages, 'data', 1, 1)
+        return str(messages.samples[0].number)
+
+    verdict = exercise(judge).check()
+    assert verdict.passed and int(verdict.text) > 20

@@ -1,0 +1,93 @@
+"""Checks that look into other processes: which notebook or script is it that publishes there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from labkit.settings import claim_domain
+
+COUNTER = """
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Int16
+class Counter(Node):
+    def __init__(self, name):
+        super().__init__(name)
+        self.publisher = self.create_publisher(Int16, 'odds', 10)
+        self.create_timer(0.05, lambda: self.publisher.publish(Int16(data=1)))
+"""
+SETUP = """
+import labkit as lab
+from labkit.exercises import Exercise, Lesson, Solution, expect
+def judge(probe):
+    expect.publisher(probe, '/odds', 'std_msgs/msg/Int16')
+exercise = Exercise(name='ones', task='', topics=['/odds'], judge=judge, hints=['.'],
+                    answer=Solution('', ''))
+Lesson('odds', '04_odds.ipynb', exercises=[exercise]).begin()
+lab.start()
+"""
+SEES = """
+from labkit.runtime import runtime
+def sees_noise():
+    return ('noise', '/') in runtime.helper.get_node_names_and_namespaces()
+"""
+SCRIPT = """
+import subprocess, sys
+open('ones.py', 'w').write({code!r})
+process = subprocess.Popen([sys.executable, 'ones.py'])
+"""
+
+
+def test_other_notebook_is_named(start_kernel: Callable[..., Any]) -> None:
+    claim = claim_domain()
+    env = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'ROS_DOMAIN_ID': str(claim.domain_id)}
+    mine = start_kernel(JPY_SESSION_NAME='/home/me/04_odds.ipynb', **env)
+    other = start_kernel(JPY_SESSION_NAME='/home/me/02_talker_listener.ipynb', **env)
+    other.run(f'import labkit as lab\n{COUNTER}\nlab.spin(Counter("noise"))')
+    mine.run(f'{SETUP}\n{COUNTER}\nlab.spin(Counter("mine"))')
+    mine.run(SEES)
+    found = mine.run('lab.wait_until(sees_noise, timeout_sec=30)\nexercise.check()')
+    claim.close()
+    assert found.error == ''
+    assert '/noise in another notebook, 02_talker_listener.ipynb' in ' '.join(found.text.split())
+    assert '/mine in this notebook' in found.text
+
+
+def test_script_that_was_just_started_is_waited_for(start_kernel: Callable[..., Any]) -> None:
+    claim = claim_domain()
+    kernel = start_kernel(
+        ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST', ROS_DOMAIN_ID=str(claim.domain_id)
+    )
+    kernel.run(SETUP)
+    code = f'{COUNTER}\nrclpy.init()\nrclpy.spin(Counter("ones"))'
+    found = kernel.run(SCRIPT.format(code=code) + 'exercise.check()')
+    # Slow to start on a busy machine: then the check says so, and the next one sees it.
+    while 'run this cell again' in found.text.lower().replace('\n', ' '):
+        found = kernel.run('exercise.check()')
+    kernel.run('process.terminate(); process.wait()')
+    claim.close()
+    assert found.text.startswith('PASS')
+
+
+def test_cell_that_raised_is_an_error_and_not_an_attempt_left_out(kernel: Any) -> None:
+    kernel.run(SETUP)
+    assert kernel.run('exercise.check()').text.startswith('NOT ATTEMPTED')
+    kernel.run('undefined_name + 1')
+    for _ in range(2):
+        found = kernel.run('exercise.check()')
+        assert found.text.startswith('ERROR')
+        assert 'Python does not know the name undefined_name' in ' '.join(found.text.split())
+        assert 'Cell In[' in found.text
+    kernel.run('1 + 1')
+    assert kernel.run('exercise.check()').text.startswith('NOT ATTEMPTED')
+
+
+def test_check_works_in_a_plain_script(script: Callable[..., Any]) -> None:
+    done = script(
+        f'{SETUP}\n{COUNTER}\nprint(exercise.check())\nlab.spin(Counter("ones"))\n'
+        'print(exercise.check())'
+    )
+    assert done.exit_code == 0, done.stderr
+    assert done.stdout.startswith('NOT ATTEMPTED: ones')
+    assert 'PASS: ones' in done.stdout

@@ -1,0 +1,81 @@
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+
+import pytest
+
+from labkit.exercises import progress as module
+from labkit.exercises.exercise import Exercise, Solution
+from labkit.exercises.lesson import Lesson
+from labkit.exercises.noting import progress_store
+from labkit.exercises.progress import main, progress
+from labkit.exercises.questions import Choice, right, wrong
+from labkit.exercises.quiz import Quiz
+
+
+def exercise(name: str) -> Exercise:
+    return Exercise(
+        name=name,
+        task='A task.',
+        topics=['/odds'],
+        judge=lambda probe: None,
+        hints=['First.', 'Second.'],
+        answer=Solution('pass', 'So.'),
+    )
+
+
+@pytest.fixture(autouse=True)
+def lesson(monkeypatch: pytest.MonkeyPatch) -> Lesson:
+    quiz = Quiz('types', Choice('Odd?', right('3', 'It is.'), wrong('4', 'It is not.')))
+    found = Lesson(
+        'odds', '04_odds.ipynb', exercises=[exercise('one'), exercise('two')], quizzes=[quiz]
+    )
+    monkeypatch.setattr(module, 'all_lessons', lambda: [found])
+    return found
+
+
+def test_picture_and_text_say_what_is_done_and_tried(lesson: Lesson) -> None:
+    progress_store.note_check('odds', 'one', 'PASS')
+    progress_store.note_check('odds', 'two', 'FAIL')
+    shown = progress()
+    assert '04_odds  1 of 2 exercises, 0 of 1 question' in repr(shown)
+    assert '    done   one' in repr(shown) and '    tried  two' in repr(shown)
+    html = shown._repr_html_()
+    assert 'role="img" aria-label="Progress: 1 of 2 exercises' in html
+    assert 'exercise one: done' in html and 'question types.1: open' in html
+
+
+def test_csv_has_a_line_for_everything(lesson: Lesson, capsys: pytest.CaptureFixture[str]) -> None:
+    lesson.one.hint()
+    lesson.one.hint()
+    lesson.one.solution()
+    lesson.quiz().answer(1, 'a')
+    progress_store.note_check('odds', 'two', 'PASS')
+    assert main(['--csv']) == 0
+    rows = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
+    assert [row['name'] for row in rows] == ['one', 'two', 'types.1']
+    assert rows[0]['hints'] == '2' and rows[0]['solution_shown'] == 'yes'
+    assert rows[1]['state'] == 'done' and rows[1]['passed_at']
+    assert rows[2]['kind'] == 'question' and rows[2]['tries'] == '1'
+
+
+def test_command_shows_text(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 0
+    assert capsys.readouterr().out.startswith('Progress: 0 of 2 exercises, 0 of 1 question done')
+
+
+def test_damaged_file_is_said_from_then_on(home: Path) -> None:
+    home.mkdir()
+    (home / 'progress.json').write_text('{')
+    assert 'was damaged' in repr(progress())
+    assert 'progress-damaged-1.json' in repr(progress())
+    assert 'progress-damaged-1.json' in progress()._repr_html_()
+
+
+def test_hints_come_in_steps_and_then_end(lesson: Lesson) -> None:
+    assert 'HINT 1 of 2' in repr(lesson.one.hint())
+    assert 'Second.' in repr(lesson.one.hint())
+    assert 'lesson.one.solution()' in repr(lesson.one.hint())
+    assert 'First.' in repr(lesson.one.hint(1))
