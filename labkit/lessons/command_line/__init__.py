@@ -1,0 +1,21 @@
+"""The exercises and quizzes of `03_command_line.ipynb`."""
+
+from __future__ import annotations
+
+from labkit.exercises import Lesson
+from labkit.lessons.command_line.drive import drive
+from labkit.lessons.command_line.harbour import NODES, TOPICS
+from labkit.lessons.command_line.look_around import HARBOUR
+from labkit.lessons.command_line.odds import odds
+from labkit.lessons.command_line.quiz import QUIZ
+
+__all__ = ['LESSON']
+
+LESSON = Lesson(
+    'command_line',
+    '03_command_line.ipynb',
+    exercises=[odds, drive],
+    quizzes=[HARBOUR, QUIZ],
+    topics=['/chatter', '/limit', '/turtle/cmd_vel', *TOPICS],
+    given=['/talker', '/listener', *NODES],
+)

@@ -1,0 +1,241 @@
+"""The quiz on the harbour: every answer is read off the live graph when it is judged."""
+
+from __future__ import annotations
+
+from statistics import median
+from typing import TYPE_CHECKING
+
+from labkit.errors import LabError
+from labkit.exercises import Number, Probe, Quiz, Word
+from labkit.lessons.command_line.harbour import BOATS, MEASURES, NODES
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+__all__ = ['HARBOUR']
+
+LIGHTHOUSE = '/lighthouse'
+MEASURE_SEC = 4.0
+
+
+def _graph() -> Node:
+    """Return the node to ask with.
+
+    Raises:
+        LabError: The harbour is closed.
+    """
+    from labkit.graph import node_names
+    from labkit.runtime import runtime
+
+    runtime.start()
+    assert runtime.helper is not None
+    if LIGHTHOUSE not in node_names(runtime.helper):
+        raise LabError('The harbour is closed.', todo='Run the cell with open_harbour() first.')
+    return runtime.helper
+
+
+def _publishers(topic: str) -> list[str]:
+    return [f'/{info.node_name}' for info in _graph().get_publishers_info_by_topic(topic)]
+
+
+def _topics() -> dict[str, list[str]]:
+    return dict(_graph().get_topic_names_and_types())
+
+
+# -- which node ---------------------------------------------------------------------------------
+
+
+def _node_of_tide() -> list[str]:
+    return [form for name in _publishers('/tide') for form in (name, name.lstrip('/'))]
+
+
+def _no_node_of_tide(word: str) -> str:
+    name = f'/{word.lstrip("/")}'
+    if name in NODES:
+        return f'{name} does not publish on /tide. ros2 node info {name} shows what it does.'
+    if name in _topics():
+        return f'{name} is a topic. The name of a node is asked for.'
+    if name.lower() in NODES:
+        return 'Capital and small letters differ in names.'
+    return ''
+
+
+# -- which type, which field --------------------------------------------------------------------
+
+
+def _type_of_water() -> list[str]:
+    return _topics()['/water']
+
+
+def _no_type_of_water(word: str) -> str:
+    (name,) = _type_of_water()
+    return _explain_type(word, name, 'msg')
+
+
+def _explain_type(word: str, name: str, kind: str) -> str:
+    """Say what is wrong about the name of a type, given the right one."""
+    if word in (name.rsplit('/', 1)[-1], name.replace(f'/{kind}/', '/')):
+        return f'Its name has three parts: the package, the word {kind}, and {word!r}.'
+    if word.replace('.', '/') == name:
+        return 'With dots it is a name in Python. The command line writes it with slashes.'
+    if word.lower() == name.lower():
+        return 'Capital and small letters differ in names.'
+    for topic, types in sorted(_topics().items()):
+        if word in types and '/_' not in topic:
+            return f'That is the type of the messages on {topic}.'
+    return ''
+
+
+def _field_of_water() -> str:
+    return MEASURES[_type_of_water()[0]]
+
+
+def _no_field_of_water(word: str) -> str:
+    field = _field_of_water()
+    if word in (*_type_of_water(), _type_of_water()[0].rsplit('/', 1)[-1]):
+        return 'That is the type. A field is a part of a message: interface show lists them.'
+    if word.lower() == field:
+        return 'Names of fields are written with small letters.'
+    if word in MEASURES.values():
+        return 'That is a field of another type. Which type has /water this time?'
+    return ''
+
+
+# -- how often, how many, how much --------------------------------------------------------------
+
+
+def _rate_of_beacon() -> float:
+    """Measure the rate of /beacon, in Hz."""
+    _graph()
+    # A node that nobody spins: the messages are for this function alone.
+    with Probe('look_around') as probe:
+        watch = probe.watch('/beacon', 'std_msgs/msg/Bool')
+        probe.wait(lambda: len(watch) >= 5, MEASURE_SEC)
+        if len(watch) < 2:
+            raise LabError('/beacon is silent.', todo='Open the harbour again: open_harbour()')
+        return 1 / median(watch.intervals)
+
+
+def _no_rate_of_beacon(number: float) -> str:
+    if abs(number * _rate_of_beacon() - 1.0) < 0.1:
+        return 'That is the time from one message to the next, in seconds. Divide 1 by it.'
+    return ''
+
+
+def _listeners() -> int:
+    return _graph().count_subscribers('/radio')
+
+
+def _no_listeners(number: float) -> str:
+    if number == _graph().count_publishers('/radio'):
+        return 'That is the number of publishers. Subscriptions are counted in another line.'
+    if number == len(BOATS):
+        return f'{len(BOATS)} boats are here, but not all of them listen.'
+    return ''
+
+
+def _parameter(name: str) -> int:
+    from rcl_interfaces.srv import GetParameters
+
+    from labkit.ros2.calls import call_node
+
+    request = GetParameters.Request(names=[name])
+    response = call_node(_graph(), GetParameters, LIGHTHOUSE, 'get_parameters', request)
+    return int(response.values[0].integer_value)
+
+
+def _no_range(number: float) -> str:
+    return 'That is height_m.' if number == _parameter('height_m') else ''
+
+
+# -- quality of service, services ---------------------------------------------------------------
+
+
+def _reliability() -> list[str]:
+    (info,) = _graph().get_publishers_info_by_topic('/camera')
+    name = info.qos_profile.reliability.name
+    return [name, name.lower(), name.replace('_', ' '), name.replace('_', ' ').lower()]
+
+
+def _service_type() -> list[str]:
+    return dict(_graph().get_service_names_and_types())['/foghorn']
+
+
+def _no_service_type(word: str) -> str:
+    (name,) = _service_type()
+    return _explain_type(word, name, 'srv')
+
+
+HARBOUR = Quiz(
+    'harbour',
+    Word(
+        'Which node publishes on /tide?',
+        _node_of_tide,
+        'topic info --verbose names the node behind each publisher.',
+        'Use ros2 topic info --verbose /tide, and look for "Node name".',
+        explain=_no_node_of_tide,
+    ),
+    Word(
+        'Which type do the messages on /water have?',
+        _type_of_water,
+        'topic type, topic info and topic list -t all say so.',
+        'Use ros2 topic type /water, and copy what it says.',
+        explain=_no_type_of_water,
+    ),
+    Word(
+        'Which field of the messages on /water holds the measured number 12.5?',
+        _field_of_water,
+        'topic echo shows the fields with their values; interface show lists them.',
+        'Use ros2 topic echo --once /water, and look for 12.5.',
+        wrong={
+            'data': 'The types of std_msgs have a field data. This one has a field with a name '
+            'that says what is measured.',
+            'header': 'The header says when and where something was measured, not what.',
+            'stamp': 'The stamp says when something was measured, not what.',
+            'variance': 'The variance says how sure the measurement is.',
+            '12.5': 'That is the value. What is the field called?',
+        },
+        explain=_no_field_of_water,
+    ),
+    Number(
+        'How many messages a second come on /beacon?',
+        _rate_of_beacon,
+        'topic hz counts the messages that come, and divides by the time.',
+        'Use ros2 topic hz --count 2 /beacon: the average rate, rounded.',
+        explain=_no_rate_of_beacon,
+        tolerance=0.45,
+        unit='Hz',
+    ),
+    Number(
+        'How many subscriptions does /radio have?',
+        _listeners,
+        'topic info counts publishers and subscriptions. Each subscription here is one boat.',
+        'Use ros2 topic info /radio.',
+        explain=_no_listeners,
+    ),
+    Number(
+        'Which value has the parameter range_km of /lighthouse?',
+        lambda: _parameter('range_km'),
+        'param get asks the node itself: each node holds its own parameters.',
+        'Use ros2 param get /lighthouse range_km.',
+        explain=_no_range,
+    ),
+    Word(
+        'Which reliability does the publisher of /camera offer?',
+        _reliability,
+        'topic info --verbose shows the QoS profile of each publisher and subscription.',
+        'It is the other one. Use ros2 topic info --verbose /camera.',
+        wrong={
+            'VOLATILE': 'That is the durability. The reliability stands two lines above it.',
+            'UNKNOWN': 'That is the history, which is not sent. Reliability stands above it.',
+            'AUTOMATIC': 'That is the liveliness. Reliability is the first line of the profile.',
+        },
+    ),
+    Word(
+        'Which type does the service /foghorn have?',
+        _service_type,
+        'service type and service list -t say so. A service has a type, as a topic has.',
+        'Use ros2 service type /foghorn, and copy what it says.',
+        explain=_no_service_type,
+    ),
+)

@@ -1,0 +1,75 @@
+"""The quiz on the command line itself."""
+
+from __future__ import annotations
+
+from labkit.exercises import Choice, Quiz, Several, Word, right, wrong
+
+__all__ = ['QUIZ']
+
+QUIZ = Quiz(
+    'commands',
+    Choice(
+        'Older lessons ask for three or four terminals. Why?',
+        right(
+            'A command that goes on keeps its terminal until it ends.',
+            'echo, hz, pub without --once and every node go on. Here they run in the background.',
+        ),
+        wrong(
+            'ROS 2 allows one node in each terminal.',
+            'A terminal can start many programs: & at the end sends one to the background.',
+        ),
+        wrong(
+            'Nodes find each other only in different terminals.',
+            'Discovery does not know terminals. What counts is the domain.',
+        ),
+    ),
+    Choice(
+        'Which line sets the forward speed of a Twist?',
+        right(
+            '"{linear: {x: 0.2}}"',
+            'linear is a message itself, so its fields stand in braces of their own.',
+        ),
+        wrong('"{linear.x: 0.2}"', 'The dot is for Python. In YAML inner fields get braces.'),
+        wrong('{linear: {x: 0.2}}', 'Without quotation marks the spaces cut it into words.'),
+        wrong('"{linear:{x:0.2}}"', 'After each colon YAML needs a space.'),
+    ),
+    Choice(
+        'A lesson for ROS 1 begins with: "Start roscore in the first terminal." What do you do?',
+        right('Nothing: ROS 2 has no master.', 'The nodes find each other by discovery.'),
+        wrong('ros2 run roscore', 'There is no such package. ROS 2 has no master to start.'),
+        wrong('ros2 core', 'There is no such command. ROS 2 has no master to start.'),
+    ),
+    Word(
+        'rosmsg show std_msgs/String showed the fields of a message. Which two words after ros2 '
+        'do it now?',
+        ['interface show', 'ros2 interface show', '%ros2 interface show'],
+        'Messages, services and actions are interfaces, so one command shows all three.',
+        'Look into the table: it is not called msg any more.',
+        wrong={
+            'msg show': 'ros2 msg was the name in the first versions. It is interface now.',
+            'topic type': 'topic type names the type of a topic, and does not show its fields.',
+            'topic info': 'topic info names the type of a topic, and does not show its fields.',
+            'interface list': 'That lists the names of all types.',
+        },
+    ),
+    Several(
+        'What is true of a node whose name begins with an underscore?',
+        right('node list leaves it out.', 'Such names are hidden. Tools use them for themselves.'),
+        right('node list -a shows it.', 'The option -a stands for all.'),
+        wrong('It can not publish.', 'It is a node like any other. Only the lists leave it out.'),
+        wrong('It runs in another domain.', 'It is in the same domain, and everybody hears it.'),
+    ),
+    Choice(
+        'A robot is running, but ros2 node list in your terminal shows nothing. What do you look '
+        'at first?',
+        right(
+            'ROS_DOMAIN_ID in the terminal and on the robot',
+            'Nodes of different domains do not see each other, and there is no error.',
+        ),
+        wrong('Whether roscore runs', 'ROS 2 has no roscore.'),
+        wrong(
+            'Whether the topics have the right type',
+            'A wrong type makes a topic silent. The nodes are listed all the same.',
+        ),
+    ),
+)

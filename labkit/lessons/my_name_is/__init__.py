@@ -1,0 +1,21 @@
+"""The exercises and the quiz of `05_my_name_is.ipynb`."""
+
+from __future__ import annotations
+
+from labkit.exercises import Lesson
+from labkit.lessons.my_name_is.own_process import own_process
+from labkit.lessons.my_name_is.quiz import QUIZ
+from labkit.lessons.my_name_is.third_stage import third_stage
+from labkit.lessons.my_name_is.two_names import two_names
+from labkit.lessons.my_name_is.two_stages import two_stages
+
+__all__ = ['LESSON']
+
+LESSON = Lesson(
+    'my_name_is',
+    '05_my_name_is.ipynb',
+    exercises=[two_stages, own_process, third_stage, two_names],
+    quizzes=[QUIZ],
+    topics=['/celsius', '/fahrenheit'],
+    given=['/observer'],
+)

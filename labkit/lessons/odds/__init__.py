@@ -1,0 +1,23 @@
+"""The exercises and the quiz of `04_odds.ipynb`."""
+
+from __future__ import annotations
+
+from labkit.exercises import Lesson
+from labkit.lessons.odds.count_up import count_up
+from labkit.lessons.odds.evens import evens
+from labkit.lessons.odds.find_gate import find_gate
+from labkit.lessons.odds.ones import ones
+from labkit.lessons.odds.quiz import QUIZ
+from labkit.lessons.odds.stadium import GOALS, NODES, VISITORS
+from labkit.lessons.odds.stay_within import stay_within
+
+__all__ = ['LESSON']
+
+LESSON = Lesson(
+    'odds',
+    '04_odds.ipynb',
+    exercises=[ones, count_up, stay_within, evens, find_gate],
+    quizzes=[QUIZ],
+    topics=['/high', '/burst', GOALS, VISITORS],
+    given=['/announcer', *NODES],
+)

@@ -1,0 +1,201 @@
+"""Exercise: the odd numbers, one after the other."""
+
+from __future__ import annotations
+
+from labkit.exercises import Exercise, Probe, Solution, Style, Watch, Wrong, changed, expect
+
+__all__ = ['count_up']
+
+INT16 = 'std_msgs/msg/Int16'
+# Fewer messages than odd numbers fit into an Int16: until then nothing has started over.
+BEFORE_THE_LIMIT = 16000
+
+_ODDS = """
+from rclpy.node import Node
+from std_msgs.msg import Int16
+
+
+class Odds(Node):
+    def __init__(self):
+        super().__init__('odd_source')
+        self.publisher = self.create_publisher(Int16, 'odds', 10)
+        self.timer = self.create_timer(0.2, self.on_timer)
+        self.number = 1
+
+    def on_timer(self):
+        msg = Int16()
+        msg.data = self.number
+        self.publisher.publish(msg)
+        self.number += 2
+
+
+odds = lab.spin(Odds())
+"""
+_START = 'odds = lab.spin(Odds())'
+_MAIN = 'import rclpy\n\nrclpy.init()\nrclpy.spin(Odds())'
+
+
+def _judge_count_up(probe: Probe) -> str:
+    source = expect.publisher(probe, '/odds', INT16)
+    watch = expect.messages(probe, source, count=4, hz=5.0)
+    expect.each(
+        watch,
+        'data',
+        lambda value: value % 2 == 1,
+        expected='odd numbers on /odds: 1, 3, 5, ...',
+        why=_why_even(watch),
+        todo='Start with 1, and add 2 each time.',
+    )
+    expect.steps(
+        watch,
+        'data',
+        2,
+        todo='Keep the number in the node (self.number = 1 in __init__), and add 2 in the '
+        'callback.',
+    )
+    if watch.samples[0].number < BEFORE_THE_LIMIT:
+        expect.first(
+            watch,
+            'data',
+            1,
+            2,
+            why='The count does not start with 1. Is the number changed before it is published '
+            'for the first time?',
+        )
+    return f'{source.node} publishes {expect.show(watch.values("data"))} on /odds.'
+
+
+def _why_even(watch: Watch) -> str:
+    values = watch.values('data')
+    if len(set(values[1:])) == 1:
+        return f'Every message says {values[1]}: the number is not changed after each message.'
+    if any(value % 2 for value in values):
+        return 'Odd and even numbers come in turn: 1 is added, and not 2.'
+    return 'These are even numbers. 2 more than an even number is even again.'
+
+
+count_up = Exercise(
+    name='count_up',
+    task='Publish the odd numbers 1, 3, 5, ... on /odds as `Int16`, five a second.',
+    topics=['/odds'],
+    judge=_judge_count_up,
+    hints=[
+        'The callback runs again and again. What must outlive one run, so that the next one can '
+        'go on from there?',
+        'A variable of the callback is gone when the callback returns. An attribute of the node '
+        'stays: self.number = 1 in __init__.',
+        'In the callback: msg.data = self.number, publish it, then self.number += 2. The period '
+        'is 0.2 s.',
+    ],
+    answer=Solution(
+        _ODDS,
+        'The number lives in the node, so it is still there when the callback runs again. It is '
+        'published first and changed afterwards, so the first message says 1.',
+    ),
+    styles=[
+        Style(
+            'functions',
+            """
+import itertools
+
+import rclpy
+from std_msgs.msg import Int16
+
+node = rclpy.create_node('counter')
+publisher = node.create_publisher(Int16, '/odds', 10)
+numbers = itertools.cycle(range(1, 32767, 2))
+node.create_timer(0.2, lambda: publisher.publish(Int16(data=next(numbers))))
+lab.spin(node)
+""",
+        ),
+        Style(
+            'a loop with a rate, in a thread',
+            """
+import threading
+import time
+
+import rclpy
+from std_msgs.msg import Int16
+
+node = rclpy.create_node('loop')
+publisher = node.create_publisher(Int16, 'odds', 1)
+
+
+def work():
+    for number in range(1, 2001, 2):
+        if not rclpy.ok():
+            break
+        publisher.publish(Int16(data=number))
+        time.sleep(1 / 5)
+
+
+threading.Thread(target=work, daemon=True).start()
+""",
+        ),
+        Style('own process', changed(_ODDS, (_START, _MAIN)), process=True),
+    ],
+    wrong=[
+        Wrong(
+            'starts at 0',
+            changed(_ODDS, ('self.number = 1', 'self.number = 0')),
+            'These are even numbers.',
+        ),
+        Wrong(
+            'adds 1',
+            changed(_ODDS, ('self.number += 2', 'self.number += 1')),
+            '1 is added, and not 2',
+        ),
+        Wrong(
+            'adds before it publishes',
+            changed(
+                _ODDS,
+                ('        self.number += 2\n', ''),
+                ('        msg = Int16()', '        self.number += 2\n        msg = Int16()'),
+            ),
+            'The count does not start with 1.',
+        ),
+        Wrong(
+            'starts over',
+            changed(
+                _ODDS,
+                ('        self.number = 1\n', ''),
+                ('        msg = Int16()', '        self.number = 1\n        msg = Int16()'),
+            ),
+            'Every message says the same',
+        ),
+        Wrong(
+            '=+ for +=',
+            changed(_ODDS, ('self.number += 2', 'self.number =+ 2')),
+            'Every message says 2',
+        ),
+        Wrong(
+            'in the namespace of the node',
+            changed(_ODDS, ("'odds', 10", "'~/odds', 10")),
+            'it lies in another namespace',
+        ),
+        Wrong(
+            'wrong type',
+            changed(_ODDS, ('Int16', 'Int32')),
+            'A topic carries one type of message.',
+        ),
+        Wrong(
+            'forgot to publish',
+            changed(_ODDS, ('        self.publisher.publish(msg)\n', '')),
+            'publish() is not called there',
+        ),
+        Wrong(
+            'off by ten',
+            changed(_ODDS, ('create_timer(0.2,', 'create_timer(0.02,')),
+            'times too fast',
+        ),
+        Wrong(
+            'two copies running',
+            changed(
+                _ODDS,
+                (_START, 'import rclpy\n\nrclpy.init()\ncopy = Odds()\nrclpy.spin(Odds())'),
+            ),
+            'Two copies of the node run at once',
+            process=True,
+        ),
+    ],
+)

@@ -1,0 +1,215 @@
+"""Exercise: hear the odd numbers, and publish even ones."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from labkit.exercises import Exercise, Outcome, Probe, Solution, Style, Wrong, changed, expect
+from labkit.lessons._stage import find_stage
+
+__all__ = ['evens']
+
+INT16 = 'std_msgs/msg/Int16'
+# Nobody who counts upwards from 1 sends these.
+TESTS = (-41, -4001, -7)
+
+_EVENS = """
+from rclpy.node import Node
+from std_msgs.msg import Int16
+
+
+class Evens(Node):
+    def __init__(self):
+        super().__init__('evens')
+        self.publisher = self.create_publisher(Int16, 'evens', 10)
+        self.subscription = self.create_subscription(Int16, 'odds', self.on_odd, 10)
+
+    def on_odd(self, msg):
+        even = Int16()
+        even.data = msg.data + 1
+        self.publisher.publish(even)
+
+
+evens = lab.spin(Evens())
+"""
+_START = 'evens = lab.spin(Evens())'
+
+
+def _judge_evens(probe: Probe) -> str:
+    hears, says = find_stage(probe, '/odds', '/evens', INT16, {'data': TESTS[0]})
+    found = expect.replies(
+        probe,
+        hears,
+        [{'data': number} for number in TESTS],
+        says,
+        lambda sent: sent['data'] + 1,
+        explain=_explain,
+    )
+    pairs = ', '.join(f'{reply.sent["data"]} -> {reply.sent["data"] + 1}' for reply in found)
+    return f'{hears.node} makes even numbers of odd ones: {pairs}.'
+
+
+def _explain(sent: Mapping[str, Any], came: list[Any]) -> tuple[str, str]:
+    number = sent['data']
+    if number in came:
+        return (
+            'The number is passed on as it came.',
+            'Add 1 before you publish: even.data = msg.data + 1',
+        )
+    if number - 1 in came:
+        return '1 is subtracted, and not added.', 'even.data = msg.data + 1'
+    if 2 * number in came:
+        return 'The number is doubled. 1 becomes 2, but 3 becomes 6.', 'even.data = msg.data + 1'
+    if came:
+        return (
+            'What is published does not depend on the number that came. Does the node count by '
+            'itself?',
+            'Use the number in the message: msg.data',
+        )
+    return '', ''
+
+
+evens = Exercise(
+    name='evens',
+    task='Subscribe to /odds, add 1 to each number and publish the result on /evens (`Int16`).',
+    topics=['/odds', '/evens'],
+    judge=_judge_evens,
+    hints=[
+        'One node may have a publisher and a subscription. Make both in __init__.',
+        'The callback of the subscription gets the odd number, in msg.data. There the even one is '
+        'made and published.',
+        'even = Int16(), then even.data = msg.data + 1, then self.publisher.publish(even). No '
+        'timer is needed.',
+    ],
+    answer=Solution(
+        _EVENS,
+        'The subscription gives the beat: for each message that comes, one goes out. The node '
+        'does not know who publishes on /odds, nor who listens to /evens.',
+    ),
+    styles=[
+        Style(
+            'functions',
+            """
+import rclpy
+from std_msgs.msg import Int16
+
+node = rclpy.create_node('successor')
+publisher = node.create_publisher(Int16, '/evens', 10)
+node.create_subscription(
+    Int16, '/odds', lambda odd: publisher.publish(Int16(data=odd.data + 1)), 10
+)
+lab.spin(node)
+""",
+        ),
+        Style(
+            'a list and a timer',
+            """
+from rclpy.node import Node
+from std_msgs.msg import Int16
+
+
+class Postman(Node):
+    def __init__(self):
+        super().__init__('postman')
+        self.waiting = []
+        self.create_subscription(Int16, 'odds', self.waiting.append, 10)
+        self.publisher = self.create_publisher(Int16, 'evens', 10)
+        self.create_timer(0.05, self.deliver)
+
+    def deliver(self):
+        while self.waiting:
+            self.publisher.publish(Int16(data=self.waiting.pop(0).data + 1))
+
+
+postman = lab.spin(Postman())
+""",
+        ),
+        Style(
+            'own process',
+            changed(_EVENS, (_START, 'import rclpy\n\nrclpy.init()\nrclpy.spin(Evens())')),
+            process=True,
+        ),
+    ],
+    wrong=[
+        Wrong(
+            'publishes the odd number',
+            changed(_EVENS, ('msg.data + 1', 'msg.data')),
+            'The number is passed on as it came.',
+        ),
+        Wrong(
+            'counts by itself',
+            changed(
+                _EVENS,
+                ("super().__init__('evens')\n", "super().__init__('evens')\n        self.n = 0\n"),
+                ('even.data = msg.data + 1', 'self.n += 2; even.data = self.n'),
+            ),
+            'does not depend on the number that came',
+        ),
+        Wrong(
+            'doubles',
+            changed(_EVENS, ('msg.data + 1', 'msg.data * 2')),
+            'The number is doubled.',
+        ),
+        Wrong(
+            'publishes where it listens',
+            changed(_EVENS, ("Int16, 'evens', 10", "Int16, 'odds', 10")),
+            'The node hears what it says itself',
+        ),
+        Wrong(
+            'other topic',
+            changed(_EVENS, ("Int16, 'evens', 10", "Int16, 'even', 10")),
+            'names must be equal to the last letter',
+        ),
+        Wrong(
+            'forgot to publish',
+            changed(_EVENS, ('        self.publisher.publish(even)\n', '')),
+            'its callback did not publish',
+        ),
+        Wrong(
+            'no publisher',
+            changed(
+                _EVENS,
+                ("        self.publisher = self.create_publisher(Int16, 'evens', 10)\n", ''),
+                ('        self.publisher.publish(even)\n', ''),
+            ),
+            'create_publisher() for this topic has not been called',
+        ),
+        Wrong(
+            'publisher made in the callback',
+            changed(
+                _EVENS,
+                ("        self.publisher = self.create_publisher(Int16, 'evens', 10)\n", ''),
+                ('self.publisher.pub', "self.create_publisher(Int16, 'evens', 10).pub"),
+            ),
+            'makes a publisher again and again',
+        ),
+        Wrong(
+            'adds to the message',
+            changed(_EVENS, ('msg.data + 1', 'msg + 1')),
+            'A message object (Int16) is not the value in it.',
+            outcome=Outcome.ERROR,
+        ),
+        Wrong(
+            'adds a float',
+            changed(_EVENS, ('msg.data + 1', 'msg.data + 1.0')),
+            'takes values of type int',
+            outcome=Outcome.ERROR,
+        ),
+        Wrong(
+            'callback called',
+            changed(_EVENS, ('self.on_odd, 10', 'self.on_odd(), 10')),
+            'A callback is passed, not called',
+            outcome=Outcome.ERROR,
+        ),
+        Wrong(
+            'blocks in the callback',
+            changed(
+                _EVENS,
+                ('    def on_odd(self, msg):\n', '    def on_odd(self, msg):\n        sleep(3)\n'),
+                ('from rclpy', 'from time import sleep\n\nfrom rclpy'),
+            ),
+            'While a callback runs, no other one can',
+        ),
+    ],
+)

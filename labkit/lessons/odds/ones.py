@@ -1,0 +1,182 @@
+"""Exercise: the number 1, without end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from labkit.exercises import Exercise, Outcome, Probe, Solution, Style, Wrong, changed, expect
+
+__all__ = ['ones']
+
+INT16 = 'std_msgs/msg/Int16'
+
+_ONES = """
+from rclpy.node import Node
+from std_msgs.msg import Int16
+
+
+class Ones(Node):
+    def __init__(self):
+        super().__init__('ones')
+        self.publisher = self.create_publisher(Int16, 'ones', 10)
+        self.timer = self.create_timer(0.1, self.on_timer)
+
+    def on_timer(self):
+        msg = Int16()
+        msg.data = 1
+        self.publisher.publish(msg)
+
+
+ones = lab.spin(Ones())
+"""
+_START = 'ones = lab.spin(Ones())'
+
+
+def _judge_ones(probe: Probe) -> str:
+    source = expect.publisher(probe, '/ones', INT16)
+    watch = expect.messages(probe, source, count=4, hz=10.0)
+    values = watch.values('data')
+    why, todo = _explain(values)
+    expect.that(
+        set(values) == {1},
+        expected='data = 1 in every message on /ones',
+        seen=f'data = {expect.show(values)}',
+        why=why,
+        todo=todo,
+    )
+    return f'{source.node} publishes 1 at {expect.describe_rate(watch)}.'
+
+
+def _explain(values: Sequence[int]) -> tuple[str, str]:
+    if not any(values):
+        return (
+            'The message was published as it was made: its field data is 0 at first.',
+            'Set the field before you publish: msg.data = 1',
+        )
+    if len(set(values)) > 1:
+        return (
+            'The number changes from message to message. Here it is the same each time.',
+            'Write msg.data = 1 in the callback.',
+        )
+    return 'Another number is put into the message.', 'Write msg.data = 1'
+
+
+ones = Exercise(
+    name='ones',
+    task='Publish the `Int16` 1 on /ones ten times a second, without end.',
+    topics=['/ones'],
+    judge=_judge_ones,
+    hints=[
+        'The talker of the lesson "Talker and listener" does nearly the same. Its type is String, '
+        'and its text changes.',
+        'Four things are needed: a name for the node, create_publisher(Int16, ...), a timer with '
+        'a period of 0.1 s, and a callback that publishes.',
+        'In the callback: msg = Int16(), then msg.data = 1, then self.publisher.publish(msg).',
+    ],
+    answer=Solution(
+        _ONES,
+        'A rate of 10 Hz is a period of 0.1 s. The number goes into the field data: publish() '
+        'takes a message, never a bare number.',
+    ),
+    styles=[
+        Style(
+            'functions',
+            """
+import rclpy
+from std_msgs.msg import Int16
+
+node = rclpy.create_node('unity')
+publisher = node.create_publisher(Int16, '/ones', 1)
+message = Int16(data=1)
+node.create_timer(1 / 10, lambda: publisher.publish(message))
+lab.spin(node)
+""",
+        ),
+        Style(
+            'a loop with a rate, in a thread',
+            """
+import threading
+
+import rclpy
+from std_msgs.msg import Int16
+
+node = lab.spin(rclpy.create_node('loop'))
+publisher = node.create_publisher(Int16, 'ones', 10)
+
+
+def work():
+    rate = node.create_rate(10)
+    for _ in range(600):
+        publisher.publish(Int16(data=1))
+        rate.sleep()
+
+
+threading.Thread(target=work, daemon=True).start()
+""",
+        ),
+        Style(
+            'own process',
+            changed(_ONES, (_START, 'import rclpy\n\nrclpy.init()\nrclpy.spin(Ones())')),
+            process=True,
+        ),
+    ],
+    wrong=[
+        Wrong(
+            'capital letter',
+            changed(_ONES, ("'ones', 10", "'Ones', 10")),
+            'Capital and small letters differ in names',
+        ),
+        Wrong(
+            'in the namespace of the node',
+            changed(_ONES, ("'ones', 10", "'~/ones', 10")),
+            'it lies in another namespace',
+        ),
+        Wrong(
+            'wrong type',
+            changed(_ONES, ('Int16', 'Int32')),
+            'A topic carries one type of message.',
+        ),
+        Wrong(
+            'publishes a bare number',
+            changed(_ONES, ('publish(msg)', 'publish(1)')),
+            'publish() takes a message of the type that the publisher was made for, Int16',
+            outcome=Outcome.ERROR,
+        ),
+        Wrong(
+            'a text for a number',
+            changed(_ONES, ('msg.data = 1', "msg.data = '1'")),
+            'takes values of type int',
+            outcome=Outcome.ERROR,
+        ),
+        Wrong(
+            'field never set',
+            changed(_ONES, ('        msg.data = 1\n', '')),
+            'its field data is 0 at first',
+        ),
+        Wrong(
+            'counts',
+            changed(
+                _ONES,
+                ("super().__init__('ones')\n", "super().__init__('ones')\n        self.n = 0\n"),
+                ('msg.data = 1', 'self.n += 1; msg.data = self.n'),
+            ),
+            'The number changes from message to message.',
+        ),
+        Wrong(
+            'self forgotten',
+            changed(_ONES, ('self.publisher = ', 'publisher = ')),
+            'Ones has nothing called publisher',
+            outcome=Outcome.ERROR,
+        ),
+        Wrong(
+            'rate for period',
+            changed(_ONES, ('create_timer(0.1,', 'create_timer(10,')),
+            'its period is 10 s',
+        ),
+        Wrong(
+            'ten times too fast',
+            changed(_ONES, ('create_timer(0.1,', 'create_timer(0.01,')),
+            'times too fast',
+        ),
+    ],
+)

@@ -1,0 +1,21 @@
+"""The exercises and the quiz of `02_talker_listener.ipynb`."""
+
+from __future__ import annotations
+
+from labkit.exercises import Lesson
+from labkit.lessons.talker_listener.one_message import say_once
+from labkit.lessons.talker_listener.period import four_a_second
+from labkit.lessons.talker_listener.publisher import every_two_seconds
+from labkit.lessons.talker_listener.quiz import QUIZ
+from labkit.lessons.talker_listener.subscriber import hear_chatter
+
+__all__ = ['LESSON']
+
+LESSON = Lesson(
+    'talker_listener',
+    '02_talker_listener.ipynb',
+    exercises=[four_a_second, every_two_seconds, hear_chatter, say_once],
+    quizzes=[QUIZ],
+    topics=['/mail', '/stamped', '/news'],
+    given=['/writer', '/reader', '/stamped_talker', '/editor'],
+)

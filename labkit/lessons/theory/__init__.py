@@ -1,0 +1,19 @@
+"""The exercises and the quiz of lesson 01."""
+
+from __future__ import annotations
+
+from labkit.exercises import Lesson
+from labkit.lessons.theory.ears import ears
+from labkit.lessons.theory.mouth import mouth
+from labkit.lessons.theory.quiz import QUIZ
+
+__all__ = ['LESSON']
+
+LESSON = Lesson(
+    'theory',
+    '01_theory.ipynb',
+    exercises=[ears, mouth],
+    quizzes=[QUIZ],
+    topics=['/sight', '/move'],
+    given=['/left_eye', '/right_eye', '/brain', '/left_leg', '/right_leg'],
+)

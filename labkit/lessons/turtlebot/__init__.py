@@ -1,0 +1,22 @@
+"""The exercises and the quiz of `07_turtlebot.ipynb`."""
+
+from __future__ import annotations
+
+from labkit.exercises import Lesson
+from labkit.lessons.turtlebot.bot import bot
+from labkit.lessons.turtlebot.goto import go_to
+from labkit.lessons.turtlebot.quiz import QUIZ
+from labkit.lessons.turtlebot.square import square
+from labkit.lessons.turtlebot.stop import stop
+from labkit.lessons.turtlebot.wall import wall
+
+__all__ = ['LESSON']
+
+LESSON = Lesson(
+    'turtlebot',
+    '07_turtlebot.ipynb',
+    exercises=[stop, bot, wall, go_to, square],
+    quizzes=[QUIZ],
+    topics=['/scan', '/joint_states', '/clock'],
+    given=['/turtlebot', '/teleop', '/bot', '/speedometer'],
+)

@@ -1,0 +1,12 @@
+"""What the tests of the lessons share: the harness beside this file."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+# With pytest's importlib mode a test can't import the file beside it by itself.
+sys.path[:0] = [str(HERE), str(HERE / 'demo')]
+# Neither a test nor, for nbval, a lesson.
+collect_ignore = ['demo']

@@ -1,0 +1,213 @@
+"""Drive every exercise of a lesson through its own notebook, in a real kernel, in all states."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+import time
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import demo
+import nbformat
+from nbformat import NotebookNode
+from nbformat.v4 import new_code_cell
+
+from labkit.exercises import Exercise, Lesson, Outcome
+from labkit.exercises.lesson import lesson_names, load
+from labkit.lesson_run import LessonError, LessonRun
+
+HERE = Path(__file__).resolve().parent
+NOTEBOOKS = HERE.parent.parent / 'notebooks'
+# A check may ask to be pressed again when a process has just been started.
+PRESSES = 3
+
+
+def lessons() -> list[Lesson]:
+    """Return the lessons that can be loaded; one that cannot has a test of its own to say so."""
+    found = [demo.LESSON]
+    for name in lesson_names():
+        with contextlib.suppress(Exception):
+            found.append(load(name))
+    return found
+
+
+def notebook_of(lesson: Lesson) -> Path:
+    """Return the notebook of a lesson."""
+    return (HERE / 'demo' if lesson is demo.LESSON else NOTEBOOKS) / lesson.notebook
+
+
+@dataclass(frozen=True)
+class State:
+    """An answer to an exercise, and the verdict that it must get.
+
+    Attributes:
+        exercise: Name of the exercise.
+        name: What the answer is: `'untouched'`, `'solution'`, a wrong answer, a style.
+        code: What stands in the starter cell; as it is in the notebook if None.
+        outcome: The outcome that it must get.
+        says: What the verdict must contain.
+        process: Whether the code is a script for a process of its own.
+    """
+
+    exercise: str
+    name: str
+    code: str | None
+    outcome: Outcome
+    says: str = ''
+    process: bool = False
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What came of a state.
+
+    Attributes:
+        outcome: The outcome, None if the cell gave no verdict.
+        text: The verdict as text, on one line.
+        seconds: How long the check took.
+    """
+
+    outcome: Outcome | None
+    text: str
+    seconds: float
+
+
+def states_of(exercise: Exercise) -> list[State]:
+    """Return the states of an exercise, the shown solution last, so that it stays."""
+    name = exercise.name
+    states = [State(name, 'untouched', None, Outcome.NOT_ATTEMPTED)]
+    states += [
+        State(name, wrong.name, wrong.code, wrong.outcome, wrong.says, wrong.process)
+        for wrong in exercise.wrong
+    ]
+    states += [
+        State(name, style.name, style.code, Outcome.PASS, process=style.process)
+        for style in exercise.styles
+    ]
+    states.append(State(name, 'solution', exercise.answer.code, Outcome.PASS))
+    # The same nodes once more: a check can be pressed twice.
+    states.append(State(name, 'solution, pressed again', '', Outcome.PASS))
+    return states
+
+
+def prove(
+    lesson: Lesson, folder: Path, wanted: Collection[tuple[str, str]]
+) -> dict[tuple[str, str], Finding]:
+    """Work through a lesson; return what came of each exercise and state, see `Proof`."""
+    return Proof(lesson, folder).run(wanted)
+
+
+class Proof:
+    """One lesson in one kernel.
+
+    Args:
+        lesson: The lesson.
+        folder: An empty folder to work in.
+    """
+
+    def __init__(self, lesson: Lesson, folder: Path) -> None:
+        self.lesson = lesson
+        notebook = notebook_of(lesson)
+        self._path = folder / notebook.name
+        if lesson is demo.LESSON:
+            shutil.copy(HERE / 'demo' / 'demo.py', folder)
+        shutil.copy(HERE / 'kernel_tools.py', folder)
+        content = nbformat.read(notebook, as_version=4)
+        if any(state.process for exercise in lesson.exercises for state in states_of(exercise)):
+            content.metadata['labkit'] = {'processes': True}
+        nbformat.write(content, self._path)
+        self.findings: dict[tuple[str, str], Finding] = {}
+
+    def run(self, wanted: Collection[tuple[str, str]]) -> dict[tuple[str, str], Finding]:
+        """Work through the notebook; return what came of each exercise and state.
+
+        Args:
+            wanted: The exercises and states to go through; each exercise is solved anyway.
+
+        Raises:
+            LessonError: A cell of the lesson itself has failed.
+        """
+        with LessonRun(self._path) as run:
+            done = 0
+            by_starter = {exercise.starter_id: exercise for exercise in self.lesson.exercises}
+            while done < len(run.notebook.cells):
+                exercise = by_starter.get(run.notebook.cells[done].id)
+                if exercise is None:
+                    run.execute(done)
+                    done += 1
+                else:
+                    done = self._prove(run, done, exercise, wanted)
+        return self.findings
+
+    def _prove(
+        self,
+        run: LessonRun,
+        starter: int,
+        exercise: Exercise,
+        wanted: Collection[tuple[str, str]],
+    ) -> int:
+        """Put one exercise through its states; return the index of the cell after it."""
+        cells = run.notebook.cells
+        _insert(run, starter, 'import kernel_tools\nkernel_tools.mark()')
+        starter += 1
+        check = [cell.id for cell in cells].index(exercise.check_id)
+        for index in range(starter - 1, check):
+            run.execute(index)
+        reset = _insert(run, check + 1, '')
+        with _stopwatch() as seconds:
+            run.execute(check)
+        self._note(exercise, 'untouched', cells[check], seconds)
+        for state in states_of(exercise)[1:]:
+            if (exercise.name, state.name) not in wanted and state.name != 'solution':
+                continue
+            if state.code:
+                reset.source = _RESET.format(name=exercise.name)
+                run.execute(check + 1)
+                script = f'import kernel_tools\nkernel_tools.run_script({state.code!r})'
+                cells[starter].source = script if state.process else state.code
+                with contextlib.suppress(LessonError):  # wrong answers may raise
+                    run.execute(starter)
+            for _ in range(PRESSES):
+                with _stopwatch() as seconds:
+                    run.execute(check)
+                self._note(exercise, state.name, cells[check], seconds)
+                if 'un this cell again' not in self.findings[exercise.name, state.name].text:
+                    break
+        reset.source = ''
+        run.execute(check + 1)
+        return check + 2
+
+    def _note(
+        self, exercise: Exercise, state: str, cell: NotebookNode, seconds: list[float]
+    ) -> None:
+        text = '\n'.join(
+            output['data'].get('text/plain', '')
+            for output in cell.outputs
+            if output.output_type == 'execute_result'
+        )
+        outcome = next((o for o in Outcome if text.startswith(f'{o.value}: ')), None)
+        found = Finding(outcome, ' '.join(text.split()), seconds[0])
+        self.findings[exercise.name, state] = found
+
+
+_RESET = """
+import kernel_tools
+kernel_tools.clean()
+lesson.{name}.forget()
+"""
+
+
+def _insert(run: LessonRun, index: int, source: str) -> NotebookNode:
+    cell = new_code_cell(source)
+    run.notebook.cells.insert(index, cell)
+    return cell
+
+
+@contextlib.contextmanager
+def _stopwatch() -> Iterator[list[float]]:
+    seconds: list[float] = []
+    start = time.monotonic()
+    yield seconds
+    seconds.append(time.monotonic() - start)

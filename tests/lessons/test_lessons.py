@@ -1,0 +1,106 @@
+"""What every lesson's exercises and quizzes have, and what the notebook has for them."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import demo
+import nbformat
+import pytest
+from proof import lessons, notebook_of
+
+from labkit.exercises import Choice, Exercise, Lesson, Number, Several, Word
+from labkit.exercises.lesson import lesson_names, load
+from labkit.exercises.questions import Question
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+LESSONS = lessons()
+EXERCISES = [
+    pytest.param(lesson, exercise, id=f'{lesson.name}-{exercise.name}')
+    for lesson in LESSONS
+    for exercise in lesson.exercises
+]
+QUESTIONS = [
+    pytest.param(question, id=f'{lesson.name}-{quiz.name}-{number}')
+    for lesson in LESSONS
+    for quiz in lesson.quizzes
+    for number, question in enumerate(quiz.questions, start=1)
+]
+
+
+def cells_of(lesson: Lesson) -> dict[str, str]:
+    notebook = nbformat.read(notebook_of(lesson), as_version=4)
+    return {cell.id: cell.source for cell in notebook.cells}
+
+
+@pytest.mark.parametrize('name', lesson_names())
+def test_lesson_loads(name: str) -> None:
+    assert load(name).name == name
+
+
+@pytest.mark.parametrize('lesson', LESSONS, ids=lambda lesson: lesson.name)
+def test_lesson_is_named_as_its_notebook(lesson: Lesson) -> None:
+    assert lesson.notebook.removesuffix('.ipynb').lstrip('0123456789_') == lesson.name
+
+
+@pytest.mark.parametrize(('lesson', 'exercise'), EXERCISES)
+def test_notebook_has_the_cells_of_an_exercise(lesson: Lesson, exercise: Exercise) -> None:
+    cells = cells_of(lesson)
+    ids = list(cells)
+    assert '...' in cells[exercise.starter_id]
+    assert f'lesson.{exercise.name}.check()' in cells[exercise.check_id]
+    assert ids.index(exercise.starter_id) < ids.index(exercise.check_id)
+
+
+@pytest.mark.parametrize(('lesson', 'exercise'), EXERCISES)
+def test_exercise_is_complete(lesson: Lesson, exercise: Exercise) -> None:
+    assert exercise.name.isidentifier()
+    assert exercise.task and exercise.answer.reason
+    assert len(exercise.hints) >= 2
+    assert all(topic.startswith('/') for topic in exercise.topics)
+    assert all(node.startswith('/') for node in exercise.given)
+    names = [state.name for state in (*exercise.wrong, *exercise.styles)]
+    assert len(names) == len(set(names))
+    for wrong in exercise.wrong:
+        assert len(wrong.says) >= 8
+    for shown in (exercise.answer, *exercise.styles):
+        ast.parse(re.sub(r'^(\s*)[%!].*', r'\1pass', shown.code, flags=re.MULTILINE))
+    if lesson is not demo.LESSON:
+        assert len(exercise.wrong) >= 3
+        assert len(exercise.styles) >= 2
+
+
+@pytest.mark.parametrize('question', QUESTIONS)
+def test_every_answer_of_a_question_is_explained(question: Question) -> None:
+    assert question.text.strip()
+    if isinstance(question, (Choice, Several)):
+        assert all(option.why.strip() for option in question.options)
+        rights = [option for option in question.options if option.is_right]
+        assert len(rights) == 1 if isinstance(question, Choice) else rights
+        assert len(rights) < len(question.options)
+        assert len({option.text for option in question.options}) == len(question.options)
+    else:
+        assert isinstance(question, (Number, Word))
+        assert question.why.strip() and question.otherwise.strip()
+        assert all(why.strip() for why in question.wrong.values())
+
+
+def test_lessons_load_without_ros() -> None:
+    code = (
+        'import json, sys\n'
+        'from labkit.exercises.lesson import all_lessons\n'
+        'names = [lesson.name for lesson in all_lessons()]\n'
+        "loaded = {name.partition('.')[0] for name in sys.modules}\n"
+        "print(json.dumps([names, sorted(loaded & {'rclpy', 'std_msgs', 'ipywidgets'})]))"
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', code], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    names, loaded = json.loads(done.stdout)
+    assert sorted(names) == lesson_names()
+    assert loaded == []

@@ -1,0 +1,53 @@
+"""Every exercise, in every state, through its own notebook in a real kernel."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+
+import pytest
+from proof import Finding, State, lessons, prove, states_of
+
+from labkit.exercises import Lesson
+
+# A check ends within 5 s by its own clock; the rest is for a busy machine and the kernel's reply.
+MAX_CHECK_SEC = 10.0
+
+STATES = [
+    pytest.param(lesson, state, id=f'{lesson.name}-{state.exercise}-{state.name}')
+    for lesson in lessons()
+    for exercise in lesson.exercises
+    for state in states_of(exercise)
+]
+
+Findings = dict[tuple[str, str], Finding]
+
+
+@pytest.fixture(scope='session')
+def findings_of(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Callable[[Lesson], Findings]]:
+    """Give what came of a lesson. All that were asked for are begun at once, four at a time."""
+    wanted: dict[str, set[tuple[str, str]]] = {}
+    found: dict[str, Future[Findings]] = {}
+    for item in request.session.items:
+        params = item.callspec.params if hasattr(item, 'callspec') else {}
+        if isinstance(params.get('state'), State):
+            state = params['state']
+            wanted.setdefault(params['lesson'].name, set()).add((state.exercise, state.name))
+    # The kernels mostly wait for messages, so there may be more of them than cores.
+    with ThreadPoolExecutor(max_workers=4) as pool:
+        for lesson in sorted(lessons(), key=lambda lesson: -len(wanted.get(lesson.name, ()))):
+            if lesson.name in wanted:
+                folder = tmp_path_factory.mktemp(lesson.name)
+                found[lesson.name] = pool.submit(prove, lesson, folder, wanted[lesson.name])
+        yield lambda lesson: found[lesson.name].result()
+        pool.shutdown(cancel_futures=True)
+
+
+@pytest.mark.parametrize(('lesson', 'state'), STATES)
+def test_verdict(lesson: Lesson, state: State, findings_of: Callable[[Lesson], Findings]) -> None:
+    found = findings_of(lesson)[state.exercise, state.name]
+    assert found.outcome is state.outcome, found.text
+    assert ' '.join(state.says.split()) in found.text
+    assert found.seconds < MAX_CHECK_SEC
