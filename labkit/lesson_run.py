@@ -1,0 +1,302 @@
+"""Run a lesson without a person, for `labkit record` and for nbval.
+
+Both use the same `LessonRun`, so what is stored and what is compared come from kernels that are
+set up in one place, and have passed through the same `normalised`.
+"""
+
+# nbformat has no annotations.
+# mypy: disable-error-code="no-untyped-call"
+
+from __future__ import annotations
+
+import base64
+import contextlib
+import os
+import re
+import signal
+import struct
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any, cast
+
+import nbformat
+from jupyter_client.kernelspec import KernelSpecManager
+from jupyter_client.manager import AsyncKernelManager
+from nbclient import NotebookClient
+from nbformat import NotebookNode
+
+from labkit.errors import LabError
+
+__all__ = ['LessonError', 'LessonRun', 'normalised']
+
+# A cell of a lesson takes at most 5 s; the rest is for machines that are busy with other work.
+CELL_TIMEOUT_SEC = 60
+OUTPUT_TIMEOUT_SEC = 30
+STARTUP_TIMEOUT_SEC = 120
+# Variables of whoever starts the run that would show in the outputs, or let others be heard.
+_FOREIGN = (
+    *('CLICOLOR', 'FASTDDS_', 'FASTRTPS_', 'FORCE_COLOR', 'JPY_', 'LABKIT_', 'MPLBACKEND'),
+    *('NO_COLOR', 'PYTEST_', 'PYTHONWARNINGS', 'RCUTILS_', 'RMW_', 'ROS_'),
+)
+_WIDGET_VIEW = 'application/vnd.jupyter.widget-view+json'
+
+
+class LessonError(LabError):
+    """Report that a cell of a lesson did not run as it should.
+
+    Args:
+        message: What happened.
+        cell_id: The cell, `''` if it was none.
+        traceback: What a learner would see, in colour, `''` if there is none.
+    """
+
+    def __init__(self, message: str, *, cell_id: str = '', traceback: str = '') -> None:
+        super().__init__(message)
+        self.cell_id = cell_id
+        self.traceback = traceback
+
+
+class LessonRun:
+    """Run the cells of one lesson in a kernel of their own.
+
+    The kernel starts in the lesson's folder, with a new state folder (`LABKIT_HOME`) and with
+    ROS discovery off. A lesson whose metadata says `"labkit": {"processes": true}` finds other
+    processes on this machine (LOCALHOST), in a domain that it claims for itself.
+
+    Args:
+        path: The notebook.
+        cell_timeout_sec: Seconds that one cell may take.
+
+    Raises:
+        LessonError: The kernel did not start.
+    """
+
+    def __init__(self, path: Path, *, cell_timeout_sec: int = CELL_TIMEOUT_SEC) -> None:
+        self.path = path.resolve()
+        self.notebook: NotebookNode = nbformat.read(self.path, as_version=4)
+        self.broken = False
+        self._next = 0
+        for cell in self.notebook.cells:
+            if cell.cell_type == 'code':
+                cell.outputs, cell.execution_count = [], None
+        with contextlib.ExitStack() as stack:
+            temporary = tempfile.TemporaryDirectory(prefix='labkit-', ignore_cleanup_errors=True)
+            self._home = Path(stack.enter_context(temporary)).resolve()
+            log = stack.enter_context((self._home / 'kernel.log').open('wb'))
+            # No folders to search for kernels: 'python3' is then the Python that runs this.
+            # Sockets of its own instead of ports: those may be taken before the kernel has them.
+            kernels = AsyncKernelManager(
+                kernel_name='python3',
+                kernel_spec_manager=KernelSpecManager(kernel_dirs=[]),
+                transport='ipc',
+                ip=str(self._home / 'socket'),
+            )
+            stack.callback(_end_children, kernels)
+            self._client = self._make_client(kernels, cell_timeout_sec)
+            start = self._client.setup_kernel(
+                cleanup_kc=True,
+                cwd=str(self.path.parent),
+                env=self._environment(),
+                stdout=log,
+                stderr=log,
+            )
+            try:
+                stack.enter_context(start)
+            except RuntimeError as error:
+                raise LessonError(f'the kernel did not start: {error}\n{self._log()}') from error
+            self._stack = stack.pop_all()
+
+    def _make_client(self, kernels: AsyncKernelManager, cell_timeout_sec: int) -> NotebookClient:
+        return NotebookClient(
+            self.notebook,
+            km=kernels,
+            timeout=cell_timeout_sec,
+            iopub_timeout=OUTPUT_TIMEOUT_SEC,
+            raise_on_iopub_timeout=True,
+            startup_timeout=STARTUP_TIMEOUT_SEC,
+            # Errors are looked at here: with nbclient's way the kernel may drop the next cell.
+            allow_errors=True,
+            record_timing=False,
+            store_widget_state=False,
+            # What C code writes past Python arrives whenever it likes, so it goes to the log.
+            extra_arguments=['--IPKernelApp.capture_fd_output=False'],
+        )
+
+    def _environment(self) -> dict[str, str]:
+        processes = self.notebook.metadata.get('labkit', {}).get('processes', False)
+        env = {k: v for k, v in os.environ.items() if not k.startswith(_FOREIGN)}
+        return env | {
+            'COLUMNS': '80',
+            'IPYTHONDIR': str(self._home / 'ipython'),
+            'JPY_SESSION_NAME': str(self.path),
+            'LINES': '24',
+            'LABKIT_HEADLESS': '1',
+            'LABKIT_HOME': str(self._home / 'labkit'),
+            'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST' if processes else 'OFF',
+            'ROS_LOG_DIR': str(self._home / 'ros_log'),
+            'TMPDIR': str(self._home),
+        }
+
+    def _log(self) -> str:
+        """Return the last words of the kernel's process, which say why it ended."""
+        lines = (self._home / 'kernel.log').read_text(errors='replace').splitlines()
+        return '\n'.join([line for line in lines if not line.startswith('[IPKernelApp]')][-20:])
+
+    def execute(self, index: int) -> NotebookNode:
+        """Run one cell, and first those before it that have not run yet.
+
+        Args:
+            index: Position of the cell in the notebook, 0 for the first.
+
+        Returns:
+            The cell with its execution count and normalised outputs.
+
+        Raises:
+            LessonError: A cell raised and has no `raises-exception` tag, or has the tag and did
+                not raise. Or it took too long or ended the kernel: then the run is `broken`, and
+                every further cell fails at once.
+        """
+        for position in range(min(self._next, index), index + 1):
+            self._execute(position)
+        cell: NotebookNode = self.notebook.cells[index]
+        return cell
+
+    def _execute(self, index: int) -> None:
+        cells = self.notebook.cells
+        cell, cell_id = cells[index], str(cells[index].get('id', index))
+        count = sum(cell.cell_type == 'code' for cell in cells[: index + 1])
+        if self.broken:
+            raise LessonError('not run: an earlier cell lost the kernel', cell_id=cell_id)
+        self._next = max(self._next, index + 1)
+        try:
+            self._client.execute_cell(cell, index, execution_count=count)
+        except (RuntimeError, TimeoutError) as error:
+            self.broken = True
+            # nbclient goes on to quote the cell, which whoever reports this shows anyway.
+            message = str(error).partition('\nHere is a preview')[0]
+            raise LessonError(f'{message}\n{self._log()}'.strip(), cell_id=cell_id) from error
+        if cell.cell_type == 'code':
+            cell.outputs = normalised(cell.outputs, self.folders())
+            _check_error(cell, cell_id)
+
+    def folders(self) -> dict[str, str]:
+        """Return the folders that differ from machine to machine, and what stands for each."""
+        known = {
+            str(self._home): '$TMPDIR',
+            sys.prefix: '$ENVIRONMENT',
+            sys.base_prefix: '$PYTHON',
+            str(self.path.parent.parent): '$COURSE',
+        }
+        return {folder: name for folder, name in known.items() if folder not in ('/', '/usr')}
+
+    def close(self) -> None:
+        """End the kernel and whatever it started, and remove its temporary files."""
+        self._stack.close()
+
+    def __enter__(self) -> LessonRun:
+        """Return the run itself."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Close the run."""
+        self.close()
+
+
+def _end_children(kernels: AsyncKernelManager) -> None:
+    """End what a kernel that has ended left running: its process group."""
+    group = getattr(kernels.provisioner, 'pgid', None)
+    if group is not None:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(group, signal.SIGKILL)
+
+
+def _check_error(cell: NotebookNode, cell_id: str) -> None:
+    """Raise if a cell went wrong, unless its tag says that it must."""
+    error = next((out for out in cell.outputs if out.output_type == 'error'), None)
+    meant = 'raises-exception' in cell.metadata.get('tags', ())
+    if meant and error is None:
+        raise LessonError('it is tagged raises-exception, but nothing was raised', cell_id=cell_id)
+    if error is not None and not meant:
+        raise LessonError(
+            f'it raised {error.ename}: {error.evalue}',
+            cell_id=cell_id,
+            traceback='\n'.join(error.traceback),
+        )
+
+
+def normalised(outputs: list[NotebookNode], folders: dict[str, str]) -> list[NotebookNode]:
+    """Return outputs in the form in which they are stored and compared.
+
+    Pieces of a stream are put together, folders that differ between machines are replaced, and
+    what is of no use later (the view of a live widget) is left out.
+
+    Args:
+        outputs: Outputs of one cell.
+        folders: Absolute folder -> the text that stands for it.
+    """
+    result: list[NotebookNode] = []
+    for output in outputs:
+        output = cast(NotebookNode, _without_folders(output, folders))
+        data = output.get('data', {})
+        data.pop(_WIDGET_VIEW, None)
+        if 'image/png' in data:
+            data['image/png'] = _bare_png(data['image/png'])
+        if output.output_type == 'stream':
+            _add_stream(result, output)
+        else:
+            result.append(output)
+    return result
+
+
+def _add_stream(result: list[NotebookNode], output: NotebookNode) -> None:
+    """Add to what the stream has written since the last picture, result or error.
+
+    The two streams come to a notebook on separate ways, so that their order among each other is
+    chance: standard output is put first.
+    """
+    start = len(result)
+    while start > 0 and result[start - 1].output_type == 'stream':
+        start -= 1
+    for earlier in result[start:]:
+        if earlier.name == output.name:
+            earlier.text += output.text
+            return
+    result.insert(start if output.name == 'stdout' else len(result), output)
+
+
+def _without_folders(value: Any, folders: dict[str, str]) -> Any:
+    """Return a copy of an output, or of a part of it, without this machine's folders."""
+    if isinstance(value, dict):
+        return NotebookNode({k: _without_folders(v, folders) for k, v in value.items()})
+    if isinstance(value, list):
+        return [_without_folders(item, folders) for item in value]
+    if not isinstance(value, str):
+        return value
+    # A warning names the file that ipykernel makes up for a cell; it holds the process number.
+    # (Looked for first: the pattern is slow on long texts without spaces, such as pictures.)
+    if '/ipykernel_' in value:
+        value = re.sub(r'[^\s"\']*/ipykernel_\d+/\d+\.py', 'cell', value)
+    home = str(Path.home())
+    for folder in sorted(folders, key=len, reverse=True):
+        # IPython writes the home folder as `~` in tracebacks.
+        short = '~' + folder.removeprefix(home) if folder.startswith(f'{home}/') else folder
+        for form in (folder, short):
+            # A whole path: it may follow a colour's code, but not another part of a path.
+            pattern = rf'(^|\x1b\[[\d;]*m|[^\w/.-]){re.escape(form)}(?![\w-])'
+            value = re.sub(pattern, rf'\g<1>{folders[folder]}', value, flags=re.MULTILINE)
+    return value
+
+
+def _bare_png(text: str) -> str:
+    """Return a PNG, in base64, without the parts that name programs, versions and times."""
+    png = base64.b64decode(text)
+    kept, start = [png[:8]], 8
+    while start < len(png):
+        # Length of the data, type, data, checksum (PNG specification, section 5.3).
+        length, kind = struct.unpack('>I4s', png[start : start + 8])
+        end = start + 12 + length
+        if kind not in (b'tEXt', b'zTXt', b'iTXt', b'tIME', b'eXIf'):
+            kept.append(png[start:end])
+        start = end
+    return base64.b64encode(b''.join(kept)).decode()

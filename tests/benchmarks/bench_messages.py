@@ -1,0 +1,183 @@
+"""A message on its way: labkit's background thread against a plain script with rclpy.spin.
+
+Both run the same node: a publisher, and a subscription whose callback publishes the next message.
+They take turns, so that what else the machine does hits both alike; what counts is the ratio.
+"""
+
+from __future__ import annotations
+
+import json
+import statistics
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from kernel import Kernel
+from table import Row
+
+__all__ = ['tables']
+
+NODE = """
+import json, sys, threading, time
+from rclpy.node import Node
+from std_msgs.msg import String
+
+# Other programs disturb most stretches of a busy machine, and slow down those they disturb. So
+# the throughput is that of the best tenth of the stretches.
+STRETCH = 100
+
+class Echo(Node):
+    def __init__(self, count, in_flight, finish):
+        super().__init__('echo')
+        self.left, self.in_flight, self.finish = count, in_flight, finish
+        self.delays, self.sent, self.marks = [], [], []
+        self.publisher = self.create_publisher(String, 'echo', 100)
+        self.create_subscription(String, 'echo', self.on_message, 100)
+        self.timer = self.create_timer(0.05, self.begin)
+        self.message = String(data='x' * 32)
+
+    def begin(self):
+        self.timer.cancel()
+        self.cpu = time.thread_time()
+        self.marks.append(time.perf_counter())
+        for _ in range(self.in_flight):
+            self.send()
+
+    def send(self):
+        self.sent.append(time.perf_counter())
+        self.publisher.publish(self.message)
+
+    def on_message(self, message):
+        now = time.perf_counter()
+        self.delays.append(now - self.sent[len(self.delays)])
+        self.left -= 1
+        if self.left % STRETCH == 0:
+            self.marks.append(now)
+        if self.left > 0:
+            self.send()
+        elif self.left == 0:
+            self.cpu = time.thread_time() - self.cpu
+            self.finish()
+
+    def result(self):
+        delays = sorted(self.delays)
+        gaps = sorted(end - begin for begin, end in zip(self.marks, self.marks[1:]))
+        return json.dumps({
+            'p50': 1e6 * delays[len(delays) // 2],
+            'p99': 1e6 * delays[int(0.99 * (len(delays) - 1))],
+            'rate': STRETCH / gaps[len(gaps) // 10],
+            'cpu': 1e6 * self.cpu / len(delays),
+        })
+
+def compute():
+    # What a cell may do meanwhile: pure Python, never waiting.
+    return sum(i * i for i in range(1000))
+"""
+PLAIN = """
+import rclpy
+
+class Finished(Exception):
+    pass
+
+def finish():
+    raise Finished
+
+rclpy.init()
+node = Echo({count}, {in_flight}, finish)
+try:
+    rclpy.spin(node)
+except Finished:
+    pass
+print(node.result())
+node.destroy_node()
+rclpy.shutdown()
+"""
+PLAIN_LOADED = """
+import rclpy
+
+done = threading.Event()
+rclpy.init()
+node = Echo({count}, {in_flight}, done.set)
+thread = threading.Thread(target=rclpy.spin, args=(node,))
+thread.start()
+while not done.is_set():
+    compute()
+print(node.result())
+rclpy.shutdown()
+thread.join()
+"""
+LABKIT = """
+import labkit as lab
+
+done = threading.Event()
+lab.start()
+node = lab.spin(Echo({count}, {in_flight}, done.set))
+{wait}
+print(node.result())
+lab.remove(node)
+"""
+IDLE = 'done.wait()'
+LOADED = 'while not done.is_set():\n    compute()'
+
+
+def tables(quick: bool) -> Iterator[tuple[str, list[Row]]]:
+    """Measure, and give title and rows of each table."""
+    rounds = 1 if quick else 9
+    with Kernel() as kernel:
+        for title, plain, wait, counts in (
+            ('A message, the main thread waits', PLAIN, IDLE, (5000, 10000)),
+            ('A message, the main thread computes', PLAIN_LOADED, LOADED, (500, 3000)),
+        ):
+            yield title, _rows(kernel, plain, wait, [50, 1000] if quick else counts, rounds)
+
+
+def _rows(kernel: Kernel, plain: str, wait: str, counts: Any, rounds: int) -> list[Row]:
+    # One message after the other for the delay; ten on their way at once for the throughput.
+    ways: dict[str, Callable[[int, int], dict[str, float]]] = {
+        'plain': lambda count, flight: _script(plain.format(count=count, in_flight=flight)),
+        'script': lambda count, flight: _script(
+            LABKIT.format(count=count, in_flight=flight, wait=wait)
+        ),
+        'kernel': lambda count, flight: json.loads(
+            kernel.run(NODE + LABKIT.format(count=count, in_flight=flight, wait=wait))
+        ),
+    }
+    seen: dict[str, list[dict[str, float]]] = {name: [] for name in ways}
+    for number in range(rounds):
+        order = list(ways)
+        for name in order[number % 3 :] + order[: number % 3]:
+            delay, flood = ways[name](counts[0], 1), ways[name](counts[1], 10)
+            seen[name].append({**delay, 'rate': flood['rate'], 'cpu': flood['cpu']})
+
+    def typical(name: str, key: str) -> float:
+        return statistics.median(each[key] for each in seen[name])
+
+    rows = []
+    for key, what, unit in (
+        ('p50', 'delay, half below', 'us'),
+        ('p99', 'delay, 99 of 100 below', 'us'),
+        ('rate', 'throughput', 'messages/s'),
+        # Of the thread that spins: hardly disturbed by what else the machine does.
+        ('cpu', 'CPU time a message', 'us'),
+    ):
+        for name, words in (
+            ('plain', 'rclpy.spin'),
+            ('script', 'lab.spin in a script'),
+            ('kernel', 'lab.spin in a kernel'),
+        ):
+            rows.append(Row(f'{what}: {words}', typical(name, key), unit))
+        for name in ('script', 'kernel'):
+            ratio = typical(name, key) / typical('plain', key)
+            limits = {'p50': {'at_most': 1.1}, 'rate': {'at_least': 0.95}}.get(key, {})
+            rows.append(Row(f'{what}: {name} / rclpy.spin', ratio, '', **limits))
+    return rows
+
+
+def _script(code: str) -> dict[str, float]:
+    command = [sys.executable, '-c', NODE + code]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    if done.returncode != 0:
+        raise RuntimeError(done.stderr)
+    result: dict[str, float] = json.loads(done.stdout)
+    return result

@@ -1,0 +1,58 @@
+"""What a learner meets first: JupyterLab on the first lesson, ready to run, for them only."""
+
+from __future__ import annotations
+
+import socket
+import urllib.error
+import urllib.request
+
+import pytest
+from playwright.sync_api import expect
+
+from labkit.learner import FIRST
+from tests.browser.jupyter import JupyterLab
+from tests.browser.page import Notebook
+
+
+def test_first_lesson_opens_ready_to_run(tmp_path, browser):
+    with JupyterLab(tmp_path / 'fresh') as jupyter:
+        # The address that is opened in the learner's browser, and nothing else.
+        notebook = Notebook(browser.new_page()).open(jupyter.url)
+        _look_at_first_lesson(notebook)
+        notebook.close()
+
+
+def _look_at_first_lesson(notebook: Notebook) -> None:
+    page = notebook.page
+    expect(page.locator('.jp-NotebookPanel:visible')).to_have_count(1)
+    expect(page.locator('.lm-TabBar-tab.jp-mod-current').first).to_contain_text(FIRST)
+    # The question which kernel to use is a dialog, and the offer of news is a notification.
+    # JupyterLab asks for the news when it is started, before a kernel can be idle.
+    expect(page.locator('.jp-Dialog')).to_have_count(0)
+    expect(page.locator('.Toastify__toast')).to_have_count(0)
+    first = next(cell['id'] for cell in notebook.cells() if cell['cell_type'] == 'code')
+    notebook.run_cell(first)
+    assert notebook.error_of(first) == ''
+    expect(page.locator('.jp-Dialog')).to_have_count(0)
+    expect(page.locator('.Toastify__toast')).to_have_count(0)
+
+
+def test_listens_on_this_machine_only(jupyter):
+    socket.create_connection(('127.0.0.1', jupyter.port)).close()
+    # Addresses of this machine too: who listens on all of them is heard there.
+    for address in ('127.0.0.2', '::1'):
+        with pytest.raises(OSError, match=r'refused|not available|Cannot assign'):
+            socket.create_connection((address, jupyter.port))
+
+
+@pytest.mark.parametrize('path', ['api/contents', 'api/kernels', 'api/sessions'])
+def test_without_token_nothing_is_shown(jupyter, path):
+    assert jupyter.request(path) is not None
+    with pytest.raises(urllib.error.HTTPError) as caught:
+        urllib.request.urlopen(jupyter.address(path, token=False))
+    assert caught.value.code == 403
+    caught.value.close()
+
+
+def test_token_is_new_and_long(jupyter):
+    assert len(jupyter.token) >= 32

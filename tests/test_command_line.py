@@ -1,0 +1,162 @@
+"""The words of `python3 -m labkit`, on machines where nothing is installed yet."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from courses import ROOT, Course
+
+from labkit import __version__, run_tests
+from labkit.__main__ import main
+
+COMMANDS = ('lab', 'test', 'doctor', 'record', 'reset')
+# What a machine that has nothing yet loads, whatever its Python.
+BARE = ('__init__', '__main__', 'errors', 'installer', 'learner', 'machine', 'run_tests')
+BARE += ('settings', 'setup_env')
+
+
+@pytest.fixture
+def course(tmp_path: Path) -> Course:
+    return Course(tmp_path / 'course')
+
+
+@pytest.mark.parametrize('module', BARE)
+def test_old_python_can_read_what_tells_it_that_it_is_old(module: str) -> None:
+    source = (ROOT / 'labkit' / f'{module}.py').read_text(encoding='utf-8')
+    ast.parse(source, feature_version=(3, 8))
+
+
+def test_help_of_every_command(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(['--help'])
+    assert ended.value.code == 0
+    text = capsys.readouterr().out
+    for command in COMMANDS:
+        assert f'\n    {command} ' in text
+        with pytest.raises(SystemExit) as ended:
+            main([command, '--help'])
+        assert ended.value.code == 0
+        assert f'usage: labkit {command}' in capsys.readouterr().out
+
+
+@pytest.mark.parametrize('words', [[], ['lb'], ['doctor', '--colour'], ['reset'], ['--lab']])
+def test_what_it_does_not_know(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(words)
+    assert ended.value.code == 2
+    assert 'usage: labkit' in capsys.readouterr().err
+
+
+def test_version(course: Course) -> None:
+    assert course.run('--version').stdout.strip() == f'labkit {__version__}'
+
+
+def test_commands_that_need_the_environment_say_so(course: Course) -> None:
+    done = course.run('record', '00')
+    assert done.returncode == 2
+    assert done.stderr == (
+        'labkit: There is no environment yet.\nMake it: python3 -m labkit lab\n'
+    )
+    assert not course.venv.exists()
+
+
+def test_commands_go_on_in_the_environment(course: Course) -> None:
+    course.require(course.wheel('rclpy'))
+    assert course.make().returncode == 0
+    # A stand-in that tells which Python runs it.
+    (course.folder / 'labkit' / 'doctor.py').write_text(
+        'import sys\n'
+        'class Report(str):\n'
+        '    ok = False\n'
+        'def doctor():\n'
+        '    return Report(sys.prefix)\n'
+    )
+    done = course.run('doctor', _ROS_WHEELS_BOOTSTRAP_COMPLETE='1')
+    assert (done.returncode, done.stdout.strip()) == (1, str(course.venv))
+
+
+def test_environment_without_ros_is_said_to_be(course: Course) -> None:
+    assert course.make().returncode == 0
+    done = course.run('record', '00')
+    assert done.returncode == 2
+    assert 'is without ROS 2' in done.stderr
+
+
+def test_later_parts_are_offered_when_they_are_there(course: Course) -> None:
+    assert course.run('ros2', 'topic', 'list').returncode == 2
+    course.require(course.wheel('rclpy'))
+    assert course.make().returncode == 0
+    code = 'import sys\ndef main(argv):\n    print(argv)\n    return 7\n'
+    (course.folder / 'labkit' / 'ros2.py').write_text(code)
+    done = course.run('ros2', 'topic', 'pub', '--help', '--once')
+    assert (done.returncode, done.stdout) == (7, "['topic', 'pub', '--help', '--once']\n")
+    assert '    ros2 ' in course.run('--help').stdout
+
+
+def test_reset_needs_no_environment(course: Course) -> None:
+    lesson = course.folder / 'notebooks' / '00_start_here.ipynb'
+    lesson.write_text('{"cells": []}')
+    done = course.run('reset', '0')
+    assert done.returncode == 0, done.stderr
+    assert (course.work / lesson.name).is_file()
+    assert course.run('reset', '5').returncode == 2
+
+
+def test_outside_of_a_clone(course: Course) -> None:
+    (course.folder / 'environment.txt').unlink()
+    done = course.run('test')
+    assert done.returncode == 2
+    assert 'Run this command in a complete copy (git clone) of the course.' in done.stderr
+
+
+def test_order_of_the_test_command() -> None:
+    steps = run_tests._steps([])
+    assert [name for name, _ in steps] == [
+        'style',
+        'format',
+        'types',
+        'layers and notebook format',
+        'notebooks and tests',
+    ]
+    assert all((ROOT / path).is_file() for path in steps[3][1] if path.startswith('tests/'))
+
+
+def test_arguments_for_pytest() -> None:
+    ((_, command),) = run_tests._steps(['-k', 'odds'])
+    assert command[-4:] == ['notebooks', 'tests', '-k', 'odds']
+    ((_, command),) = run_tests._steps(['tests/test_layers.py::test_x', '-x'])
+    assert 'notebooks' not in command
+
+
+def test_run_without_a_test_is_a_failure(course: Course) -> None:
+    course.make_complete()
+    done = course.run('test', '-k', 'nothing_has_this_name')
+    assert done.returncode == 5, done.stdout + done.stderr
+    assert 'tests failed (exit code 5)' in done.stderr
+
+
+def test_first_failure_ends_the_test_command_and_leaves_no_junk(course: Course) -> None:
+    course.make_complete()
+    (course.folder / 'labkit' / 'bad.py').write_text('import this is not Python\n')
+    before = {path.name for path in course.folder.iterdir()}
+    done = course.run('test', PYTHONDONTWRITEBYTECODE='1')
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert '\nlabkit test: style failed (exit code 1).\n' in done.stderr
+    assert '== format' not in done.stdout
+    (course.folder / 'tests' / 'test_it.py').write_text('def test_it():\n    assert 1 == 2\n')
+    done = course.run('test', 'tests/test_it.py', PYTHONDONTWRITEBYTECODE='1')
+    assert done.returncode == 1
+    assert 'assert 1 == 2' in done.stdout
+    assert {path.name for path in course.folder.iterdir()} == before
+
+
+def test_import_from_any_folder(tmp_path: Path) -> None:
+    code = 'import labkit, sys; print(labkit.__version__, "rclpy" in sys.modules)'
+    done = subprocess.run(
+        [sys.executable, '-c', code], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert done.stdout == f'{__version__} False\n'
