@@ -6,6 +6,7 @@ Nothing here prints.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
@@ -190,8 +191,32 @@ def full_node_name(name: str, namespace: str) -> str:
 
 
 def node_names(node: Node) -> list[str]:
-    """Return the full names of all nodes, hidden ones too; two of one name appear twice."""
-    return sorted(full_node_name(*pair) for pair in node.get_node_names_and_namespaces())
+    """Return the full names of all nodes, hidden ones too; two of one name appear twice.
+
+    ROS's own list can keep a node for ever that has ended: a participant says which nodes it has
+    (topic `ros_discovery_info`), and where the last of these messages is read after its goodbye,
+    it is taken for a new participant. Such a node has no ends, and is left out here. A living one
+    has some from its first moment, mostly a publisher on `/parameter_events`.
+    """
+    named = Counter(full_node_name(*pair) for pair in node.get_node_names_and_namespaces())
+    infos = node.get_publishers_info_by_topic('/parameter_events')
+    living = Counter(full_node_name(info.node_name, info.node_namespace) for info in infos)
+    for name in named.keys() - living.keys():
+        living[name] = named[name] * _has_ends(node, name)
+    return sorted((named & living).elements())
+
+
+def _has_ends(node: Node, full_name: str) -> bool:
+    namespace, _, name = full_name.rpartition('/')
+    return any(
+        _asked(ask, name, namespace or '/')
+        for ask in (
+            node.get_publisher_names_and_types_by_node,
+            node.get_subscriber_names_and_types_by_node,
+            node.get_service_names_and_types_by_node,
+            node.get_client_names_and_types_by_node,
+        )
+    )
 
 
 def endpoints(infos: list[TopicEndpointInfo], include_hidden: bool = True) -> tuple[Endpoint, ...]:

@@ -16,6 +16,7 @@ from pathlib import Path
 from labkit import settings
 from labkit.console import Cell
 from labkit.errors import LabTimeout
+from labkit.graph import node_names
 from labkit.runtime import runtime
 
 __all__ = ['Process', 'Processes', 'end_earlier', 'environment', 'processes', 'start_process']
@@ -132,11 +133,7 @@ class Process:
         if helper is None or not self.nodes:
             return
 
-        def gone() -> bool:
-            known = helper.get_node_names_and_namespaces()
-            return not {f'{space.rstrip("/")}/{name}' for name, space in known} & {*self.nodes}
-
-        runtime.wait(gone, GONE_SEC)
+        runtime.wait(lambda: not {*node_names(helper)} & {*self.nodes}, GONE_SEC)
 
     def _read(self) -> None:
         assert self._keeper.stdout is not None

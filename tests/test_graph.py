@@ -108,3 +108,22 @@ def test_an_empty_graph(script):
         'graph = read_graph(runtime.helper)\nprint(graph.nodes, graph.topics)\n'
     )
     assert result.stdout == '() ()\n'
+
+
+def test_a_node_that_has_ended_but_is_still_listed_is_left_out(script):
+    result = script(
+        READ
+        + """
+from labkit.graph import node_names
+class Haunted:
+    def __getattr__(self, name):
+        return getattr(runtime.helper, name)
+    def get_node_names_and_namespaces(self):
+        ended = [('ghost', '/'), ('talker', '/')]
+        return [*runtime.helper.get_node_names_and_namespaces(), *ended]
+silent = Node('_silent', start_parameter_services=False, enable_rosout=False)
+print([name for name in node_names(Haunted()) if 'labkit' not in name])
+"""
+    )
+    names = ['/_hidden', '/_silent', '/ears/listener', '/talker']
+    assert result.stdout == f'{names}\n', result.stderr

@@ -312,8 +312,8 @@ def test_a_half_made_node_is_gone_when_its_cell_is_run_again(kernel):
     failed = kernel.run(TALKER.replace('self.create_timer(0.02', 'self.creat_timer(0.02'))
     assert failed.error.startswith('AttributeError')
     assert kernel.run(TALKER).error == ''
-    kernel.run('from labkit.runtime import runtime')
-    gone = 'lab.wait_until(lambda: runtime.helper.get_node_names().count("talker") == 1)'
+    kernel.run('from labkit.graph import node_names\nfrom labkit.runtime import runtime')
+    gone = 'lab.wait_until(lambda: node_names(runtime.helper).count("/talker") == 1)'
     assert kernel.run(gone).error == ''
 
 

@@ -210,11 +210,10 @@ class Probe:
 
     def node_names(self) -> list[str]:
         """Return the full names of the learner's nodes; one that runs twice is there twice."""
-        names = (
-            f'{namespace.rstrip("/")}/{name}'
-            for name, namespace in self.node.get_node_names_and_namespaces()
-        )
-        return sorted(name for name in names if not is_hidden(name) and name not in self.given)
+        from labkit import graph
+
+        names = graph.node_names(self.node)
+        return [name for name in names if not is_hidden(name) and name not in self.given]
 
     def node_object(self, name: str) -> Any:
         """Return the node of that name as an object, None if it runs in another process."""
