@@ -24,12 +24,15 @@ __all__ = [
     'endpoints',
     'full_node_name',
     'is_hidden',
+    'is_whole',
     'node_names',
     'read_graph',
 ]
 
 # Every node has these, so they say nothing about one.
 EVERY_NODE_HAS = ('/parameter_events', '/rosout')
+# What ROS calls the node of an end as long as it does not know which one that is.
+_UNKNOWN_NODE = '_NODE_NAME_UNKNOWN_'
 _EVERY_NODE_OFFERS = ('rcl_interfaces/srv/', 'type_description_interfaces/srv/')
 
 
@@ -216,6 +219,19 @@ def _has_ends(node: Node, full_name: str) -> bool:
             node.get_service_names_and_types_by_node,
             node.get_client_names_and_types_by_node,
         )
+    )
+
+
+def is_whole(node: Node) -> bool:
+    """Tell whether it is known of every publisher and subscription to which node it belongs.
+
+    That comes a moment after the publisher or subscription of another process itself.
+    """
+    return not any(
+        info.node_name == _UNKNOWN_NODE
+        for topic, _types in node.get_topic_names_and_types()
+        for ask in (node.get_publishers_info_by_topic, node.get_subscriptions_info_by_topic)
+        for info in ask(topic)
     )
 
 

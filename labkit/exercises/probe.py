@@ -210,9 +210,9 @@ class Probe:
 
     def node_names(self) -> list[str]:
         """Return the full names of the learner's nodes; one that runs twice is there twice."""
-        from labkit import graph
+        from labkit.graph import node_names
 
-        names = graph.node_names(self.node)
+        names = node_names(self.node)
         return [name for name in names if not is_hidden(name) and name not in self.given]
 
     def node_object(self, name: str) -> Any:

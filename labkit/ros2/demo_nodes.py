@@ -9,10 +9,10 @@ from __future__ import annotations
 import sys
 
 import rclpy
-from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
-from rclpy.utilities import try_shutdown
 from std_msgs.msg import String
+
+from labkit.ros2.program import spin_until_interrupted
 
 __all__ = ['Listener', 'Talker']
 
@@ -54,12 +54,7 @@ def main(words: list[str]) -> None:
         words: Its name, and arguments for ROS.
     """
     rclpy.init(args=words)
-    try:
-        rclpy.spin(NODES[words[0]]())
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        try_shutdown()
+    spin_until_interrupted(NODES[words[0]]())
 
 
 if __name__ == '__main__':

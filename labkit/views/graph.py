@@ -10,7 +10,8 @@ from typing import Any
 
 from labkit import settings
 from labkit.errors import LabError
-from labkit.graph import Graph, GraphNode, read_graph
+from labkit.graph import Graph, GraphNode, is_whole, read_graph
+from labkit.ros2.context import soon
 from labkit.runtime import runtime
 
 __all__ = ['GraphView', 'graph', 'to_mermaid']
@@ -38,6 +39,10 @@ class GraphView:
         self._is_live = live and not settings.headless()
         self._handle: Any = None
         self._timer: Any = None
+        runtime.start()
+        helper = runtime.helper
+        assert helper is not None
+        soon(lambda: is_whole(helper))
         self.data = self._read()
 
     def close(self) -> None:

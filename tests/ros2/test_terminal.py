@@ -67,8 +67,8 @@ def test_run_stays_in_front(domain, lab_env):
         if 'Publishing: "Hello World: 1"' in line:
             break
     os.killpg(process.pid, signal.SIGINT)  # as Ctrl-C does
-    process.communicate(timeout=60)
-    assert process.returncode == 0
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 0, err
 
 
 def test_a_notebook_tells_its_domain(domain):

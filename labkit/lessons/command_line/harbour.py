@@ -70,27 +70,21 @@ def open_harbour() -> None:
 def main() -> None:
     """Run the harbour until it is interrupted."""
     import rclpy
-    from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
     from rclpy.node import Node
-    from rclpy.utilities import try_shutdown
+
+    from labkit.ros2.program import spin_until_interrupted
 
     rclpy.init()
-    executor = SingleThreadedExecutor()
-    nodes = {}
-    for name in (*NODES, HIDDEN_NODE):
-        # Parameters are asked for at the lighthouse only; services cost time at the start.
-        nodes[name] = Node(name.lstrip('/'), start_parameter_services=name == '/lighthouse')
-        executor.add_node(nodes[name])
+    # Parameters are asked for at the lighthouse only; services cost time at the start.
+    nodes = {
+        name: Node(name.lstrip('/'), start_parameter_services=name == '/lighthouse')
+        for name in (*NODES, HIDDEN_NODE)
+    }
     _furnish_piers([nodes[name] for name in PIERS])
     _furnish_boats([nodes[name] for name in BOATS])
     _furnish_lighthouse(nodes['/lighthouse'])
     _furnish_watch(nodes[HIDDEN_NODE])
-    try:
-        executor.spin()
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        try_shutdown()
+    spin_until_interrupted(*nodes.values())
 
 
 def _furnish_piers(piers: list[Node]) -> None:
