@@ -12,7 +12,7 @@ from typing import TypeVar
 from rclpy.node import Node
 
 from labkit.errors import LabError
-from labkit.graph import node_names
+from labkit.graph import is_whole, node_names
 from labkit.ros2.words import Parser, nearest, positive_float
 from labkit.runtime import runtime
 
@@ -37,6 +37,9 @@ POLL_SEC = 0.01
 # for certain after so long.
 CALM_SEC = 0.15
 MOST_SEC = 10.0
+# A new process has made all of its nodes when nothing was added for so long: it may have to load
+# the types of its messages in between.
+SETTLED_SEC = 0.3
 
 # Ports of participants, DDSI-RTPS 2.5, 9.6.2.3: 7400 + 250 * domain + 10 + 2 * participant.
 _FIRST_PORT = 7400
@@ -79,11 +82,11 @@ def calm(node: Node) -> None:
     """Wait until the graph has stopped changing: a new node comes into it piece by piece."""
     seen: object = None
     changed = started = time.monotonic()
-    while time.monotonic() < min(changed + CALM_SEC, started + SOON_SEC):
+    while time.monotonic() < min(changed + SETTLED_SEC, started + SOON_SEC):
         topics = node.get_topic_names_and_types()
         ends = [(name, _count(node, name)) for name, _ in topics]
         graph = (node_names(node), ends, node.get_service_names_and_types())
-        if graph != seen:
+        if graph != seen or not is_whole(node):
             seen, changed = graph, time.monotonic()
         time.sleep(POLL_SEC)
 

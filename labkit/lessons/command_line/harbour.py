@@ -23,6 +23,8 @@ PIERS = ('/pier_east', '/pier_north', '/pier_south')
 BOATS = ('/boat_a', '/boat_b', '/boat_c', '/boat_d')
 NODES = (*BOATS, '/lighthouse', *PIERS)
 HIDDEN_NODE = '/_night_watch'
+DIARY = '/_diary'
+FOGHORN = '/foghorn'
 TOPICS = ('/beacon', '/camera', '/radio', '/tide', '/water', '/wind')
 # Type of the messages on /water -> the field that holds what is measured.
 MEASURES = {
@@ -38,7 +40,7 @@ _process: Process | None = None
 
 
 def open_harbour() -> None:
-    """Start the harbour as a process, and wait until its nodes are in the graph.
+    """Start the harbour as a process, and wait until all of it is in the graph.
 
     One that is open already is closed first. `lab.processes()` lists and stops it.
 
@@ -47,7 +49,6 @@ def open_harbour() -> None:
     """
     global _process
     from labkit.processes import environment, start_process
-    from labkit.ros2.context import calm
     from labkit.runtime import runtime
 
     if _process is not None:
@@ -56,15 +57,26 @@ def open_harbour() -> None:
     program = f'from {__name__} import main; main()'
     _process = start_process('harbour', [sys.executable, '-c', program], environment())
     _process.nodes = list(NODES)
-    wanted = {*NODES, HIDDEN_NODE}
-    if not runtime.wait(lambda: runtime.foreign_nodes() >= wanted, START_SEC):
+    if not runtime.wait(_is_open, START_SEC):
         raise LabTimeout(
             f'Waited {START_SEC:.0f} s for the nodes of the harbour, but they did not come.',
             todo='Run the cell again. If that does not help, lab.doctor() looks for the reason.',
         )
-    assert runtime.helper is not None
-    calm(runtime.helper)
     print(f'The harbour is open: {len(NODES)} nodes in a process of their own.')
+
+
+def _is_open() -> bool:
+    """Say whether the whole harbour is in the graph: what its process makes last is there.
+
+    Publishers come in the order in which they were made, and so do subscriptions and services.
+    Which node they belong to is told afterwards, each time for the whole process.
+    """
+    from labkit.runtime import runtime
+
+    assert runtime.helper is not None
+    diaries = runtime.helper.get_publishers_info_by_topic(DIARY)
+    known = any(f'/{info.node_name}' == HIDDEN_NODE for info in diaries)
+    return known and runtime.helper.count_services(FOGHORN) > 0
 
 
 def main() -> None:
@@ -80,6 +92,7 @@ def main() -> None:
         name: Node(name.lstrip('/'), start_parameter_services=name == '/lighthouse')
         for name in (*NODES, HIDDEN_NODE)
     }
+    # The fog horn and the diary come last: `_is_open` relies on it.
     _furnish_piers([nodes[name] for name in PIERS])
     _furnish_boats([nodes[name] for name in BOATS])
     _furnish_lighthouse(nodes['/lighthouse'])
@@ -124,13 +137,13 @@ def _furnish_lighthouse(lighthouse: Node) -> None:
     profile = QoSProfile(depth=1, reliability=reliability)  # type: ignore[no-untyped-call]
     _publish(lighthouse, '/camera', CompressedImage(format='jpeg'), 2, profile)
     service = random.choice((Empty, SetBool, Trigger))
-    lighthouse.create_service(service, '/foghorn', lambda request, response: response)
+    lighthouse.create_service(service, FOGHORN, lambda request, response: response)
 
 
 def _furnish_watch(watch: Node) -> None:
     from std_msgs.msg import String
 
-    _publish(watch, '/_diary', String(data='A quiet night.'), 1)
+    _publish(watch, DIARY, String(data='A quiet night.'), 1)
 
 
 def _publish(node: Node, topic: str, message: Any, hz: float, profile: Any = 10) -> None:
