@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from labkit.exercises import Endpoint, Fail, Probe, expect
+from labkit.exercises import Endpoint, Fail, Probe, Watch, expect
 from labkit.sim.kinematics import Pose, Twist2, yaw_from_quaternion
 
 __all__ = [
@@ -46,8 +46,10 @@ ZERO = 1e-6
 PLACED_SEC = 1.0
 # How soon the first command comes; after this it is looked at what the callbacks do, s.
 FIRST_SEC = 0.6
-# How long it is looked whether somebody else drives, s.
+# How long it is looked whether somebody else drives, s, and how many messages of the odometry have
+# to come meanwhile: 15 are 0.5 s by the robot's clock, enough for a scan and a command upon it.
 QUIET_SEC = 0.05
+QUIET_ODOMETRY = 15
 # Walls are drawn that are nearer to the end of a drive than this, m.
 NEAR_WALL = 0.8
 
@@ -165,7 +167,7 @@ def drive(
     robot = _robot(probe)
     odometry, commands = probe.watch('/odom', ODOMETRY), probe.watch('/cmd_vel', TWIST)
     robot.place(*start)
-    _expect_nobody_drives(probe, commands, source)
+    _expect_nobody_drives(probe, odometry, commands, source)
     # It may have been moved since, by a command that was on its way.
     robot.place(*start)
     heard = len(odometry)
@@ -234,8 +236,12 @@ def _robot(probe: Probe) -> Any:
     return robot
 
 
-def _expect_nobody_drives(probe: Probe, commands: Any, source: Endpoint) -> None:
+def _expect_nobody_drives(
+    probe: Probe, odometry: Watch, commands: Watch, source: Endpoint
+) -> None:
+    heard = len(odometry)
     probe.wait(lambda: False, QUIET_SEC)
+    probe.wait(lambda: len(odometry) >= heard + QUIET_ODOMETRY, PLACED_SEC)
     moving = [m for m in commands if not is_zero(Twist2(m.linear.x, m.angular.z))]
     if moving:
         names = sorted({other.node for other in probe.publishers('/cmd_vel')})
