@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from labkit import settings
 from labkit.lessons.turtlebot.drive import Drive
 from labkit.views.arena_picture import Scene, row, two
 
@@ -25,7 +26,11 @@ def observed() -> Iterator[list[Drive]]:
 
 
 def _show(drives: list[Drive]) -> None:
-    """Draw drives next to each other, and tell them in words."""
+    """Draw drives next to each other, and tell them in words; in a script, in words only."""
+    text = '\n'.join(map(_words, drives))
+    if not settings.in_kernel():
+        print(text)
+        return
     from IPython.display import display
 
     scenes = [
@@ -37,7 +42,6 @@ def _show(drives: list[Drive]) -> None:
         )
         for drive in drives
     ]
-    text = '\n'.join(map(_words, drives))
     display({'text/plain': text, 'image/svg+xml': row(scenes, text)}, raw=True)  # type: ignore[no-untyped-call]
 
 
