@@ -15,6 +15,7 @@ from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 __all__ = [
+    'UNKNOWN_NODE',
     'Endpoint',
     'Graph',
     'GraphNode',
@@ -32,7 +33,7 @@ __all__ = [
 # Every node has these, so they say nothing about one.
 EVERY_NODE_HAS = ('/parameter_events', '/rosout')
 # What ROS calls the node of an end as long as it does not know which one that is.
-_UNKNOWN_NODE = '_NODE_NAME_UNKNOWN_'
+UNKNOWN_NODE = '_NODE_NAME_UNKNOWN_'
 _EVERY_NODE_OFFERS = ('rcl_interfaces/srv/', 'type_description_interfaces/srv/')
 
 
@@ -228,7 +229,7 @@ def is_whole(node: Node) -> bool:
     That comes a moment after the publisher or subscription of another process itself.
     """
     return not any(
-        info.node_name == _UNKNOWN_NODE
+        info.node_name == UNKNOWN_NODE
         for topic, _types in node.get_topic_names_and_types()
         for ask in (node.get_publishers_info_by_topic, node.get_subscriptions_info_by_topic)
         for info in ask(topic)

@@ -127,3 +127,22 @@ print([name for name in node_names(Haunted()) if 'labkit' not in name])
     )
     names = ['/_hidden', '/_silent', '/ears/listener', '/talker']
     assert result.stdout == f'{names}\n', result.stderr
+
+
+def test_a_graph_is_whole_when_each_end_has_its_node(script):
+    result = script(
+        READ
+        + """
+from labkit.graph import UNKNOWN_NODE, is_whole
+class Half:
+    node_name = UNKNOWN_NODE
+class Early:
+    def __getattr__(self, name):
+        return getattr(runtime.helper, name)
+    def get_subscriptions_info_by_topic(self, topic):
+        infos = runtime.helper.get_subscriptions_info_by_topic(topic)
+        return [*infos, Half()] if topic == '/fast' else infos
+print(is_whole(runtime.helper), is_whole(Early()))
+"""
+    )
+    assert result.stdout == 'True False\n', result.stderr

@@ -12,7 +12,7 @@ from typing import TypeVar
 from rclpy.node import Node
 
 from labkit.errors import LabError
-from labkit.graph import is_whole, node_names
+from labkit.graph import UNKNOWN_NODE, is_whole, node_names
 from labkit.ros2.words import Parser, nearest, positive_float
 from labkit.runtime import runtime
 
@@ -45,7 +45,6 @@ SETTLED_SEC = 0.3
 _FIRST_PORT = 7400
 _PORTS_OF_DOMAIN = 250
 _FIRST_PARTICIPANT = 10
-_UNKNOWN = '_NODE_NAME_UNKNOWN_'
 
 
 def add_discovery_options(parser: Parser) -> None:
@@ -133,7 +132,7 @@ def _participants_known(node: Node) -> int:
     # Every node publishes there. The first 12 bytes of an id are those of the participant. Which
     # node it is comes a moment later.
     ends = node.get_publishers_info_by_topic('/parameter_events')
-    unknown = {bytes(end.endpoint_gid[:12]) for end in ends if end.node_name == _UNKNOWN}
+    unknown = {bytes(end.endpoint_gid[:12]) for end in ends if end.node_name == UNKNOWN_NODE}
     return len({bytes(end.endpoint_gid[:12]) for end in ends} - unknown)
 
 

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from labkit.errors import LabError
-from labkit.graph import Endpoint, endpoints
+from labkit.graph import UNKNOWN_NODE, Endpoint, endpoints
 from labkit.nodes import node_exists
 from labkit.ros2.interfaces import message_class
 from labkit.ros2.qos import match_all
@@ -23,13 +23,11 @@ if TYPE_CHECKING:
     from rclpy.node import Node
     from rclpy.qos import QoSProfile
 
-__all__ = ['UNKNOWN', 'Feed', 'checked_type']
+__all__ = ['Feed', 'checked_type']
 
 DEPTH = 100
 # The rate is that of the last messages of so many seconds, and of the last two at least.
 RATE_SEC = 2.0
-# What the graph tells of a publisher of another process until it has heard of its node.
-UNKNOWN = '_NODE_NAME_UNKNOWN_'
 # A topic is said to be silent when nothing has come for so long, in seconds.
 SILENT_SEC = 1.0
 
@@ -105,7 +103,7 @@ class Feed:
     def is_settled(self) -> bool:
         """Tell whether the last look has seen all publishers, and the names of their nodes."""
         return not self.has_new_publishers and all(
-            UNKNOWN not in end.node for end in self.publishers
+            UNKNOWN_NODE not in end.node for end in self.publishers
         )
 
     @property

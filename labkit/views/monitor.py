@@ -10,10 +10,10 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from labkit.errors import LabError
-from labkit.graph import Endpoint
+from labkit.graph import UNKNOWN_NODE, Endpoint
 from labkit.runtime import runtime
 from labkit.silence import type_name
-from labkit.views.feed import UNKNOWN, Feed, checked_type
+from labkit.views.feed import Feed, checked_type
 from labkit.views.live import Live, heard, page_widget
 from labkit.views.message_tree import as_text, rows
 
@@ -158,7 +158,7 @@ def _told(publishers: tuple[Endpoint, ...]) -> list[list[str]]:
 
 
 def _name(end: Endpoint) -> str:
-    return 'not known yet' if UNKNOWN in end.node else end.node
+    return 'not known yet' if UNKNOWN_NODE in end.node else end.node
 
 
 def _word(policy: Any) -> str:

@@ -47,6 +47,8 @@ _DIFFERS = "!= 'std_msgs/msg/Int16'"
 
 
 def _judge_find_gate(probe: Probe) -> str:
+    from labkit.graph import UNKNOWN_NODE
+
     gates = wrong_gates()
     if not gates:
         raise NotAttempted('The stadium is closed. Run the cell with open_stadium() first.')
@@ -61,7 +63,7 @@ def _judge_find_gate(probe: Probe) -> str:
     watch = expect.messages(probe, source, count=2)
     probe.wait(lambda: False, 0.3)  # what else is said
     # What rmw says of a node that the inspector's own process has only half discovered.
-    names = {str(name) for name in watch.values('data')} - {'_NODE_NAME_UNKNOWN_'}
+    names = {str(name) for name in watch.values('data')} - {UNKNOWN_NODE}
     wrong = sorted(name for name in names if f'/{name.strip().lstrip("/")}' not in gates)
     if wrong:
         why, todo = _explain(probe, wrong[0], len(names))
