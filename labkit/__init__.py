@@ -18,22 +18,22 @@ __version__ = '0.1.0'
 
 # Public name -> the module that defines it.
 _PUBLIC = {
-    'start': 'labkit.runtime',
-    'spin': 'labkit.runtime',
-    'remove': 'labkit.runtime',
-    'stop': 'labkit.runtime',
-    'wait_until': 'labkit.waiting',
-    'wait_for_message': 'labkit.waiting',
-    'wait_for_subscribers': 'labkit.waiting',
-    'listen': 'labkit.waiting',
+    'start': 'labkit.background.runtime',
+    'spin': 'labkit.background.runtime',
+    'remove': 'labkit.background.runtime',
+    'stop': 'labkit.background.runtime',
+    'wait_until': 'labkit.background.waiting',
+    'wait_for_message': 'labkit.background.waiting',
+    'wait_for_subscribers': 'labkit.background.waiting',
+    'listen': 'labkit.background.waiting',
     'graph': 'labkit.views.graph',
     'monitor': 'labkit.views.monitor',
     'plot': 'labkit.views.plot',
-    'processes': 'labkit.processes',
+    'processes': 'labkit.background.child_processes',
     'Turtlebot': 'labkit.sim.turtlebot',
     'arena': 'labkit.views.arena',
     'teleop': 'labkit.views.teleop',
-    'doctor': 'labkit.doctor',
+    'doctor': 'labkit.checkup.report',
     'lesson': 'labkit.exercises.lesson',
     'progress': 'labkit.exercises.progress',
 }
@@ -51,7 +51,7 @@ def __getattr__(name: str) -> object:
     try:
         function = getattr(importlib.import_module(_PUBLIC[name]), name)
         if name in _START_ROS:
-            importlib.import_module('labkit.runtime').start()
+            importlib.import_module('labkit.background.runtime').start()
     except ModuleNotFoundError as error:
         raise SetupError(
             f'{error.name!r} is missing in this Python, {sys.executable}.',

@@ -50,22 +50,22 @@ def _run(words: list[str]) -> int:
     if others[:1] == ['--']:
         others = others[1:]
     if options.command == 'lab':
-        from labkit.learner import start_lab
+        from labkit.course.learner_folder import start_lab
 
         start_lab(others)
     if options.command == 'test':
-        from labkit.run_tests import run_tests
+        from labkit.course.run_tests import run_tests
 
         return run_tests(others)
     if options.command == 'reset':
-        from labkit.learner import reset
+        from labkit.course.learner_folder import reset
 
         print(reset(options.lesson))
         return 0
     if options.command == 'doctor':
         return _doctor(words)
     _enter_environment(words)
-    from labkit.record import record
+    from labkit.course.record import record
 
     return record(options.lessons)
 
@@ -75,7 +75,7 @@ def _doctor(words: Sequence[str]) -> int:
         _enter_environment(words)
     except LabError:
         pass  # no Python with ROS: the doctor says so, among other things
-    from labkit.doctor import doctor
+    from labkit.checkup.report import doctor
 
     report = doctor()
     print(report)
@@ -95,7 +95,7 @@ def _forwarded() -> list[str]:
 
 def _enter_environment(words: Sequence[str]) -> None:
     """Go on in the environment's Python, unless this one is an environment with ROS itself."""
-    from labkit.setup_env import PYTHON, VENV, environment_variables, existing_environment
+    from labkit.setup.environment import PYTHON, VENV, environment_variables, existing_environment
 
     has_ros = importlib.util.find_spec('rclpy') is not None and sys.version_info >= (3, 10)
     inside = os.path.realpath(sys.prefix) == os.path.realpath(VENV)

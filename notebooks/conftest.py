@@ -17,7 +17,7 @@ import pytest
 from nbformat import NotebookNode
 from nbval.plugin import IPyNbCell, IPyNbFile
 
-from labkit.lesson_run import CELL_TIMEOUT_SEC, LessonError, LessonRun, normalised
+from labkit.course.lesson_run import CELL_TIMEOUT_SEC, LessonError, LessonRun, normalised
 
 PICTURES = ('image/png', 'image/jpeg')
 

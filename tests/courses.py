@@ -11,7 +11,7 @@ import zipfile
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
-from labkit import machine
+from labkit.setup import machine
 
 ROOT = Path(__file__).resolve().parent.parent
 # A hang ends; nothing is judged by it.
@@ -80,7 +80,7 @@ class Course:
 
     def make(self, **env: str) -> subprocess.CompletedProcess[str]:
         """Make the environment and nothing else, as `lab` does it before it starts JupyterLab."""
-        return self.python('labkit.setup_env.make_environment()', **env)
+        return self.python('labkit.setup.environment.make_environment()', **env)
 
     def python(self, code: str, **env: str) -> subprocess.CompletedProcess[str]:
         """Run code in a bare Python, as the command line does: errors become a sentence."""
@@ -97,7 +97,7 @@ class Course:
     def script(self, code: str) -> list[str]:
         """Return a command line that runs code under labkit's way to report errors."""
         program = (
-            'import sys, labkit.__main__, labkit.setup_env\n'
+            'import sys, labkit.__main__, labkit.setup.environment\n'
             f'labkit.__main__._run = lambda words: {code} and 0\n'
             'sys.exit(labkit.__main__.main([]))'
         )

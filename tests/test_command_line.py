@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 from courses import ROOT, Course
 
-from labkit import __version__, run_tests
+from labkit import __version__
 from labkit.__main__ import main
+from labkit.course import run_tests
 
 COMMANDS = ('lab', 'test', 'doctor', 'record', 'reset')
 # What a machine that has nothing yet loads, whatever its Python.

@@ -17,48 +17,60 @@ ROOT = Path(__file__).resolve().parent.parent
 # The layer of every module; `labkit.views.*` stands for all modules of a folder and the folder.
 LAYERS = {
     'labkit.errors': 0,
-    'labkit.keeper': 0,
+    'labkit.background.supervisor': 0,
     'labkit.settings': 0,
     'labkit.sim': 0,
     'labkit.sim.kinematics': 0,
     'labkit.sim.simulator': 0,
     'labkit.sim.world': 0,
-    'labkit.console': 1,
-    'labkit.executor': 1,
-    'labkit.nodes': 1,
-    'labkit.pasted': 1,
-    'labkit.runtime': 1,
-    'labkit.silence': 1,
-    'labkit.tracebacks': 1,
+    'labkit.background.console': 1,
+    'labkit.background.executor': 1,
+    'labkit.background.nodes': 1,
+    'labkit.background.notebook_rclpy': 1,
+    'labkit.background.runtime': 1,
+    'labkit.rosgraph.matching': 1,
+    'labkit.background.tracebacks': 1,
     'labkit.bag': 2,
-    'labkit.graph': 2,
-    'labkit.processes': 2,
+    'labkit.rosgraph.snapshot': 2,
+    'labkit.background.child_processes': 2,
+    'labkit.background': 0,
+    'labkit.background.demo_nodes': 2,
+    'labkit.background.discovery': 2,
+    'labkit.background.program': 2,
+    'labkit.background.service_calls': 2,
+    'labkit.course': 5,
+    'labkit.rosgraph': 0,
+    'labkit.rosgraph.interfaces': 2,
+    'labkit.rosgraph.message_yaml': 2,
+    'labkit.rosgraph.packages': 2,
+    'labkit.rosgraph.whose': 3,
+    'labkit.setup': 0,
     'labkit.ros2.*': 2,
     'labkit.sim.messages': 2,
     'labkit.sim.turtlebot': 2,
-    'labkit.waiting': 2,
+    'labkit.background.waiting': 2,
     'labkit.exercises.*': 3,
     'labkit.views.*': 3,
     'labkit.lessons.*': 4,
     'labkit': 5,
     'labkit.__main__': 5,
     'labkit.checkup.*': 5,
-    'labkit.doctor': 5,
-    'labkit.installer': 5,
-    'labkit.learner': 5,
-    'labkit.lesson_run': 5,
-    'labkit.machine': 5,
-    'labkit.record': 5,
-    'labkit.run_tests': 5,
-    'labkit.setup_env': 5,
+    'labkit.checkup.report': 5,
+    'labkit.setup.installer': 5,
+    'labkit.course.learner_folder': 5,
+    'labkit.course.lesson_run': 5,
+    'labkit.setup.machine': 5,
+    'labkit.course.record': 5,
+    'labkit.course.run_tests': 5,
+    'labkit.setup.environment': 5,
 }
 ROS_LAYERS = (1, 2)
 VIEWS_ONLY = ('anywidget', 'ipywidgets', 'matplotlib')
 # What `python3 -m labkit` needs before there is an environment.
 BARE = (
-    *('labkit', 'labkit.__main__', 'labkit.doctor', 'labkit.errors', 'labkit.settings'),
-    *('labkit.installer', 'labkit.learner', 'labkit.machine'),
-    *('labkit.run_tests', 'labkit.setup_env'),
+    *('labkit', 'labkit.__main__', 'labkit.checkup.report', 'labkit.errors', 'labkit.settings'),
+    *('labkit.setup.installer', 'labkit.course.learner_folder', 'labkit.setup.machine'),
+    *('labkit.course.run_tests', 'labkit.setup.environment'),
 )
 
 
@@ -100,7 +112,7 @@ def targets(node: ast.AST) -> Iterator[str]:
         assert node.level == 0, f'line {node.lineno}: write the whole name of the module'
         for alias in node.names:
             inner = f'{node.module}.{alias.name}'
-            # `from labkit import runtime` takes a module, `from labkit import spin` a public name.
+            # `from labkit import settings` takes a module, `from labkit import spin` a name.
             yield inner if layer_of(inner) is not None else str(node.module)
     elif isinstance(node, ast.Call) and called(node) in ('import_module', '__import__'):
         yield computed_name(node.args[0])
@@ -186,12 +198,14 @@ def cycle_graph(sources: dict[str, str]) -> dict[str, set[str]]:
 
 def test_a_cycle_would_be_found():
     sources = {
-        'labkit.runtime': 'from labkit import console',
-        'labkit.console': 'from labkit.runtime import start',
+        'labkit.background.runtime': 'from labkit.background import console',
+        'labkit.background.console': 'from labkit.background.runtime import start',
     }
     with pytest.raises(CycleError):
         TopologicalSorter(cycle_graph(sources)).prepare()
-    sources['labkit.console'] = 'def f():\n    from labkit.runtime import start'
+    sources['labkit.background.console'] = (
+        'def f():\n    from labkit.background.runtime import start'
+    )
     TopologicalSorter(cycle_graph(sources)).prepare()
 
 
@@ -199,23 +213,46 @@ def test_a_cycle_would_be_found():
     ('module', 'source', 'words'),
     [
         ('labkit.unheard_of', '', 'in no layer'),
-        ('labkit.runtime', 'from labkit.unheard_of import x', 'in no layer'),
-        ('labkit.runtime', 'from labkit.waiting import wait_until', 'layer 1 imports'),
-        ('labkit.runtime', 'from labkit import waiting', 'labkit.waiting of layer 2'),
-        ('labkit.runtime', 'def f():\n    import labkit.views.plot', 'line 2: layer 1 imports'),
-        ('labkit.runtime', 'if TYPE_CHECKING:\n    import labkit.graph', 'layer 1 imports'),
+        ('labkit.background.runtime', 'from labkit.unheard_of import x', 'in no layer'),
+        (
+            'labkit.background.runtime',
+            'from labkit.background.waiting import wait_until',
+            'layer 1 imports',
+        ),
+        (
+            'labkit.background.runtime',
+            'from labkit.background import waiting',
+            'waiting of layer 2',
+        ),
+        (
+            'labkit.background.runtime',
+            'def f():\n    import labkit.views.plot',
+            'line 2: layer 1 imports',
+        ),
+        (
+            'labkit.background.runtime',
+            'if TYPE_CHECKING:\n    import labkit.rosgraph.snapshot',
+            'layer 1 imports',
+        ),
         ('labkit.lessons.odds', 'import labkit as lab', 'labkit of layer 5'),
         ('labkit.lessons.odds', 'from labkit import spin', 'labkit of layer 5'),
-        ('labkit.lessons.odds', 'def f():\n    from labkit import doctor', 'of layer 5'),
-        ('labkit.graph', "importlib.import_module('labkit.views.x')", 'layer 2 imports'),
+        (
+            'labkit.rosgraph.snapshot',
+            "importlib.import_module('labkit.views.x')",
+            'layer 2 imports',
+        ),
         ('labkit.exercises.x', "import_module(f'labkit.lessons.{name}')", 'layer 3 imports'),
         ('labkit.exercises.x', "import_module('labkit.' + name)", 'in no layer'),
         ('labkit.sim.world', 'def f():\n    import rclpy', 'nothing of rclpy'),
         ('labkit.views.graph', 'import rclpy.node', 'inside the function'),
         ('labkit.views.graph', 'class A:\n    from rclpy.qos import QoSProfile', 'inside the'),
         ('labkit.lessons.odds', 'try:\n    import rclpy\nfinally:\n    pass', 'inside the'),
-        ('labkit.graph', 'def f():\n    import ipywidgets', 'only labkit.views imports'),
-        ('labkit.doctor', 'from matplotlib import pyplot', 'only labkit.views imports'),
+        (
+            'labkit.rosgraph.snapshot',
+            'def f():\n    import ipywidgets',
+            'only labkit.views imports',
+        ),
+        ('labkit.checkup.report', 'from matplotlib import pyplot', 'only labkit.views imports'),
     ],
 )
 def test_a_forbidden_import_would_be_found(module: str, source: str, words: str):
@@ -225,13 +262,13 @@ def test_a_forbidden_import_would_be_found(module: str, source: str, words: str)
 @pytest.mark.parametrize(
     ('module', 'source'),
     [
-        ('labkit.runtime', 'import rclpy\nfrom labkit import settings\nimport json'),
+        ('labkit.background.runtime', 'import rclpy\nfrom labkit import settings\nimport json'),
         ('labkit.views.plot', 'import matplotlib\ndef f():\n    import rclpy'),
         ('labkit.views.plot', 'if TYPE_CHECKING:\n    from rclpy.node import Node'),
         ('labkit', 'importlib.import_module(name)'),
-        ('labkit.graph', "import_module(f'{package}.msg')"),
-        ('labkit.record', 'from labkit import __version__'),
-        ('labkit.ros2.topic', 'from labkit.ros2.words import verbs'),
+        ('labkit.rosgraph.snapshot', "import_module(f'{package}.msg')"),
+        ('labkit.course.record', 'from labkit import __version__'),
+        ('labkit.ros2.topic', 'from labkit.ros2.parser import verbs'),
     ],
 )
 def test_an_allowed_import_is_let_pass(module: str, source: str):

@@ -16,7 +16,7 @@ from IPython.core.inputtransformer2 import TransformerManager
 from nbformat import NotebookNode
 from nbformat.validator import iter_validate
 
-from labkit.record import CELL_METADATA, KERNELSPEC, as_stored
+from labkit.course.record import CELL_METADATA, KERNELSPEC, as_stored
 
 NOTEBOOKS = Path(__file__).resolve().parent.parent / 'notebooks'
 PATHS = sorted(NOTEBOOKS.glob('*.ipynb'))

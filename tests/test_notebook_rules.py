@@ -10,7 +10,7 @@ import pytest
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 
-from labkit.record import KERNELSPEC, as_stored
+from labkit.course.record import KERNELSPEC, as_stored
 
 _PATH = Path(__file__).with_name('test_notebook_format.py')
 _SPEC = importlib.util.spec_from_file_location('notebook_format', _PATH)

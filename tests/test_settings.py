@@ -25,7 +25,7 @@ sys.stdin.read()
 """
 TALKER = """
 import labkit as lab
-from labkit.runtime import runtime
+from labkit.background.runtime import runtime
 from rclpy.node import Node
 from std_msgs.msg import String
 
@@ -187,7 +187,7 @@ def test_variable_wins_over_a_domain_of_its_own(
 ) -> None:
     claim = settings.claim_domain()
     kernel = start_kernel(ROS_DOMAIN_ID=str(claim.domain_id))
-    show = 'import labkit as lab\nlab.start()\nfrom labkit.runtime import runtime\n'
+    show = 'import labkit as lab\nlab.start()\nfrom labkit.background.runtime import runtime\n'
     show += 'print(runtime.domain_id, runtime.own_domain)'
     assert kernel.run(show).text == f'{claim.domain_id} False\n'
     assert script(show, ROS_DOMAIN_ID=str(claim.domain_id)).stdout == f'{claim.domain_id} False\n'

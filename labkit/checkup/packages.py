@@ -9,11 +9,11 @@ import platform
 import sys
 import sysconfig
 
-from labkit.checkup.words import inside, some
+from labkit.checkup.lists import inside, some
 from labkit.errors import LabError
-from labkit.installer import applicable
-from labkit.machine import VERSIONS, check_platform
-from labkit.setup_env import ROOT, VENV
+from labkit.setup.environment import ROOT, VENV
+from labkit.setup.installer import applicable
+from labkit.setup.machine import VERSIONS, check_platform
 
 __all__ = ['jupyter', 'python', 'ros_packages']
 

@@ -10,12 +10,12 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from labkit import settings
-from labkit.checkup.words import some
+from labkit.checkup.lists import some
 from labkit.errors import LabError
 
 if TYPE_CHECKING:
-    from labkit.nodes import NodeEntry
-    from labkit.runtime import Runtime
+    from labkit.background.nodes import NodeEntry
+    from labkit.background.runtime import Runtime
 
 __all__ = ['callbacks', 'domain', 'middleware', 'nodes']
 
@@ -288,7 +288,7 @@ def _runtime() -> Runtime | None:
     """Return the runtime of this process, None if ROS was not loaded into it."""
     if 'rclpy.node' not in sys.modules:
         return None
-    from labkit.runtime import runtime
+    from labkit.background.runtime import runtime
 
     return runtime
 

@@ -8,9 +8,9 @@ import sysconfig
 from pathlib import Path
 
 from labkit import settings
-from labkit.checkup.words import inside, some
+from labkit.checkup.lists import inside, some
 from labkit.errors import LabError
-from labkit.machine import clean_environment
+from labkit.setup.machine import clean_environment
 
 __all__ = ['variables']
 

@@ -8,7 +8,7 @@ import time
 from collections.abc import Collection
 from typing import Any, Protocol
 
-from labkit.exercises.mishaps import where_it_hangs
+from labkit.exercises.learner_errors import where_it_hangs
 from labkit.exercises.verdict import LearnerError
 
 __all__ = ['Callbacks', 'find_node']
@@ -38,7 +38,7 @@ class Callbacks:
     """The callbacks of this notebook's nodes, from now on."""
 
     def __init__(self) -> None:
-        from labkit.runtime import runtime
+        from labkit.background.runtime import runtime
 
         self._runtime = runtime
         self._before = {id(error): error.count for error in runtime.console.errors}
@@ -84,7 +84,7 @@ class Callbacks:
 
 def find_node(name: str) -> Any:
     """Return the node of that name as an object, None if it is not in this process."""
-    from labkit.runtime import runtime
+    from labkit.background.runtime import runtime
 
     for entry in runtime.nodes():
         if entry.name == name:

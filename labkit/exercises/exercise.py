@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from labkit.errors import LabError
-from labkit.exercises.finding import alone
-from labkit.exercises.mishaps import explain_error, last_cell
-from labkit.exercises.noting import progress_store
+from labkit.exercises.attempts import progress_store
+from labkit.exercises.expect.endpoints import alone
+from labkit.exercises.learner_errors import explain_error, last_cell
 from labkit.exercises.probe import Probe
 from labkit.exercises.recorder import Recorder
 from labkit.exercises.verdict import Fail, LearnerError, NotAttempted, Outcome, Verdict
-from labkit.views.verdict import Card
+from labkit.views.card import Card
 
 __all__ = ['Exercise', 'Solution', 'Style', 'Wrong', 'changed']
 
@@ -139,7 +139,7 @@ class Exercise:
     def begin(self) -> None:
         """Get ready: called in the setup cell of the notebook."""
         if self._recorder is not None:
-            from labkit.runtime import start
+            from labkit.background.runtime import start
 
             start()
             self._recorder.keep()

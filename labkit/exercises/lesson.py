@@ -10,9 +10,9 @@ from collections.abc import Sequence
 
 from labkit.errors import LabError
 from labkit.exercises.exercise import Exercise
-from labkit.exercises.mishaps import last_cell
+from labkit.exercises.learner_errors import last_cell
 from labkit.exercises.quiz import Quiz
-from labkit.views.verdict import Card
+from labkit.views.card import Card
 
 __all__ = ['Lesson', 'NoSuchNameError', 'all_lessons', 'lesson', 'lesson_names']
 

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from labkit.exercises.callbacks import Callbacks, find_node
-from labkit.exercises.places import interrupt_child, place, same_process, starting_children
 from labkit.exercises.verdict import Fail
 from labkit.exercises.watch import Watch, build, message_class
+from labkit.rosgraph.whose import interrupt_child, place, same_process, starting_children
 
 __all__ = ['Endpoint', 'Probe', 'is_hidden']
 
@@ -105,7 +105,7 @@ class Probe:
         from rclpy.node import Node
         from rclpy.parameter import Parameter
 
-        from labkit.runtime import runtime
+        from labkit.background.runtime import runtime
 
         self._fresh = not runtime.started
         runtime.start()
@@ -210,7 +210,7 @@ class Probe:
 
     def node_names(self) -> list[str]:
         """Return the full names of the learner's nodes; one that runs twice is there twice."""
-        from labkit.graph import node_names
+        from labkit.rosgraph.snapshot import node_names
 
         names = node_names(self.node)
         return [name for name in names if not is_hidden(name) and name not in self.given]
@@ -284,7 +284,7 @@ class Probe:
         """
         node = self.node_object(endpoint.node) if self.in_this_process(endpoint) else None
         if node is not None:
-            from labkit.runtime import remove
+            from labkit.background.runtime import remove
 
             remove(node)
         elif not interrupt_child(endpoint.gid):

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from labkit.exercises.attempts import number_of, progress_store
 from labkit.exercises.lesson import all_lessons
-from labkit.exercises.noting import number_of, progress_store
-from labkit.views.progress import Item, Row, picture, text_form
+from labkit.views.progress_picture import Item, Row, picture, text_form
 
 __all__ = ['ProgressView', 'main', 'progress']
 

@@ -11,10 +11,10 @@ from typing import Any
 
 from labkit import settings
 from labkit.errors import LabError
-from labkit.exercises.mishaps import last_cell
-from labkit.exercises.noting import progress_store
+from labkit.exercises.attempts import progress_store
+from labkit.exercises.learner_errors import last_cell
 from labkit.exercises.questions import LETTERS, Question
-from labkit.views.verdict import Card
+from labkit.views.card import Card
 
 __all__ = ['Quiz']
 

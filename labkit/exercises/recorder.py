@@ -33,11 +33,11 @@ class Recorder:
 
     def keep(self) -> None:
         """Take what has come; start, or start again after `lab.stop()`, if ROS is up."""
-        from labkit.runtime import runtime
+        from labkit.background.runtime import runtime
 
         if not runtime.started:
             return
-        from labkit.nodes import node_exists
+        from labkit.background.nodes import node_exists
 
         if self._node is None or not node_exists(self._node):
             self._open()

@@ -10,7 +10,7 @@ import dataclasses
 import enum
 from dataclasses import dataclass
 
-from labkit.views.verdict import Card
+from labkit.views.card import Card
 
 __all__ = ['Fail', 'LearnerError', 'NotAttempted', 'Outcome', 'Verdict']
 

@@ -8,8 +8,8 @@ from argparse import Namespace
 from collections.abc import Iterable
 
 from labkit.errors import LabError
+from labkit.ros2.parser import Parser
 from labkit.ros2.shell import COMMANDS, command
-from labkit.ros2.words import Parser
 
 __all__ = ['complete', 'complete_line']
 

@@ -9,9 +9,9 @@ from collections.abc import Iterator
 from rosidl_adapter.parser import parse_message_string  # type: ignore[import-untyped]
 
 from labkit import settings
-from labkit.ros2 import interfaces
-from labkit.ros2.messages import to_yaml
-from labkit.ros2.words import Command, Parser, Usage, Verb
+from labkit.ros2.parser import Command, Parser, Usage, Verb
+from labkit.rosgraph import interfaces
+from labkit.rosgraph.message_yaml import to_yaml
 
 __all__ = ['COMMAND']
 

@@ -11,12 +11,12 @@ from rclpy.action.graph import (
 )
 from rclpy.node import Node
 
+from labkit.background.discovery import add_discovery_options, asking_node, soon, unknown
 from labkit.errors import LabError
-from labkit.graph import is_hidden
-from labkit.graph import node_names as names_of_nodes
-from labkit.ros2.context import add_discovery_options, asking_node, soon, unknown
-from labkit.ros2.names import node_names
-from labkit.ros2.words import Command, Parser, Verb
+from labkit.ros2.graph_words import node_names
+from labkit.ros2.parser import Command, Parser, Verb
+from labkit.rosgraph.snapshot import is_hidden
+from labkit.rosgraph.snapshot import node_names as names_of_nodes
 
 __all__ = ['COMMAND']
 

@@ -15,13 +15,18 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter as NodeParameter
 from rclpy.parameter import get_parameter_value, parameter_value_to_python
 
+from labkit.background.discovery import (
+    add_discovery_options,
+    asking_node,
+    check_node_name,
+    unknown,
+)
+from labkit.background.service_calls import call_node
 from labkit.errors import LabError
-from labkit.graph import is_hidden
-from labkit.graph import node_names as names_of_nodes
-from labkit.ros2.calls import call_node
-from labkit.ros2.context import add_discovery_options, asking_node, check_node_name, unknown
-from labkit.ros2.names import node_names
-from labkit.ros2.words import Command, Parser, Verb, positive_float
+from labkit.ros2.graph_words import node_names
+from labkit.ros2.parser import Command, Parser, Verb, positive_float
+from labkit.rosgraph.snapshot import is_hidden
+from labkit.rosgraph.snapshot import node_names as names_of_nodes
 
 __all__ = ['COMMAND']
 

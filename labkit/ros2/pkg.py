@@ -7,8 +7,8 @@ import xml.etree.ElementTree as ET
 from argparse import Namespace
 
 from labkit.errors import LabError
-from labkit.ros2.executables import DEMO, executables, package_names, prefix_of
-from labkit.ros2.words import Command, Parser, Verb
+from labkit.ros2.parser import Command, Parser, Verb
+from labkit.rosgraph.packages import DEMO, executables, package_names, prefix_of
 
 __all__ = ['COMMAND']
 

@@ -18,11 +18,11 @@ from collections.abc import Iterable
 from rclpy.node import Node
 
 from labkit import settings
-from labkit.graph import is_hidden, node_names
-from labkit.processes import Process, end_earlier, environment, start_process
-from labkit.ros2.context import alone, asking_node, calm
-from labkit.ros2.executables import DEMO, Executable, executable, executables, package_names
-from labkit.ros2.words import Command, Parser, Verb
+from labkit.background.child_processes import Process, end_earlier, environment, start_process
+from labkit.background.discovery import alone, asking_node, calm
+from labkit.ros2.parser import Command, Parser, Verb
+from labkit.rosgraph.packages import DEMO, Executable, executable, executables, package_names
+from labkit.rosgraph.snapshot import is_hidden, node_names
 
 __all__ = ['COMMAND']
 

@@ -11,16 +11,16 @@ from collections.abc import Iterable
 from rclpy.node import Node
 
 from labkit import settings
+from labkit.background.discovery import add_discovery_options, alone, asking_node, soon, unknown
+from labkit.background.service_calls import ServiceCalls
 from labkit.errors import LabError
-from labkit.graph import is_hidden
-from labkit.ros2 import interfaces
-from labkit.ros2.calls import ServiceCalls
-from labkit.ros2.context import add_discovery_options, alone, asking_node, soon, unknown
-from labkit.ros2.messages import fill, prototype, read_yaml
-from labkit.ros2.names import service_names, service_types
+from labkit.ros2.graph_words import service_names, service_types
+from labkit.ros2.parser import Command, Parser, Usage, Verb, positive_float
 from labkit.ros2.streams import expand
-from labkit.ros2.words import Command, Parser, Usage, Verb, positive_float
-from labkit.silence import type_name
+from labkit.rosgraph import interfaces
+from labkit.rosgraph.matching import type_name
+from labkit.rosgraph.message_yaml import fill, prototype, read_yaml
+from labkit.rosgraph.snapshot import is_hidden
 
 __all__ = ['COMMAND']
 

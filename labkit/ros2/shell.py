@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from labkit import settings
 from labkit.errors import LabError
-from labkit.ros2.words import Command, Done, Usage, Verb, nearest, table
+from labkit.ros2.parser import Command, Done, Usage, Verb, nearest, table
 
 __all__ = ['COMMANDS', 'Ran', 'command', 'execute', 'history', 'run_line', 'split']
 
@@ -171,7 +171,7 @@ def _start(words: list[str]) -> str | int | None:
     verb, args = _understand(words)
     if verb.name == 'run':
         return verb.run(args)  # is in the background anyway
-    from labkit.ros2.background import start
+    from labkit.ros2.background_command import start
 
     return start(words, args)
 

@@ -8,15 +8,15 @@ from argparse import Namespace
 from rclpy.node import Node
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
+from labkit.background.discovery import add_discovery_options, asking_node, soon, unknown
 from labkit.errors import LabError
-from labkit.graph import full_node_name, is_hidden
-from labkit.ros2 import interfaces
-from labkit.ros2.context import add_discovery_options, asking_node, soon, unknown
-from labkit.ros2.names import topic_names
+from labkit.ros2.graph_words import topic_names
+from labkit.ros2.parser import Command, Parser, Verb
 from labkit.ros2.topic_echo import ECHO
 from labkit.ros2.topic_pub import PUB
 from labkit.ros2.topic_rates import BW, DELAY, HZ
-from labkit.ros2.words import Command, Parser, Verb
+from labkit.rosgraph import interfaces
+from labkit.rosgraph.snapshot import full_node_name, is_hidden
 
 __all__ = ['COMMAND']
 

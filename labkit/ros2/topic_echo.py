@@ -11,14 +11,10 @@ from typing import Any
 from rclpy.node import Node
 
 from labkit import settings
+from labkit.background.discovery import add_discovery_options, asking_node, soon
 from labkit.errors import LabError
-from labkit.ros2 import interfaces
-from labkit.ros2.context import add_discovery_options, asking_node, soon
-from labkit.ros2.messages import field_paths, to_csv, to_yaml
-from labkit.ros2.names import topic_names, topic_types
-from labkit.ros2.qos import add_qos_options, matching_profile
-from labkit.ros2.streams import MAX_SHOWN, Arrivals, Stop, expand, subscribed, tell, wait_for_type
-from labkit.ros2.words import (
+from labkit.ros2.graph_words import topic_names, topic_types
+from labkit.ros2.parser import (
     Parser,
     Usage,
     Verb,
@@ -27,7 +23,11 @@ from labkit.ros2.words import (
     positive_int,
     unsigned_int,
 )
-from labkit.silence import type_name, why_silent
+from labkit.ros2.qos_options import add_qos_options, matching_profile
+from labkit.ros2.streams import MAX_SHOWN, Arrivals, Stop, expand, subscribed, tell, wait_for_type
+from labkit.rosgraph import interfaces
+from labkit.rosgraph.matching import type_name, why_silent
+from labkit.rosgraph.message_yaml import field_paths, to_csv, to_yaml
 
 __all__ = ['ECHO']
 

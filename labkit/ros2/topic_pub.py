@@ -19,18 +19,18 @@ from rclpy.publisher import Publisher
 from rclpy.qos import ReliabilityPolicy
 
 from labkit import settings
+from labkit.background.discovery import add_discovery_options, asking_node, soon
+from labkit.background.nodes import destroy_node
+from labkit.background.runtime import runtime
 from labkit.errors import LabError
-from labkit.graph import is_hidden
-from labkit.nodes import destroy_node
-from labkit.ros2 import interfaces
-from labkit.ros2.context import add_discovery_options, asking_node, soon
-from labkit.ros2.messages import fill, prototype, read_yaml
-from labkit.ros2.names import topic_names, topic_types
-from labkit.ros2.qos import add_qos_options, profile_from
+from labkit.ros2.graph_words import topic_names, topic_types
+from labkit.ros2.parser import Parser, Usage, Verb, nearest, positive_float, unsigned_int
+from labkit.ros2.qos_options import add_qos_options, profile_from
 from labkit.ros2.streams import MAX_SHOWN, Stop, expand, tell
-from labkit.ros2.words import Parser, Usage, Verb, nearest, positive_float, unsigned_int
-from labkit.runtime import runtime
-from labkit.silence import other_type_here, type_name
+from labkit.rosgraph import interfaces
+from labkit.rosgraph.matching import other_type_here, type_name
+from labkit.rosgraph.message_yaml import fill, prototype, read_yaml
+from labkit.rosgraph.snapshot import is_hidden
 
 __all__ = ['PUB']
 

@@ -13,10 +13,10 @@ from typing import Any
 from rclpy.qos import qos_profile_sensor_data
 from rclpy.time import Time
 
+from labkit.background.discovery import add_discovery_options, asking_node, soon
 from labkit.errors import LabError
-from labkit.ros2 import interfaces
-from labkit.ros2.context import add_discovery_options, asking_node, soon
-from labkit.ros2.names import topic_names
+from labkit.ros2.graph_words import topic_names
+from labkit.ros2.parser import Parser, Usage, Verb, positive_int
 from labkit.ros2.streams import (
     Arrivals,
     Stop,
@@ -25,8 +25,8 @@ from labkit.ros2.streams import (
     subscribed,
     wait_for_type,
 )
-from labkit.ros2.words import Parser, Usage, Verb, positive_int
-from labkit.silence import type_name, why_silent
+from labkit.rosgraph import interfaces
+from labkit.rosgraph.matching import type_name, why_silent
 
 __all__ = ['BW', 'DELAY', 'HZ']
 

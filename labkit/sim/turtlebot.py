@@ -22,7 +22,7 @@ from rclpy.qos import qos_profile_sensor_data
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, LaserScan
 
-from labkit import runtime
+from labkit.background import runtime
 from labkit.errors import LabError
 from labkit.sim.kinematics import Pose, Twist2
 from labkit.sim.messages import (

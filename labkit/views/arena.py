@@ -19,8 +19,8 @@ import anywidget
 import numpy as np
 
 from labkit import settings
+from labkit.background.runtime import runtime
 from labkit.errors import LabError
-from labkit.runtime import runtime
 from labkit.sim.kinematics import BURGER, Pose, Twist2, wrap_angle, yaw_from_quaternion
 from labkit.views.arena_picture import Scene, to_svg
 from labkit.views.live import replace_earlier

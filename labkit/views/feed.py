@@ -11,13 +11,13 @@ from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from labkit.background.nodes import node_exists
 from labkit.errors import LabError
-from labkit.graph import UNKNOWN_NODE, Endpoint, endpoints
-from labkit.nodes import node_exists
-from labkit.ros2.interfaces import message_class
-from labkit.ros2.qos import match_all
+from labkit.ros2.qos_options import match_all
 from labkit.ros2.streams import expand
-from labkit.silence import nobody_publishes, other_type_here, type_name, why_silent
+from labkit.rosgraph.interfaces import message_class
+from labkit.rosgraph.matching import nobody_publishes, other_type_here, type_name, why_silent
+from labkit.rosgraph.snapshot import UNKNOWN_NODE, Endpoint, endpoints
 
 if TYPE_CHECKING:
     from rclpy.node import Node

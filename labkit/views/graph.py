@@ -9,10 +9,10 @@ from __future__ import annotations
 from typing import Any
 
 from labkit import settings
+from labkit.background.discovery import soon
+from labkit.background.runtime import runtime
 from labkit.errors import LabError
-from labkit.graph import Graph, GraphNode, is_whole, read_graph
-from labkit.ros2.context import soon
-from labkit.runtime import runtime
+from labkit.rosgraph.snapshot import Graph, GraphNode, is_whole, read_graph
 
 __all__ = ['GraphView', 'graph', 'to_mermaid']
 
@@ -30,7 +30,7 @@ class GraphView:
     """The computation graph, to be shown in a cell.
 
     Attributes:
-        data: The graph as data, see `labkit.graph.Graph`.
+        data: The graph as data, see `labkit.rosgraph.snapshot.Graph`.
     """
 
     def __init__(self, *, services: bool, hidden: bool, live: bool) -> None:

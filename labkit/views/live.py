@@ -17,9 +17,9 @@ from typing import Any
 import anywidget
 
 from labkit import settings
-from labkit.nodes import after_destroy, node_exists
-from labkit.ros2.context import alone, asking_node
-from labkit.runtime import runtime
+from labkit.background.discovery import alone, asking_node
+from labkit.background.nodes import after_destroy, node_exists
+from labkit.background.runtime import runtime
 from labkit.views.feed import Feed
 
 __all__ = ['Live', 'heard', 'is_live', 'page_widget', 'replace_earlier']

@@ -9,10 +9,10 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Any
 
+from labkit.background.runtime import runtime
 from labkit.errors import LabError
-from labkit.graph import UNKNOWN_NODE, Endpoint
-from labkit.runtime import runtime
-from labkit.silence import type_name
+from labkit.rosgraph.matching import type_name
+from labkit.rosgraph.snapshot import UNKNOWN_NODE, Endpoint
 from labkit.views.feed import Feed, checked_type
 from labkit.views.live import Live, heard, page_widget
 from labkit.views.message_tree import as_text, rows

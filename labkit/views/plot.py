@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from labkit.background.runtime import runtime
 from labkit.errors import LabError
-from labkit.ros2.interfaces import message_class
 from labkit.ros2.streams import expand
-from labkit.runtime import runtime
+from labkit.rosgraph.interfaces import message_class
 from labkit.views.feed import Feed
 from labkit.views.live import Live, heard, page_widget
 from labkit.views.plot_fields import Source, parse, resolve, unit_of

@@ -12,9 +12,9 @@ from operator import attrgetter, itemgetter
 from typing import Any
 
 from labkit.errors import LabError
-from labkit.ros2.interfaces import message_class
-from labkit.ros2.words import nearest
-from labkit.silence import type_name
+from labkit.ros2.parser import nearest
+from labkit.rosgraph.interfaces import message_class
+from labkit.rosgraph.matching import type_name
 
 __all__ = ['Source', 'number_paths', 'parse', 'resolve', 'unit_of']
 

@@ -13,7 +13,7 @@ import anywidget
 import traitlets
 
 from labkit.errors import LabError
-from labkit.views.verdict import Card
+from labkit.views.card import Card
 
 __all__ = ['QuizForm', 'quiz_form']
 

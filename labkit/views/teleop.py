@@ -16,9 +16,9 @@ from typing import Any
 import anywidget
 
 from labkit import settings
+from labkit.background.nodes import destroy_node, node_exists
+from labkit.background.runtime import runtime
 from labkit.errors import LabError
-from labkit.nodes import destroy_node, node_exists
-from labkit.runtime import runtime
 from labkit.sim.kinematics import BURGER
 from labkit.views.arena_picture import two
 

@@ -97,7 +97,7 @@ def test_two_notebooks_do_not_hear_each_other(open_cells):
         setup=SETUP,
         listener=LISTENER,
         hear="lab.wait_for_message('/chatter', String, timeout_sec=2)",
-        domain='from labkit.runtime import runtime\nprint(runtime.domain_id)',
+        domain='from labkit.background.runtime import runtime\nprint(runtime.domain_id)',
         join='lab.stop()\nlab.start(domain_id=DOMAIN)',
     )
     for notebook in (talking, quiet):
@@ -108,7 +108,10 @@ def test_two_notebooks_do_not_hear_each_other(open_cells):
     heard = quiet.run_cell('hear')
     assert 'LabTimeout' in heard and 'Nobody publishes on /chatter' in heard
     # The same two hear each other when one joins the other's domain: so it was not by accident.
-    talking.replace_cell('talker', 'from labkit.runtime import runtime\nprint(runtime.domain_id)')
+    talking.replace_cell(
+        'talker',
+        'from labkit.background.runtime import runtime\nprint(runtime.domain_id)',
+    )
     domain = talking.run_cell('talker')
     assert domain != quiet.run_cell('domain')
     quiet.replace_cell('join', f'lab.stop()\nlab.start(domain_id={domain})')

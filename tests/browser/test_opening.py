@@ -9,7 +9,7 @@ import urllib.request
 import pytest
 from playwright.sync_api import expect
 
-from labkit.learner import FIRST
+from labkit.course.learner_folder import FIRST
 from tests.browser.jupyter import JupyterLab
 from tests.browser.page import Notebook
 

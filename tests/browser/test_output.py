@@ -9,7 +9,7 @@ from playwright.sync_api import expect
 from tests.browser.samples import LISTENER, SETUP, TALKER
 
 NODES = """
-from labkit.runtime import runtime
+from labkit.background.runtime import runtime
 print(runtime.helper.get_node_names())
 """
 

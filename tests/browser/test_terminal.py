@@ -7,7 +7,7 @@ import time
 
 import websocket
 
-from labkit.setup_env import PYTHON
+from labkit.setup.environment import PYTHON
 from tests.conftest import TIMEOUT_SEC
 
 

@@ -13,7 +13,7 @@ from tests.browser.page import Notebook, open_notebook
 CELLS = {
     'setup': """
 import labkit as lab
-from labkit.runtime import runtime
+from labkit.background.runtime import runtime
 from rclpy.node import Node
 from std_msgs.msg import Int16, String
 

@@ -19,7 +19,8 @@ class Counter(Node):
 """
 SETUP = """
 import labkit as lab
-from labkit.exercises import Exercise, Lesson, Solution, expect
+from labkit.exercises import Exercise, Lesson, Solution
+from labkit.exercises import expect
 def judge(probe):
     expect.publisher(probe, '/odds', 'std_msgs/msg/Int16')
 exercise = Exercise(name='ones', task='', topics=['/odds'], judge=judge, hints=['.'],
@@ -28,8 +29,8 @@ Lesson('odds', '04_odds.ipynb', exercises=[exercise]).begin()
 lab.start()
 """
 SEES = """
-from labkit.graph import node_names
-from labkit.runtime import runtime
+from labkit.rosgraph.snapshot import node_names
+from labkit.background.runtime import runtime
 def sees_noise():
     return '/noise' in node_names(runtime.helper)
 """

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from labkit.exercises import progress as module
+from labkit.exercises.attempts import progress_store
 from labkit.exercises.exercise import Exercise, Solution
 from labkit.exercises.lesson import Lesson
-from labkit.exercises.noting import progress_store
 from labkit.exercises.progress import main, progress
 from labkit.exercises.questions import Choice, right, wrong
 from labkit.exercises.quiz import Quiz

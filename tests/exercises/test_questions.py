@@ -6,7 +6,7 @@ import pytest
 
 from labkit.errors import LabError
 from labkit.exercises import Choice, Number, Quiz, Several, Word, right, wrong
-from labkit.exercises.noting import progress_store
+from labkit.exercises.attempts import progress_store
 
 ODD = Choice(
     'Which is odd?',

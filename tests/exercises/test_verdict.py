@@ -7,7 +7,7 @@ import pytest
 
 from labkit.exercises import Outcome
 from labkit.exercises.verdict import Verdict
-from labkit.views.verdict import Card
+from labkit.views.card import Card
 
 EVIL = '<script>alert("x")</script><img src=x onerror=alert(1)>'
 FULL = Verdict(

@@ -13,8 +13,8 @@ from pathlib import Path
 import psutil
 from rclpy.node import Node
 
-from labkit.nodes import existing_nodes
-from labkit.runtime import remove, runtime
+from labkit.background.nodes import existing_nodes
+from labkit.background.runtime import remove, runtime
 
 _before: weakref.WeakSet[Node] = weakref.WeakSet()
 _foreign_before: set[str] = set()

@@ -14,9 +14,9 @@ import nbformat
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell
 
+from labkit.course.lesson_run import LessonError, LessonRun
 from labkit.exercises import Exercise, Lesson, Outcome
 from labkit.exercises.lesson import lesson_names, load
-from labkit.lesson_run import LessonError, LessonRun
 
 HERE = Path(__file__).resolve().parent
 NOTEBOOKS = HERE.parent.parent / 'notebooks'

@@ -247,25 +247,25 @@ def _alive(pid: int) -> bool:
 
 PIDS = """
 from pathlib import Path
-keeper = processes()[0]._keeper.pid
-child = Path(f'/proc/{keeper}/task/{keeper}/children').read_text().split()[0]
-print(keeper, child)
+supervisor = processes()[0]._supervisor.pid
+child = Path(f'/proc/{supervisor}/task/{supervisor}/children').read_text().split()[0]
+print(supervisor, child)
 """
 
 
-@pytest.mark.parametrize('how', ['kill the kernel', 'shut down', 'kill the keeper'])
+@pytest.mark.parametrize('how', ['kill the kernel', 'shut down', 'kill the supervisor'])
 def test_processes_end_with_the_kernel_whatever_ends_it(lab_kernel, how):
     assert not lab_kernel.run(RUN.format('talker')).error
-    keeper, child = map(int, lab_kernel.run(PIDS).text.split())
-    assert _alive(keeper) and _alive(child)
+    supervisor, child = map(int, lab_kernel.run(PIDS).text.split())
+    assert _alive(supervisor) and _alive(child)
     if how == 'kill the kernel':
         os.kill(lab_kernel.process.pid, signal.SIGKILL)
         lab_kernel.process.wait()
     elif how == 'shut down':
         assert lab_kernel.shutdown() == 0
     else:
-        os.kill(keeper, signal.SIGKILL)
+        os.kill(supervisor, signal.SIGKILL)
     end = time.monotonic() + 60
-    while (_alive(keeper) or _alive(child)) and time.monotonic() < end:
+    while (_alive(supervisor) or _alive(child)) and time.monotonic() < end:
         time.sleep(0.05)
-    assert not _alive(child) and not _alive(keeper)
+    assert not _alive(child) and not _alive(supervisor)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import sys
 
-from labkit.ros2 import interfaces
 from labkit.ros2.shell import run_line
+from labkit.rosgraph import interfaces
 
 TWIST_STAMPED = """\
 # A twist with reference coordinate frame and timestamp

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from labkit.ros2.completion import complete_line
+from labkit.ros2.parser import Done, Usage
 from labkit.ros2.shell import COMMANDS, command, run_line, split
-from labkit.ros2.words import Done, Usage
 
 VERBS = [verb.name for name in COMMANDS for verb in command(name).verbs]
 OPTIONS = sorted(

@@ -97,7 +97,7 @@ def test_domain_of_the_one_running_notebook(monkeypatch):
 def test_a_kernel_claims_its_domain_by_the_name_of_its_notebook(start_kernel):
     kernel = start_kernel(JPY_SESSION_NAME='/some/where/04_odds.ipynb')
     result = kernel.run(
-        'import labkit as lab\nlab.start()\nfrom labkit.runtime import runtime\n'
+        'import labkit as lab\nlab.start()\nfrom labkit.background.runtime import runtime\n'
         'print(runtime.domain_id)'
     )
     assert settings.claimed_domains()[int(result.text)] == '04_odds.ipynb'

@@ -14,7 +14,7 @@ from labkit.views.arena_picture import Scene, bounds, joined, row, to_svg
 ROBOT = """
 import labkit as lab
 from geometry_msgs.msg import Twist
-from labkit.runtime import runtime
+from labkit.background.runtime import runtime
 from rclpy.node import Node
 robot = lab.spin(lab.Turtlebot(lockstep=0.1))
 pilot = lab.spin(Node('pilot'))

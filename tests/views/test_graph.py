@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from rclpy.qos import QoSProfile
 
-from labkit.graph import Endpoint, Graph, GraphNode, GraphTopic
+from labkit.rosgraph.snapshot import Endpoint, Graph, GraphNode, GraphTopic
 from labkit.views.graph import to_mermaid
 
 NODES = """
@@ -62,7 +62,9 @@ def test_live_picture_follows_and_ends_when_closed(kernel):
     kernel.run(NODES)
     kernel.run('view = lab.graph(live=True)\nview')
     assert kernel.run('view').error == ''
-    timers = 'from labkit.runtime import runtime\nprint(len(list(runtime.helper.timers)))'
+    timers = (
+        'from labkit.background.runtime import runtime\nprint(len(list(runtime.helper.timers)))'
+    )
     before = int(kernel.run(timers).text)
     kernel.run('lab.spin(Node("extra"))\nlab.wait_until(lambda: "/extra" in repr(view))')
     assert 'extra' in kernel.run('print(view)').text

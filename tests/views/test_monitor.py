@@ -9,7 +9,7 @@ from labkit.settings import claim_domain
 STAGE = """
 import time
 import labkit as lab
-from labkit.runtime import runtime
+from labkit.background.runtime import runtime
 from labkit.views import live
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from xml.etree import ElementTree
 
-from labkit.views.progress import Item, Row, picture, text_form
+from labkit.views.progress_picture import Item, Row, picture, text_form
 
 ROWS = [
     Row('01_a & b', [Item('exercise', '<one>', 'done'), Item('question', 'q.1', 'tried')]),

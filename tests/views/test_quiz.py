@@ -7,8 +7,8 @@ import pytest
 
 from labkit.errors import LabError
 from labkit.exercises import Choice, Number, Quiz, right, wrong
+from labkit.views.card import Card
 from labkit.views.quiz import QuizForm, quiz_form
-from labkit.views.verdict import Card
 
 EVIL = '<img src=x onerror=alert(1)>'
 

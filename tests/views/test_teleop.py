@@ -7,7 +7,7 @@ import pytest
 PILOT = """
 import labkit as lab
 from geometry_msgs.msg import Twist
-from labkit.runtime import runtime
+from labkit.background.runtime import runtime
 from rclpy.node import Node
 
 heard = []

@@ -20,7 +20,7 @@ from labkit.exercises import (
     expect,
 )
 from labkit.exercises.watch import Sample
-from labkit.lessons.command_line.refused import explain_last_command, forget_commands
+from labkit.lessons.command_line.last_command import explain_last_command, forget_commands
 
 __all__ = ['drive']
 

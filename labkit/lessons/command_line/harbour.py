@@ -15,7 +15,7 @@ from labkit.errors import LabTimeout
 if TYPE_CHECKING:
     from rclpy.node import Node
 
-    from labkit.processes import Process
+    from labkit.background.child_processes import Process
 
 __all__ = ['MEASURES', 'NODES', 'TOPICS', 'open_harbour']
 
@@ -48,8 +48,8 @@ def open_harbour() -> None:
         LabTimeout: Its nodes did not come.
     """
     global _process
-    from labkit.processes import environment, start_process
-    from labkit.runtime import runtime
+    from labkit.background.child_processes import environment, start_process
+    from labkit.background.runtime import runtime
 
     if _process is not None:
         _process.stop()
@@ -71,7 +71,7 @@ def _is_open() -> bool:
     Publishers come in the order in which they were made, and so do subscriptions and services.
     Which node they belong to is told afterwards, each time for the whole process.
     """
-    from labkit.runtime import runtime
+    from labkit.background.runtime import runtime
 
     assert runtime.helper is not None
     diaries = runtime.helper.get_publishers_info_by_topic(DIARY)
@@ -84,7 +84,7 @@ def main() -> None:
     import rclpy
     from rclpy.node import Node
 
-    from labkit.ros2.program import spin_until_interrupted
+    from labkit.background.program import spin_until_interrupted
 
     rclpy.init()
     # Parameters are asked for at the lighthouse only; services cost time at the start.
@@ -104,7 +104,7 @@ def _furnish_piers(piers: list[Node]) -> None:
     """Let one pier measure the tide, one the water, and each of them the wind."""
     from std_msgs.msg import Float32
 
-    from labkit.ros2.interfaces import message_class
+    from labkit.rosgraph.interfaces import message_class
 
     for pier in piers:
         _publish(pier, '/wind', Float32(data=7.5), 1)

@@ -24,8 +24,8 @@ def _graph() -> Node:
     Raises:
         LabError: The harbour is closed.
     """
-    from labkit.graph import node_names
-    from labkit.runtime import runtime
+    from labkit.background.runtime import runtime
+    from labkit.rosgraph.snapshot import node_names
 
     runtime.start()
     assert runtime.helper is not None
@@ -137,7 +137,7 @@ def _no_listeners(number: float) -> str:
 def _parameter(name: str) -> int:
     from rcl_interfaces.srv import GetParameters
 
-    from labkit.ros2.calls import call_node
+    from labkit.background.service_calls import call_node
 
     request = GetParameters.Request(names=[name])
     response = call_node(_graph(), GetParameters, LIGHTHOUSE, 'get_parameters', request)

@@ -16,7 +16,7 @@ from labkit.exercises import (
     changed,
     expect,
 )
-from labkit.lessons.command_line.refused import explain_last_command, forget_commands
+from labkit.lessons.command_line.last_command import explain_last_command, forget_commands
 
 __all__ = ['odds']
 

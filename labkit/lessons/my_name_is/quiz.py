@@ -8,7 +8,7 @@ __all__ = ['QUIZ']
 
 
 def _listeners_of_incomplete() -> float:
-    from labkit.runtime import runtime
+    from labkit.background.runtime import runtime
 
     assert runtime.helper is not None
     return runtime.helper.count_subscribers('/incomplete')

@@ -47,7 +47,7 @@ _DIFFERS = "!= 'std_msgs/msg/Int16'"
 
 
 def _judge_find_gate(probe: Probe) -> str:
-    from labkit.graph import UNKNOWN_NODE
+    from labkit.rosgraph.snapshot import UNKNOWN_NODE
 
     gates = wrong_gates()
     if not gates:

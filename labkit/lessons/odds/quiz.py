@@ -9,7 +9,7 @@ __all__ = ['QUIZ']
 
 
 def _publishers_of_visitors() -> float:
-    from labkit.runtime import runtime
+    from labkit.background.runtime import runtime
 
     assert runtime.helper is not None
     return runtime.helper.count_publishers(VISITORS)

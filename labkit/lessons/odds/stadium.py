@@ -37,7 +37,7 @@ def open_stadium() -> None:
         LabTimeout: Its nodes did not come.
     """
     global _process
-    from labkit.runtime import runtime
+    from labkit.background.runtime import runtime
 
     close_stadium()
     runtime.start()
@@ -68,7 +68,7 @@ def wrong_gates() -> list[str]:
 
 def _is_open() -> bool:
     """Say whether every node of the stadium is seen, and each with its publisher."""
-    from labkit.runtime import runtime
+    from labkit.background.runtime import runtime
 
     publishing = {*_types(VISITORS), *_types(GOALS)}
     return set(NODES) <= publishing and set(NODES) <= runtime.foreign_nodes()
@@ -76,7 +76,7 @@ def _is_open() -> bool:
 
 def _types(topic: str) -> dict[str, str]:
     """Return the type of each node that publishes on a topic, by the node's full name."""
-    from labkit.runtime import runtime
+    from labkit.background.runtime import runtime
 
     assert runtime.helper is not None
     infos = runtime.helper.get_publishers_info_by_topic(topic)

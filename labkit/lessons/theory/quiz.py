@@ -7,7 +7,7 @@ from labkit.exercises import Choice, Number, Quiz, Several, Word, right, wrong
 
 def publishers_of_sight() -> int:
     """Count the publishers of /sight at this moment."""
-    from labkit.runtime import runtime
+    from labkit.background.runtime import runtime
 
     runtime.start()
     assert runtime.helper is not None

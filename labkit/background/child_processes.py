@@ -1,0 +1,214 @@
+"""Processes of their own that a notebook starts, as with `%ros2 run`: `lab.processes()`.
+
+Their output appears under the cell that started them. They end with the kernel, see `supervisor`.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import threading
+import time
+from collections import deque
+from pathlib import Path
+
+from labkit import settings
+from labkit.background.console import Cell
+from labkit.background.runtime import runtime
+from labkit.errors import LabTimeout
+from labkit.rosgraph.snapshot import node_names
+
+__all__ = ['Process', 'Processes', 'end_earlier', 'environment', 'processes', 'start_process']
+
+SUPERVISOR = Path(__file__).with_name('supervisor.py')
+# How many lines of output are kept.
+MAX_LINES = 1000
+# The supervisor gives the command 6 s to end by itself.
+STOP_SEC = 8.0
+# How long the graph may take to notice that a process has ended. Mostly it says goodbye; where
+# that is lost, others forget it after 20 s (the lease of a participant, DDSI-RTPS 2.5, 8.5.3).
+GONE_SEC = 30.0
+POLL_SEC = 0.05
+
+
+class Process:
+    """A process that this notebook has started.
+
+    Args:
+        name: What it is called in lists, such as `'demo_nodes_py talker'`.
+        command: The program and its arguments.
+        env: Its environment.
+        cell: The execution of the cell that starts it.
+
+    Attributes:
+        nodes: Full names of the nodes that appeared when it was started.
+    """
+
+    def __init__(self, name: str, command: list[str], env: dict[str, str], cell: Cell) -> None:
+        self.name = name
+        self.command = command
+        self.cell = cell
+        self.nodes: list[str] = []
+        self._lines: deque[str] = deque(maxlen=MAX_LINES)
+        self._shown = False
+        self._lock = threading.Lock()
+        self._supervisor = subprocess.Popen(
+            # Neither site-packages nor variables of Python's change what the supervisor is.
+            [sys.executable, '-I', '-S', str(SUPERVISOR), *command],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            env=env,
+            # The stop button interrupts all processes of the kernel's session.
+            start_new_session=True,
+            text=True,
+            encoding='utf-8',
+            errors='replace',
+        )
+        self._reader = threading.Thread(target=self._read, name=f'labkit {name}', daemon=True)
+        self._reader.start()
+
+    @property
+    def running(self) -> bool:
+        """Tell whether it has not ended yet."""
+        return self._supervisor.poll() is None
+
+    @property
+    def exit_code(self) -> int | None:
+        """Return its exit code, None while it runs."""
+        return self._supervisor.poll()
+
+    @property
+    def output(self) -> list[str]:
+        """Return the last lines that it has printed, oldest first."""
+        return list(self._lines)
+
+    def show_output(self) -> None:
+        """Show what it has printed, and from now on prints, under the cell that started it."""
+        with self._lock:
+            for line in self._lines:
+                runtime.console.write_under(self.cell, f'{line}\n')
+            self._shown = True
+
+    def wait_for_lines(self, count: int, *, timeout_sec: float | None = 5.0) -> None:
+        """Wait until it has printed some lines; `output` holds them.
+
+        Where nothing is shown live, as under nbval, the cell that waits shows these lines.
+
+        Args:
+            count: How many lines, from its beginning on.
+            timeout_sec: Seconds to wait. Block forever if `None` or negative. Don't wait if 0.
+
+        Raises:
+            LabTimeout: It printed fewer.
+        """
+        endless = timeout_sec is None or timeout_sec < 0
+        end = float('inf') if endless else time.monotonic() + (timeout_sec or 0.0)
+        while len(self._lines) < count and self._reader.is_alive() and time.monotonic() < end:
+            time.sleep(POLL_SEC / 5)
+        lines = self.output
+        if len(lines) < count:
+            state = 'and goes on' if self.running else f'and ended with code {self.exit_code}'
+            raise LabTimeout(f'{self.name} printed {len(lines)} of {count} lines, {state}.')
+        if settings.headless():
+            print(*lines[:count], sep='\n')
+
+    def stop(self) -> None:
+        """End it: it is interrupted as by Ctrl-C, and killed if that does not help."""
+        assert self._supervisor.stdin is not None
+        self._supervisor.stdin.close()
+        try:
+            self._supervisor.wait(STOP_SEC)
+        except subprocess.TimeoutExpired:
+            self._supervisor.kill()
+            self._supervisor.wait(STOP_SEC)
+        # What a process in the background of the command still holds open is not waited for.
+        self._reader.join(POLL_SEC * 4)
+        self._wait_until_gone()
+
+    def _wait_until_gone(self) -> None:
+        """Wait until the graph has noticed, so that the next cell does not see its nodes."""
+        helper = runtime.helper
+        if helper is None or not self.nodes:
+            return
+
+        runtime.wait(lambda: not {*node_names(helper)} & {*self.nodes}, GONE_SEC)
+
+    def _read(self) -> None:
+        assert self._supervisor.stdout is not None
+        with self._supervisor.stdout as lines:
+            for line in lines:
+                with self._lock:
+                    self._lines.append(line.rstrip('\n'))
+                    if self._shown:
+                        runtime.console.write_under(self.cell, line)
+
+    def __repr__(self) -> str:
+        state = 'running' if self.running else f'ended (exit code {self.exit_code})'
+        return f'{self.name}: {", ".join([state, *self.nodes])}'
+
+
+class Processes(list[Process]):
+    """Processes in the order in which they were started; shown as a table."""
+
+    def stop(self) -> None:
+        """End all of them."""
+        for process in self:
+            process.stop()
+
+    def __repr__(self) -> str:
+        if not self:
+            return 'No process was started with %ros2 run.'
+        return '\n'.join(f'{number}  {process!r}' for number, process in enumerate(self))
+
+
+_started = Processes()
+
+
+def processes() -> Processes:
+    """Return the processes that this notebook has started with `%ros2 run`.
+
+    Returns:
+        A list; `lab.processes()[0].stop()` ends the first, `lab.processes().stop()` all of them.
+        Those that have ended are listed until the notebook starts another one.
+    """
+    return Processes(_started)
+
+
+def start_process(name: str, command: list[str], env: dict[str, str]) -> Process:
+    """Start a process.
+
+    Args:
+        name: What it is called in lists.
+        command: The program and its arguments.
+        env: Its environment.
+    """
+    _started[:] = [process for process in _started if process.running]
+    _started.append(Process(name, command, env, runtime.console.current_cell()))
+    return _started[-1]
+
+
+def environment() -> dict[str, str]:
+    """Return the variables for a process: this Python's, ROS's, and readable output."""
+    variables = dict(os.environ)
+    folder = str(Path(__file__).parents[2])  # so that labkit is found in another folder too
+    paths = [folder, *filter(None, [variables.get('PYTHONPATH')])]
+    variables['PYTHONPATH'] = os.pathsep.join(paths)
+    if settings.in_kernel():
+        variables.setdefault('PYTHONUNBUFFERED', '1')
+        # The same form as that of the notebook's own nodes.
+        variables.setdefault('RCUTILS_CONSOLE_OUTPUT_FORMAT', '[{severity}] [{name}]: {message}')
+    return variables
+
+
+def end_earlier(command: list[str]) -> None:
+    """End the process that an earlier run of the same cell has started with the same command.
+
+    Args:
+        command: The program and its arguments.
+    """
+    cell_id = runtime.console.current_cell().cell_id
+    for process in _started:
+        if process.running and (process.command, process.cell.cell_id) == (command, cell_id):
+            process.stop()

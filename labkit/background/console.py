@@ -1,0 +1,303 @@
+"""Where prints, ROS logs and errors of callbacks go: under the cell that started their node.
+
+A kernel sends what a background thread prints to whichever cell ran last. Here every node
+remembers the cell that started it, and while one of its callbacks runs, the background thread
+speaks for that cell.
+
+ROS logs are taken where rclpy hands them to its logging library, and printed like any other
+line, so their order among the prints of a callback is kept. (rcl's own console output is written
+by C code to the file descriptor: it is lost under nbval, and its order with prints is open. The
+records on /rosout come later, through the middleware.) /rosout itself works as always.
+"""
+
+from __future__ import annotations
+
+import io
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from types import TracebackType
+from typing import Any, TextIO
+
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+
+from labkit import settings
+from labkit.background import tracebacks
+from labkit.background.tracebacks import short_traceback
+
+__all__ = ['MAX_LINES', 'CallbackError', 'Cell', 'Console']
+
+MAX_LINES = 200
+_SEVERITIES = {10: 'DEBUG', 20: 'INFO', 30: 'WARN', 40: 'ERROR', 50: 'FATAL'}
+
+
+@dataclass(eq=False)
+class Cell:
+    """One execution of a notebook cell, as the place where output goes.
+
+    Attributes:
+        parent: The kernel's request that runs the cell; empty outside a kernel.
+        lines: How many lines callbacks have shown under it.
+        held: Text that waits until the cell waits (only when nobody watches, see `Console`).
+        ended: Whether a later cell has been run since.
+    """
+
+    parent: dict[str, Any] = field(default_factory=dict)
+    lines: int = 0
+    held: list[tuple[TextIO, str]] = field(default_factory=list)
+    ended: bool = False
+
+    @property
+    def request_id(self) -> str:
+        """Return what tells this execution from any other one, '' outside a kernel."""
+        return str(self.parent.get('header', {}).get('msg_id', ''))
+
+    @property
+    def cell_id(self) -> str:
+        """Return the cell's id in the notebook, '' where the front end does not send it."""
+        return str(self.parent.get('metadata', {}).get('cellId') or '')
+
+
+@dataclass
+class CallbackError:
+    """An exception that callbacks raised, once or many times at the same place.
+
+    Attributes:
+        node_name: Full name of the node.
+        callback: Name of the callback.
+        error: The exception, as it was raised the first time.
+        text: What is shown of it: the learner's lines and the message.
+        count: How many times it was raised.
+        cell: The execution that started the node which raised it last.
+    """
+
+    node_name: str
+    callback: str
+    error: BaseException
+    text: str
+    count: int = 1
+    cell: Cell | None = None
+
+
+class Console:
+    """Routes what callbacks write.
+
+    In a kernel without a person in front of it (nbval, `labkit record`) the output of callbacks
+    appears under a cell exactly while the cell waits: it is held until a wait begins, and cut
+    when the awaited thing has happened. So a cell's output is a matter of counts, not of time.
+    """
+
+    def __init__(self) -> None:
+        self.errors: list[CallbackError] = []
+        # Nodes started by one execution share its Cell, and with it the bound on its output.
+        self._running: Cell | None = None
+        self._cell: Cell | None = None
+        self._thread = 0
+        self._waiting = 0
+        self._streams: list[_CellStream] = []
+        self._log: Callable[..., Any] | None = None
+
+    def open(self) -> None:
+        """Take over the streams and the ROS logs of a kernel. Elsewhere nothing is touched."""
+        if not settings.in_kernel() or self._streams:
+            return
+        for name in ('stdout', 'stderr'):
+            stream = _CellStream(self, getattr(sys, name))
+            setattr(sys, name, stream)
+            self._streams.append(stream)
+        self._log = _rclpy.rclpy_logging_rcutils_log
+        _rclpy.rclpy_logging_rcutils_log = self._show_log
+        _shell().events.register('pre_run_cell', self._end_cell)
+        tracebacks.install(_shell())
+
+    def close(self) -> None:
+        """Give everything back as it was."""
+        if not self._streams:
+            return
+        for name, stream in zip(('stdout', 'stderr'), self._streams, strict=True):
+            if getattr(sys, name) is stream:
+                setattr(sys, name, stream.target)
+        self._streams = []
+        self._running = self._cell = None
+        self._thread = 0
+        _rclpy.rclpy_logging_rcutils_log = self._log
+        _shell().events.unregister('pre_run_cell', self._end_cell)
+
+    def current_cell(self) -> Cell:
+        """Return the execution that the calling thread works for."""
+        if not settings.in_kernel():
+            return Cell()
+        if self._cell is not None and self.speaks_in(threading.get_ident()):
+            return self._cell
+        if self._running is None:
+            self._running = Cell(_shell().get_parent())
+        return self._running
+
+    def speak_for(self, cell: Cell) -> None:
+        """Let what the calling thread writes from now on appear under `cell`."""
+        if cell is self._cell:
+            return
+        self._cell = cell
+        self._thread = threading.get_ident()
+        if cell.parent:
+            _set_thread_parent(cell.parent)
+
+    @contextmanager
+    def waiting(self) -> Iterator[Callable[[], None]]:
+        """Show the output of callbacks meanwhile; yields what ends that early."""
+        if threading.current_thread() is not threading.main_thread():
+            yield lambda: None  # a thread that waits is not a cell that waits
+            return
+        open_now = [True]
+        self._waiting += 1
+        if self._running is not None:
+            held, self._running.held = self._running.held, []
+            for stream, text in held:
+                self._write_bounded(self._running, stream, text)
+
+        def end() -> None:
+            if open_now:
+                open_now.clear()
+                self._waiting -= 1
+
+        try:
+            yield end
+        finally:
+            end()
+
+    def write(self, stream: TextIO, text: str) -> None:
+        """Write `text`, which a callback produced, under the cell of its node."""
+        cell = self._cell
+        if cell is None or not cell.parent:
+            stream.write(text)
+        elif settings.headless() and not self._waiting:
+            if not cell.ended:
+                cell.held.append((stream, text))
+        else:
+            self._write_bounded(cell, stream, text)
+
+    def write_under(self, cell: Cell, text: str) -> None:
+        """Write what another process has printed under the cell that started it.
+
+        Not when nobody watches: how fast a process prints is a matter of time.
+
+        Args:
+            cell: The execution that started the process.
+            text: Whole lines. Each process has a thread of its own that calls this.
+        """
+        if settings.headless():
+            return
+        if cell.parent and threading.current_thread() is not threading.main_thread():
+            _set_thread_parent(cell.parent)
+        self._write_bounded(cell, self._streams[0].target if self._streams else sys.stdout, text)
+
+    def speaks_in(self, thread_id: int) -> bool:
+        """Tell whether a thread is the one whose output is routed."""
+        return thread_id == self._thread
+
+    def show_error(self, node_name: str, callback: str, error: BaseException) -> None:
+        """Show an exception of a callback: in full the first time, then as a count."""
+        place = _place(error)
+        for known in self.errors:
+            same = known.node_name == node_name and type(known.error) is type(error)
+            if same and _place(known.error) == place:
+                known.count += 1
+                known.cell = self._cell
+                if known.count in (10, 100, 1000, 10000):
+                    name = type(error).__name__
+                    text = f'{name} in {callback} of {node_name}: {known.count} times by now.\n'
+                    print(text, end='', file=sys.stderr)
+                return
+        text = (
+            f'The callback {callback} of {node_name} failed. The node goes on; '
+            f'if this happens again it is counted, not shown.\n{short_traceback(error)}\n'
+        )
+        seen = CallbackError(node_name, callback, error, short_traceback(error), cell=self._cell)
+        self.errors.append(seen)
+        print(text, end='', file=sys.stderr)
+
+    def _write_bounded(self, cell: Cell, stream: TextIO, text: str) -> None:
+        if cell.lines >= MAX_LINES:
+            return
+        lines = text.splitlines(keepends=True)[: MAX_LINES - cell.lines]
+        cell.lines += sum(line.endswith('\n') for line in lines)
+        stream.write(''.join(lines))
+        if cell.lines >= MAX_LINES:
+            stream.write(
+                f'{MAX_LINES} lines are shown; what follows is not. The node goes on. '
+                'Run the cell again to see more, or end the node with lab.remove().\n'
+            )
+
+    def _end_cell(self, *_: object) -> None:
+        """Close the cell that ran before: what it still holds belongs to no wait."""
+        if self._running is not None:
+            self._running.ended = True
+            self._running.held.clear()
+        self._running = None
+
+    def _show_log(self, severity: int, name: str, message: str, *place: object) -> None:
+        assert self._log is not None
+        self._log(severity, name, message, *place)
+        print(f'[{_SEVERITIES.get(int(severity), severity)}] [{name}]: {message}')
+
+
+class _CellStream(io.TextIOBase):
+    """The kernel's stream, but for what callbacks write: that goes through the console."""
+
+    def __init__(self, console: Console, target: TextIO) -> None:
+        self.target = target
+        self._console = console
+
+    def write(self, text: str) -> int:
+        if self._console.speaks_in(threading.get_ident()):
+            self._console.write(self.target, text)
+            return len(text)
+        return self.target.write(text)
+
+    def flush(self) -> None:
+        self.target.flush()
+
+    # What the base class has, with answers that do not fit.
+
+    @property
+    def encoding(self) -> str:  # type: ignore[override]
+        return self.target.encoding
+
+    def writable(self) -> bool:
+        return True
+
+    def isatty(self) -> bool:
+        return self.target.isatty()
+
+    def fileno(self) -> int:
+        return self.target.fileno()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.target, name)
+
+
+def _place(error: BaseException) -> list[tuple[str, int]]:
+    found: list[tuple[str, int]] = []
+    tb: TracebackType | None = error.__traceback__
+    while tb is not None:
+        found.append((tb.tb_frame.f_code.co_filename, tb.tb_lineno))
+        tb = tb.tb_next
+    return found
+
+
+def _shell() -> Any:
+    return sys.modules['IPython'].get_ipython()
+
+
+def _set_thread_parent(parent: dict[str, Any]) -> None:
+    """Let what the calling thread writes belong to a request of the kernel."""
+    shell = _shell()
+    if hasattr(shell, 'set_thread_parent'):
+        shell.set_thread_parent(parent)
+        return
+    # Python 3.10 has an older ipykernel, which does the same for streams, but has no name for it.
+    for name in ('stdout', 'stderr'):
+        stream: Any = getattr(sys, name)
+        getattr(stream, 'target', stream)._parent_header.set(parent['header'])

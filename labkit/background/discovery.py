@@ -1,0 +1,200 @@
+"""The node that all commands ask with, and how long they wait for others to be discovered."""
+
+from __future__ import annotations
+
+import os
+import time
+from argparse import Namespace
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+from rclpy.node import Node
+
+from labkit.background.runtime import runtime
+from labkit.errors import LabError
+from labkit.ros2.parser import Parser, nearest, positive_float
+from labkit.rosgraph.snapshot import UNKNOWN_NODE, is_whole, node_names
+
+__all__ = [
+    'add_discovery_options',
+    'alone',
+    'asking_node',
+    'calm',
+    'check_node_name',
+    'soon',
+    'unknown',
+]
+
+Found = TypeVar('Found')
+
+# Nodes of other processes are heard of some tenths of a second after ROS was started here.
+DISCOVERY_SEC = 0.5
+# How long a name that is asked for may still be on its way.
+SOON_SEC = 1.0
+POLL_SEC = 0.01
+# Discovery is over when all participants are known and the graph has not changed for so long, and
+# for certain after so long.
+CALM_SEC = 0.15
+MOST_SEC = 10.0
+# A new process has made all of its nodes when nothing was added for so long: it may have to load
+# the types of its messages in between.
+SETTLED_SEC = 0.3
+
+# Ports of participants, DDSI-RTPS 2.5, 9.6.2.3: 7400 + 250 * domain + 10 + 2 * participant.
+_FIRST_PORT = 7400
+_PORTS_OF_DOMAIN = 250
+_FIRST_PARTICIPANT = 10
+
+
+def add_discovery_options(parser: Parser) -> None:
+    """Add the options that all commands have that look at the graph."""
+    parser.add(
+        '--spin-time',
+        type=positive_float,
+        default=DISCOVERY_SEC,
+        metavar='SPIN_TIME',
+        help='seconds to wait for discovery, if ROS was started just now',
+    )
+    parser.add('-s', '--use-sim-time', action='store_true', help='accepted, without effect')
+    parser.add('--no-daemon', action='store_true', help='accepted; there is no daemon here')
+
+
+def asking_node(args: Namespace) -> Node:
+    """Return the node to ask the graph with. ROS is started if it is not up.
+
+    Args:
+        args: The arguments of the command, with `spin_time`.
+    """
+    runtime.refuse_in_callback('Running a ros2 command')
+    runtime.start()
+    assert runtime.helper is not None
+    if not alone() and time.monotonic() < runtime.started_at + MOST_SEC:
+        spin_time = getattr(args, 'spin_time', DISCOVERY_SEC)
+        # On this machine all that take part can be counted; on others only time helps.
+        least = 0.0 if _local() else min(spin_time, 60.0)
+        _discover(runtime.helper, runtime.started_at + least)
+    return runtime.helper
+
+
+def calm(node: Node) -> None:
+    """Wait until the graph has stopped changing: a new node comes into it piece by piece."""
+    seen: object = None
+    changed = started = time.monotonic()
+    while time.monotonic() < min(changed + SETTLED_SEC, started + SOON_SEC):
+        topics = node.get_topic_names_and_types()
+        ends = [(name, _count(node, name)) for name, _ in topics]
+        graph = (node_names(node), ends, node.get_service_names_and_types())
+        if graph != seen or not is_whole(node):
+            seen, changed = graph, time.monotonic()
+        time.sleep(POLL_SEC)
+
+
+def _count(node: Node, topic: str) -> tuple[int, int]:
+    return node.count_publishers(topic), node.count_subscribers(topic)
+
+
+def _discover(node: Node, until: float) -> None:
+    """Wait until a time, and until all participants of this machine are known."""
+    seen: object = None
+    changed = 0.0
+    while True:
+        now = time.monotonic()
+        graph = (node_names(node), node.get_topic_names_and_types())
+        if graph != seen:
+            seen, changed = graph, now
+        if now >= until:
+            others = _participants_here() - 1
+            known = _participants_known(node) - 1
+            if others <= 0 or (known >= others and now >= changed + CALM_SEC):
+                return
+            if now >= max(until, runtime.started_at + MOST_SEC):
+                return
+        time.sleep(POLL_SEC)
+
+
+def _participants_here() -> int:
+    """Return how many participants of this domain have opened their port on this machine."""
+    ports = set()
+    first = _FIRST_PORT + _PORTS_OF_DOMAIN * (runtime.domain_id or 0) + _FIRST_PARTICIPANT
+    try:
+        table = Path('/proc/net/udp').read_text(encoding='ascii')
+    except OSError:
+        return 0
+    for line in table.splitlines()[1:]:
+        offset = int(line.split()[1].rpartition(':')[2], 16) - first
+        if 0 <= offset < _PORTS_OF_DOMAIN - _FIRST_PARTICIPANT and offset % 2 == 0:
+            ports.add(offset)
+    return len(ports)
+
+
+def _participants_known(node: Node) -> int:
+    # Every node publishes there. The first 12 bytes of an id are those of the participant. Which
+    # node it is comes a moment later.
+    ends = node.get_publishers_info_by_topic('/parameter_events')
+    unknown = {bytes(end.endpoint_gid[:12]) for end in ends if end.node_name == UNKNOWN_NODE}
+    return len({bytes(end.endpoint_gid[:12]) for end in ends} - unknown)
+
+
+def _local() -> bool:
+    wide = os.environ.get('ROS_AUTOMATIC_DISCOVERY_RANGE') != 'LOCALHOST'
+    return not wide and not os.environ.get('ROS_STATIC_PEERS')
+
+
+def alone() -> bool:
+    """Tell whether nodes of other processes can't be discovered anyway."""
+    return os.environ.get('ROS_AUTOMATIC_DISCOVERY_RANGE') == 'OFF'
+
+
+def soon(look: Callable[[], Found], timeout_sec: float | None = None) -> Found:
+    """Ask again and again until the answer is true, or the time is over.
+
+    Args:
+        look: Asks the graph.
+        timeout_sec: Seconds to go on. By default as long as discovery may take.
+
+    Returns:
+        The last answer.
+    """
+    if timeout_sec is None:
+        timeout_sec = 0.0 if alone() else SOON_SEC
+    end = time.monotonic() + timeout_sec
+    while True:
+        found = look()
+        if found or time.monotonic() >= end:
+            return found
+        time.sleep(POLL_SEC)
+
+
+def check_node_name(node: Node, name: str, *, timeout_sec: float | None = None) -> str:
+    """Return the full name of a node of the graph.
+
+    Args:
+        node: The node to ask with.
+        name: The name as typed; the first slash may be missing.
+        timeout_sec: Seconds to wait for it.
+
+    Raises:
+        LabError: There is no such node.
+    """
+    full_name = name if name.startswith('/') else f'/{name}'
+    if not soon(lambda: full_name in node_names(node), timeout_sec):
+        raise LabError('Node not found', todo=unknown(full_name, node_names(node), 'node'))
+    return full_name
+
+
+def unknown(name: str, names: list[str], what: str) -> str:
+    """Return what to say of a name that does not exist: the nearest one, or all.
+
+    Args:
+        name: The name that was asked for.
+        names: The names that exist.
+        what: What they are names of, such as `'topic'`.
+    """
+    shown = [other for other in names if '/_' not in other]
+    near = nearest(name, shown)
+    if near:
+        return f'Did you mean {near!r}?'
+    if not shown:
+        return f'There is no {what} at all.'
+    return f'ros2 {what} list shows the {what}s that exist.'

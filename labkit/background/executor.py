@@ -1,0 +1,309 @@
+"""The background thread: one executor, callbacks one after the other, and waiting for them.
+
+What was measured of rclpy in a kernel, and decides the shape of this module:
+
+- `rcl_wait` can't be interrupted from Python, so nothing spins in the foreground: a cell that
+  waits, waits for the background thread.
+- A `SingleThreadedExecutor` bears nodes that come and go while it spins; a multi-threaded one
+  fails now and then, and costs more a message.
+- An exception ends `Executor.spin()` silently, so each callback is run on its own.
+- A spinning thread at the end of the interpreter aborts the process, so it is joined at exit.
+"""
+
+from __future__ import annotations
+
+import inspect
+import threading
+import time
+import traceback
+from collections.abc import Callable, Coroutine
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from rclpy.exceptions import InvalidHandle
+from rclpy.executors import (
+    ConditionReachedException,
+    ExternalShutdownException,
+    ShutdownException,
+    SingleThreadedExecutor,
+    TimeoutException,
+)
+from rclpy.node import Node
+from rclpy.task import Task
+from rclpy.timer import Timer
+
+from labkit.background.console import Console
+from labkit.background.nodes import NodeEntry
+from labkit.errors import LabError
+
+__all__ = ['BackgroundExecutor']
+
+# While nothing happens in ROS, a condition that depends on something else is looked at this often.
+POLL_SEC = 0.05
+# How long to wait for a callback that keeps a removed node from being let go.
+RELEASE_SEC = 1.0
+
+
+class BackgroundExecutor(SingleThreadedExecutor):
+    """Runs the callbacks of all nodes in one background thread, in a fixed order.
+
+    Nodes come in the order in which they were added, and messages before timers: what a timer has
+    published is heard before its next tick, however late the machine is. So the output of a cell
+    is the same each time.
+
+    Args:
+        console: Where the output of callbacks goes.
+    """
+
+    def __init__(self, console: Console) -> None:
+        super().__init__()
+        self._console = console
+        self._entries: dict[Node, NodeEntry] = {}
+        self._callback_lock = threading.RLock()
+        self._round_begun = threading.Condition()
+        self._rounds = 0
+        self._round_awaited = 0
+        self._running: tuple[NodeEntry, Any] | None = None
+        self._owners: WeakKeyDictionary[Task, NodeEntry] = WeakKeyDictionary()
+        self._conditions: list[Callable[[], None]] = []
+        self._open = False
+        self._closing = False
+        self._ready: list[tuple[Any, Any, Any]] = []
+        self._thread = threading.Thread(target=self._spin, name='labkit', daemon=True)
+
+    def start(self) -> None:
+        """Start the background thread."""
+        self._thread.start()
+        self._open = True
+
+    @property
+    def is_open(self) -> bool:
+        """Tell whether the background thread was started, and not ended since."""
+        return self._open and not self._closing
+
+    def close(self, timeout_sec: float) -> bool:
+        """End the background thread, and wait for a callback that is still running.
+
+        Returns:
+            Whether the thread has ended in time.
+        """
+        self._closing = True
+        self.wake()
+        if self._thread.is_alive() and not self.in_callback():
+            self._thread.join(timeout_sec)
+        for task, _, _ in self._ready:
+            task.cancel()  # else Python complains of coroutines that were never awaited
+        self._ready.clear()
+        return not self._thread.is_alive()
+
+    # -- nodes ----------------------------------------------------------------------------------
+
+    def add_entry(self, entry: NodeEntry) -> None:
+        """Run the callbacks of a node from now on."""
+        self._entries[entry.node] = entry
+        self.add_node(entry.node)
+
+    def remove_node(self, node: Node) -> None:
+        """Run the callbacks of a node no more, and let go of its timers and subscriptions.
+
+        What a wait holds is destroyed only afterwards. Were a node of the same name made before,
+        the graph would take the new one's topics for the old one's, and leave them nameless.
+        """
+        self._entries.pop(node, None)
+        seen = self._rounds
+        super().remove_node(node)
+        if self.is_open and not self.in_callback():
+            with self._round_begun:
+                self._round_awaited += 1
+                try:
+                    self._round_begun.wait_for(lambda: self._rounds > seen, RELEASE_SEC)
+                finally:
+                    self._round_awaited -= 1
+
+    def entry_of(self, node: Node) -> NodeEntry | None:
+        """Return the entry of a node, None if it is not on this executor."""
+        return self._entries.get(node)
+
+    def get_nodes(self) -> list[Node]:
+        """Return the nodes on this executor, in the order in which they were added."""
+        if self.in_callback():  # the background thread asks at the start of each round
+            self._rounds += 1
+            if self._round_awaited:
+                with self._round_begun:
+                    self._round_begun.notify_all()
+        return list(self._entries)
+
+    def can_execute(self, entity: Any) -> bool:
+        """Tell whether a callback can be run now."""
+        # Asked for every entity in every round. rclpy looks into the callback group each time,
+        # which costs a tenth of a message's way; but between rounds no callback is under way,
+        # unless it is a coroutine.
+        if not self._tasks:
+            return not entity._executor_event
+        return bool(super().can_execute(entity))
+
+    def create_task(
+        self, callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any, **kwargs: Any
+    ) -> Task:
+        """Run a callback that belongs to no entity, such as one added to a future.
+
+        It is a part of the node whose callback asks for it; outside of callbacks, of the cell.
+        """
+        running = self._running if self.in_callback() else None
+        if running is not None:
+            owner = running[0]
+        else:
+            first = next(iter(self._entries.values()))
+            owner = replace(first, cell=self._console.current_cell(), counts={}, budget=None)
+        task = Task(callback, args, kwargs, executor=self)  # type: ignore[no-untyped-call]
+        with self._tasks_lock:
+            self._owners[task] = owner
+            self._tasks.append((task, None, None))
+        self.wake()
+        return task
+
+    # -- waiting --------------------------------------------------------------------------------
+
+    def wait(self, condition: Callable[[], object], timeout_sec: float | None) -> bool:
+        """Wait until `condition()` is true; it is looked at after each callback.
+
+        Args:
+            condition: A function without arguments. It is never called during a callback.
+            timeout_sec: Seconds to wait. Block forever if `None` or negative. Don't wait if 0.
+
+        Returns:
+            Whether it became true in time.
+
+        Raises:
+            Exception: What `condition` raises.
+        """
+        done = threading.Event()
+        failed: list[BaseException] = []
+        with self._console.waiting() as end:
+
+            def look() -> None:
+                try:
+                    if done.is_set() or not condition():
+                        return
+                except BaseException as error:  # it belongs to the caller, not to this thread
+                    failed.append(error)
+                end()
+                done.set()
+
+            self._conditions.append(look)
+            try:
+                self._wait_for(done, look, timeout_sec)
+            finally:
+                self._conditions.remove(look)
+        if failed:
+            raise failed[0]
+        return done.is_set()
+
+    def _wait_for(
+        self, done: threading.Event, look: Callable[[], None], timeout_sec: float | None
+    ) -> None:
+        endless = timeout_sec is None or timeout_sec < 0
+        end = float('inf') if endless else time.monotonic() + (timeout_sec or 0.0)
+        while True:
+            # Between callbacks only: one that is half way may have counted, but not yet printed.
+            try:
+                if self._callback_lock.acquire(timeout=POLL_SEC):
+                    look()
+            finally:
+                # The stop button may strike between acquiring and knowing of it, so the lock
+                # itself is asked: it refuses when this thread does not hold it.
+                with suppress(RuntimeError):
+                    self._callback_lock.release()
+            left = end - time.monotonic()
+            if done.wait(max(0.0, min(POLL_SEC, left))) or left <= 0 or self._closing:
+                return
+
+    def in_callback(self) -> bool:
+        """Tell whether the caller is the background thread itself, that is, a callback."""
+        return threading.current_thread() is self._thread
+
+    def refuse_in_callback(self, what: str) -> None:
+        """Raise a LabError when called by a callback: it would wait for itself for ever."""
+        if self.in_callback():
+            raise LabError(
+                f'{what} inside a callback would wait for ever: the answer can come only when '
+                'this callback has returned.',
+                todo='Return from the callback. For a service, use call_async() and '
+                'add_done_callback().',
+            )
+
+    def running_callback(self) -> tuple[str, str] | None:
+        """Return the node and the name of the callback that runs at this moment, or None."""
+        running = self._running
+        return (running[0].name, _callback_name(running[1])) if running is not None else None
+
+    # -- the background thread ------------------------------------------------------------------
+
+    def _spin(self) -> None:
+        while not self._closing:
+            try:
+                self.spin_once()
+            except ExternalShutdownException:
+                return
+            except InvalidHandle:
+                # A node was destroyed between waiting and taking: there is nothing to run.
+                continue
+            except Exception:  # a fault of labkit's own must not silence every node
+                traceback.print_exc()
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        """Wait for one callback and run it. Called by the background thread only."""
+        if not self._ready:
+            with suppress(TimeoutException, ShutdownException, ConditionReachedException):
+                # When woken without work it goes on waiting, unless it is to end.
+                self._ready.extend(self._wait_for_ready_callbacks(timeout_sec, None, self._closed))
+            self._ready.sort(key=_is_timer)
+            if not self._ready:
+                return
+        task, entity, node = self._ready.pop(0)
+        entry = self._owners.get(task) if node is None else self._entries.get(node)
+        if entry is None:
+            _drop(task)
+        else:
+            self._run(task, entity, entry)
+
+    def _closed(self) -> bool:
+        return self._closing
+
+    def _run(self, task: Any, entity: Any, entry: NodeEntry) -> None:
+        self._console.speak_for(entry.cell)
+        with self._callback_lock:
+            what = entity or task._handler  # a task forgets its function when it is done
+            self._running = (entry, what)
+            task()
+            self._running = None
+            error = task.exception()
+            # Not when the node was removed meanwhile: then the error is that it was.
+            if error is not None and entry.node in self._entries:
+                self._console.show_error(entry.name, _callback_name(what), error)
+            entry.counts[entity] = entry.counts.get(entity, 0) + 1
+            if entry.budget is not None:
+                entry.budget -= 1
+                if entry.budget <= 0:
+                    self.remove_node(entry.node)
+            for look in tuple(self._conditions):
+                look()
+
+
+def _drop(task: Any) -> None:
+    """Give up a callback that is not to be run; Python warns of a coroutine that is forgotten."""
+    handler = task._handler
+    task.cancel()
+    if inspect.iscoroutine(handler):
+        handler.close()
+
+
+def _is_timer(work: tuple[Any, Any, Any]) -> bool:
+    return isinstance(work[1], Timer)
+
+
+def _callback_name(what: Any) -> str:
+    callback = getattr(what, 'callback', None) or what
+    return getattr(callback, '__name__', None) or type(what).__name__

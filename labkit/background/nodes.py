@@ -1,0 +1,132 @@
+"""Nodes as objects: which exist, which can be used, how to be rid of one."""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from rclpy.context import Context
+from rclpy.exceptions import InvalidHandle
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from labkit.background.console import Cell
+from labkit.errors import LabError
+
+__all__ = [
+    'NodeEntry',
+    'after_destroy',
+    'check_node',
+    'destroy_node',
+    'existing_nodes',
+    'hidden_node',
+    'node_exists',
+]
+
+
+# Called after a node was destroyed. In one process a subscription that is left over keeps the next
+# publisher of its topic from having another type.
+after_destroy: list[Callable[[], None]] = []
+
+
+@dataclass(eq=False)
+class NodeEntry:
+    """A node on the background executor, and where it came from.
+
+    Attributes:
+        node: The node itself.
+        name: Its full name, such as `/talker`.
+        cell: The execution of the cell that started it.
+        counts: How many callbacks have been run for each timer, subscription and so on.
+        budget: How many more may be run before the node leaves the executor; None for no end.
+    """
+
+    node: Node
+    name: str
+    cell: Cell
+    counts: dict[Any, int] = field(default_factory=dict)
+    budget: int | None = None
+
+    @property
+    def callbacks(self) -> int:
+        """Return how many of its callbacks have been run."""
+        return sum(self.counts.values())
+
+    @property
+    def alive(self) -> bool:
+        """Tell whether the node still exists, i.e. nobody has called `destroy_node()`."""
+        return node_exists(self.node)
+
+
+def node_exists(node: Node) -> bool:
+    """Tell whether a node can be used: it is not destroyed, and its ROS is not shut down."""
+    try:
+        with node.handle:
+            return bool(node.context.ok())
+    except (InvalidHandle, AttributeError):
+        # AttributeError: its __init__ did not get far enough.
+        return False
+
+
+def existing_nodes() -> list[Node]:
+    """Return all nodes of this process that exist, whether they are spun or not."""
+    # type() and not isinstance(): some objects answer to __class__ with surprises.
+    nodes = [thing for thing in gc.get_objects() if issubclass(type(thing), Node)]
+    return [node for node in nodes if node_exists(node)]
+
+
+def check_node(node: object) -> None:
+    """Raise a LabError if `node` is no node that can be spun."""
+    if isinstance(node, type) and issubclass(node, Node):
+        raise LabError(
+            f'lab.spin() expects a node, but got the class {node.__name__}.',
+            todo=f'Make a node of it: lab.spin({node.__name__}())',
+        )
+    if not isinstance(node, Node):
+        raise LabError(
+            f'lab.spin() expects a node, but got {node!r}.',
+            todo='Pass an object of a class that is made on rclpy.node.Node.',
+        )
+    if not node_exists(node):
+        raise LabError(
+            f'This {type(node).__name__} exists no more: it was destroyed, or ROS was shut down '
+            'since it was made.',
+            todo='Make it again; running its cell again does that.',
+        )
+
+
+def destroy_node(node: Node) -> None:
+    """Destroy a node, whatever state it is in."""
+    try:
+        node.destroy_node()  # type: ignore[no-untyped-call]
+    except (InvalidHandle, AttributeError):
+        pass  # destroyed before, or never finished
+    for tell in tuple(after_destroy):
+        tell()
+
+
+def hidden_node(name: str, context: Context) -> Node:
+    """Make a node for labkit's own use: people don't see it, and it costs next to nothing.
+
+    Args:
+        name: Its name; a leading `_` hides it from lists.
+        context: What `rclpy.init` has started.
+    """
+    node = Node(
+        name,
+        context=context,
+        enable_rosout=False,
+        start_parameter_services=False,
+        use_global_arguments=False,
+        parameter_overrides=[Parameter('start_type_description_service', value=False)],  # type: ignore[no-untyped-call]
+    )
+    # Each entity makes every wake-up of the executor dearer, events of a publisher among them.
+    for publisher in node.publishers:
+        handlers: Any = publisher.event_handlers  # a list, whatever its annotation says
+        while handlers:
+            handler = handlers.pop()
+            node.remove_waitable(handler)
+            handler.destroy()
+    return node

@@ -1,0 +1,405 @@
+"""ROS in this process, started and stopped as a notebook needs it: `start`, `spin`, `remove`.
+
+One context, one executor, one background thread (`executor`), one registry of nodes by name, so
+that a cell can be run again without leaving a second node behind.
+"""
+
+from __future__ import annotations
+
+import atexit
+import difflib
+import os
+import threading
+import time
+from collections.abc import Callable
+from typing import TypeVar
+
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from rclpy.utilities import get_default_context, ok, try_shutdown
+
+from labkit import settings
+from labkit.background.console import CallbackError, Console
+from labkit.background.executor import BackgroundExecutor
+from labkit.background.nodes import (
+    NodeEntry,
+    check_node,
+    destroy_node,
+    existing_nodes,
+    hidden_node,
+)
+from labkit.background.notebook_rclpy import install, originals
+from labkit.errors import LabError
+
+__all__ = [
+    'Runtime',
+    'callback_errors',
+    'remove',
+    'runtime',
+    'spin',
+    'start',
+    'stop',
+]
+
+AnyNode = TypeVar('AnyNode', bound=Node)
+
+# How long stop() waits for a callback that is still running.
+JOIN_SEC = 2.0
+DUPLICATE_CHECK_SEC = 1.0
+
+
+class Runtime:
+    """ROS in this process: one of it exists, `runtime`.
+
+    Attributes:
+        console: Where the output of callbacks goes.
+        domain_id: The ROS domain, None while ROS is not started.
+        started_at: When ROS was started, as `time.monotonic()` tells it.
+        helper: A hidden node for labkit's own subscriptions and questions to the graph.
+        foreign_threads: Threads that spin an executor of the learner's own, see `notebook_rclpy`.
+    """
+
+    def __init__(self) -> None:
+        self.console = Console()
+        self.domain_id: int | None = None
+        self.started_at = 0.0
+        self.helper: Node | None = None
+        self.foreign_threads: set[threading.Thread] = set()
+        self._lock = threading.RLock()
+        self._entries: dict[str, NodeEntry] = {}
+        self._reported: set[str] = set()
+        self._executor: BackgroundExecutor | None = None
+        self._claim: settings.DomainClaim | None = None
+
+    @property
+    def started(self) -> bool:
+        """Tell whether ROS is up, all of it: the stop button may end `start` half way."""
+        executor = self._executor
+        return executor is not None and executor.is_open and executor.context.ok()
+
+    @property
+    def own_domain(self) -> bool:
+        """Tell whether the domain was chosen so that no other notebook has it."""
+        return self._claim is not None and self._claim.domain_id == self.domain_id
+
+    @property
+    def executor(self) -> BackgroundExecutor:
+        """Return the background executor; ROS is started if it is not up."""
+        self.start()
+        assert self._executor is not None
+        return self._executor
+
+    # -- starting and stopping ------------------------------------------------------------------
+
+    def start(self, *, domain_id: int | None = None, args: list[str] | None = None) -> None:
+        """Start ROS in the background; without effect when it is up.
+
+        Args:
+            domain_id: See `labkit.start`.
+            args: Command line arguments for ROS, as `rclpy.init` takes them.
+        """
+        settings.check_domain_id(domain_id)
+        with self._lock:
+            if self.started:
+                if domain_id in (None, self.domain_id):
+                    return
+                self._refuse_move_with_nodes(domain_id)
+            self.stop()
+            self._end_foreign_start()
+            self._choose_domain(domain_id)
+            # Log files: nobody looks for them in a course, and a home that can't be written to
+            # would keep ROS from starting.
+            ros_args = [*(args or ()), '--ros-args', '--disable-external-lib-logs']
+            if settings.in_kernel():
+                ros_args.append('--disable-stdout-logs')
+            originals.init(args=ros_args, signal_handler_options=SignalHandlerOptions.NO)
+            self.domain_id = get_default_context().get_domain_id()
+            self.started_at = time.monotonic()
+            self.console.open()
+            self._executor = BackgroundExecutor(self.console)
+            self._add_helper(self._executor)
+            if settings.in_kernel():
+                install(self)
+            self._executor.start()
+
+    def stop(self) -> None:
+        """Destroy all nodes, join the thread, shut ROS down."""
+        executor = self._executor
+        if executor is None:
+            return
+        # Without the lock: a callback may be waiting for it, and the thread for the callback.
+        executor.close(JOIN_SEC)
+        with self._lock:
+            if self._executor is not executor:
+                return
+            for node in [*executor.get_nodes(), *self.unspun_nodes()]:
+                destroy_node(node)
+            self._executor = self.helper = self.domain_id = None
+            self._entries.clear()
+            self._reported.clear()
+            context = executor.context
+            executor.shutdown(timeout_sec=0)
+            if context is get_default_context():
+                try_shutdown()
+            for thread in self.foreign_threads - {threading.current_thread()}:
+                thread.join(JOIN_SEC)
+            self.console.close()
+
+    # -- nodes ----------------------------------------------------------------------------------
+
+    def add(self, node: Node, *, budget: int | None = None) -> NodeEntry:
+        """Put a node on the background executor; one of the same name is destroyed.
+
+        Args:
+            node: The node.
+            budget: How many callbacks to run before it leaves the executor; None for no end.
+
+        Raises:
+            LabError: It is not a node, or it exists no more.
+        """
+        check_node(node)
+        with self._lock:
+            name = node.get_fully_qualified_name()
+            entry = self._entries.get(name)
+            if entry is not None and entry.node is not node:
+                self.discard(entry)
+                entry = None
+            if entry is None:
+                self._note_rename()
+                entry = NodeEntry(node, name, self.console.current_cell())
+                self._entries[name] = entry
+            entry.budget = budget
+            self.executor.add_entry(entry)
+            return entry
+
+    def discard(self, entry: NodeEntry) -> None:
+        """Take a node from the executor and destroy it."""
+        self.release(entry)
+        destroy_node(entry.node)
+
+    def release(self, entry: NodeEntry) -> None:
+        """Take a node from the executor and leave it alive."""
+        with self._lock:
+            if self._entries.get(entry.name) is entry:
+                del self._entries[entry.name]
+            if self._executor is not None:
+                self._executor.remove_node(entry.node)
+
+    def nodes(self) -> list[NodeEntry]:
+        """Return the nodes that run in the background, in the order they were started."""
+        with self._lock:
+            for entry in list(self._entries.values()):
+                if not entry.alive:
+                    self.release(entry)
+            return list(self._entries.values())
+
+    def entry_of(self, node: Node) -> NodeEntry | None:
+        """Return the entry of a node, None if it does not run in the background."""
+        return self._executor.entry_of(node) if self._executor is not None else None
+
+    def unspun_nodes(self) -> list[Node]:
+        """Return the nodes of this process that exist but don't run in the background."""
+        return [
+            node
+            for node in existing_nodes()
+            if node is not self.helper and self.entry_of(node) is None
+        ]
+
+    def make_room(self, name: str) -> None:
+        """Destroy the node of a name before another one of that name is made.
+
+        Two nodes of one name in one process share rcl's publisher on /rosout, and the first that
+        goes takes it away. A node whose `__init__` failed half way is found here too.
+
+        Args:
+            name: The full name of the node that is about to be made.
+        """
+        entry = self._entries.get(name)
+        if entry is not None:
+            self.discard(entry)
+            return
+        for node in self.unspun_nodes():
+            if node.get_fully_qualified_name() == name and node.executor is None:
+                destroy_node(node)
+
+    def foreign_nodes(self) -> set[str]:
+        """Return the full names of the nodes that other processes have in this domain."""
+        if self.helper is None:
+            return set()
+        # Every node publishes on this topic. The first 12 bytes of an endpoint's id are those of
+        # its DDS participant, and a process has one participant (DDSI-RTPS 2.5, 9.3.1).
+        infos = self.helper.get_publishers_info_by_topic('/parameter_events')
+        own = {bytes(i.endpoint_gid[:12]) for i in infos if i.node_name == self.helper.get_name()}
+        return {
+            f'{info.node_namespace.rstrip("/")}/{info.node_name}'
+            for info in infos
+            if bytes(info.endpoint_gid[:12]) not in own
+        }
+
+    # -- waiting --------------------------------------------------------------------------------
+
+    def wait(self, condition: Callable[[], object], timeout_sec: float | None) -> bool:
+        """Wait until `condition()` is true, see `BackgroundExecutor.wait`.
+
+        Raises:
+            LabError: Called from a callback, which would wait for itself.
+        """
+        self.refuse_in_callback('Waiting')
+        return self.executor.wait(condition, timeout_sec)
+
+    def refuse_in_callback(self, what: str) -> None:
+        """Raise a LabError when called by a callback."""
+        if self._executor is not None:
+            self._executor.refuse_in_callback(what)
+
+    # -- details --------------------------------------------------------------------------------
+
+    def _choose_domain(self, domain_id: int | None) -> None:
+        if domain_id is None:
+            domain_id = settings.read_domain_id()
+        if domain_id is None and settings.in_kernel():
+            self._claim = self._claim or settings.claim_domain()
+            domain_id = self._claim.domain_id
+        if domain_id is not None:
+            # rclpy reads it here, and so do the processes that the notebook starts.
+            os.environ['ROS_DOMAIN_ID'] = str(domain_id)
+
+    def _refuse_move_with_nodes(self, domain_id: int | None) -> None:
+        names = [entry.name for entry in self.nodes()]
+        if names:
+            raise LabError(
+                f'ROS runs in domain {self.domain_id} with {", ".join(names)}; '
+                f'it can move to domain {domain_id!r} only without nodes.',
+                todo='Call lab.stop() first, then lab.start(domain_id=...), then start the nodes.',
+            )
+
+    def _end_foreign_start(self) -> None:
+        """Put right what `rclpy.init()` did before labkit was there."""
+        if not ok():
+            return
+        names = [node.get_fully_qualified_name() for node in self.unspun_nodes()]
+        if names:
+            raise LabError(
+                f'rclpy.init() was called before labkit was started, and {", ".join(names)} '
+                'was made since.',
+                todo='Restart the kernel and run the setup cell first.',
+            )
+        originals.shutdown()
+
+    def _add_helper(self, executor: BackgroundExecutor) -> None:
+        self.helper = hidden_node(f'_labkit_{os.getpid()}', executor.context)
+        self.helper.create_timer(DUPLICATE_CHECK_SEC, self._report_duplicates)
+        name = self.helper.get_fully_qualified_name()
+        executor.add_entry(NodeEntry(self.helper, name, self.console.current_cell()))
+
+    def _note_rename(self) -> None:
+        """Say so when a cell that was edited leaves the node of its earlier run behind."""
+        cell = self.console.current_cell()
+        for entry in self.nodes():
+            if cell.cell_id and entry.cell.cell_id == cell.cell_id and entry.cell is not cell:
+                print(
+                    f'{entry.name}, which this cell started before, still runs. '
+                    f'lab.remove({entry.name!r}) ends it.'
+                )
+
+    def _report_duplicates(self) -> None:
+        """Say so, once, when another process has a node of the same name as one of ours."""
+        foreign = self.foreign_nodes()
+        for entry in self.nodes():
+            if entry.name not in foreign:
+                self._reported.discard(entry.name)
+            elif entry.name not in self._reported:
+                self._reported.add(entry.name)
+                self.console.speak_for(entry.cell)
+                print(
+                    f'Two nodes are called {entry.name} in domain {self.domain_id}: this one, '
+                    'and one of another notebook or process. ROS allows it, but tools and '
+                    'people mix them up. Give each a name of its own.'
+                )
+
+
+runtime = Runtime()
+atexit.register(runtime.stop)
+
+
+def start(*, domain_id: int | None = None) -> None:
+    """Start ROS in the background.
+
+    Everything in labkit that needs ROS does this by itself; call it to choose a domain.
+
+    Args:
+        domain_id: The ROS domain to take part in, 0 to 101. By default `ROS_DOMAIN_ID` if it is
+            set, else, in a notebook, a domain that no other notebook on this machine has.
+
+    Raises:
+        LabError: ROS runs in another domain already, with nodes in it.
+    """
+    runtime.start(domain_id=domain_id)
+
+
+def spin(node: AnyNode) -> AnyNode:
+    """Run a node in the background: its callbacks are called while cells come and go.
+
+    A node of the same name that this notebook started before is destroyed first, so a cell may
+    be run again as often as you like.
+
+    Args:
+        node: An object of a class made on `rclpy.node.Node`.
+
+    Returns:
+        The node.
+
+    Raises:
+        LabError: It is not a node, or it has been destroyed.
+    """
+    runtime.add(node)
+    return node
+
+
+def remove(node: Node | str) -> None:
+    """End a node: it is taken from the background and destroyed.
+
+    Args:
+        node: The node, or its name: `'talker'` or `'/talker'`, with its namespace if it has one.
+
+    Raises:
+        LabError: No node of that name runs here.
+    """
+    if isinstance(node, Node):
+        entry = runtime.entry_of(node)
+        if entry is None:
+            destroy_node(node)
+            return
+    else:
+        entry = _find(node)
+    runtime.discard(entry)
+
+
+def stop() -> None:
+    """Destroy all nodes, end the background thread and shut ROS down.
+
+    `lab.start()`, `lab.spin()` and the rest work again afterwards.
+    """
+    runtime.stop()
+
+
+def callback_errors() -> list[CallbackError]:
+    """Return the exceptions that callbacks have raised in this notebook, oldest first."""
+    return list(runtime.console.errors)
+
+
+def _find(name: str) -> NodeEntry:
+    entries = {entry.name: entry for entry in runtime.nodes()}
+    full_name = name if name.startswith('/') else f'/{name}'
+    if full_name in entries:
+        return entries[full_name]
+    near = difflib.get_close_matches(full_name, entries, n=1)
+    if full_name in runtime.foreign_nodes():
+        todo = 'It runs in another process: end it where that was started.'
+    elif near:
+        todo = f'Did you mean {near[0]!r}?'
+    elif entries:
+        todo = f'Running here: {", ".join(entries)}.'
+    else:
+        todo = 'No node runs here.'
+    raise LabError(f'No node called {name!r} runs in this notebook.', todo=todo)

@@ -1,0 +1,119 @@
+"""Calling a service, from the cell or terminal that waits for the answer."""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Any
+
+from rclpy._rclpy_pybind11 import RCLError
+from rclpy.node import Node
+
+from labkit.background.discovery import soon
+from labkit.errors import LabError, LabTimeout
+from labkit.rosgraph.matching import type_name
+
+__all__ = ['ServiceCalls', 'call_node']
+
+POLL_SEC = 0.05
+# As long as that, a service that the graph knows may take to be ready.
+READY_SEC = 5.0
+ANSWER_SEC = 5.0
+
+
+class ServiceCalls:
+    """A client of a service, for as long as a `with` block lasts.
+
+    Args:
+        node: The node that calls.
+        srv_type: Class of the service.
+        name: Name of the service.
+
+    Raises:
+        LabError: It is no name of a service, or the service has another type here.
+    """
+
+    def __init__(self, node: Node, srv_type: Any, name: str) -> None:
+        self._node = node
+        self.name = name
+        try:
+            self._client = node.create_client(srv_type, name)
+        except (RCLError, ValueError, TypeError, LabError) as error:
+            raise LabError(
+                f'The service {name!r} can not be called with {type_name(srv_type)}: '
+                f'{str(error).splitlines()[0]}'
+            ) from error
+
+    def __enter__(self) -> ServiceCalls:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._node.destroy_client(self._client)
+
+    def wait_until_ready(self, timeout_sec: float | None) -> bool:
+        """Wait until the service can be called.
+
+        Args:
+            timeout_sec: Seconds to wait, None for no end.
+
+        Returns:
+            Whether it can.
+        """
+        end = None if timeout_sec is None else time.monotonic() + timeout_sec
+        while not self._client.service_is_ready():
+            if end is not None and time.monotonic() >= end:
+                return False
+            time.sleep(POLL_SEC / 5)
+        return True
+
+    def call(self, request: Any, timeout_sec: float | None) -> Any:
+        """Call the service.
+
+        Args:
+            request: The request.
+            timeout_sec: Seconds to wait for the answer, None for no end.
+
+        Returns:
+            The response.
+
+        Raises:
+            LabTimeout: No answer came in time.
+        """
+        done = threading.Event()
+        future = self._client.call_async(request)
+        future.add_done_callback(lambda _: done.set())  # type: ignore[no-untyped-call]
+        end = None if timeout_sec is None else time.monotonic() + timeout_sec
+        # In slices: between them the stop button is heard.
+        while not done.wait(POLL_SEC):
+            if end is not None and time.monotonic() >= end:
+                future.cancel()  # type: ignore[no-untyped-call]
+                raise LabTimeout(
+                    f'{self.name} did not answer within {timeout_sec:g} s.',
+                    todo='Is the node that offers it spinning, and do its callbacks return?',
+                )
+        return future.result()  # type: ignore[no-untyped-call]
+
+
+def call_node(node: Node, srv_type: Any, node_name: str, service: str, request: Any) -> Any:
+    """Call one of the parameter services of a node.
+
+    Args:
+        node: The node that calls.
+        srv_type: Class of the service.
+        node_name: Full name of the node that is asked.
+        service: Name of the service in that node, such as `list_parameters`.
+        request: The request.
+
+    Returns:
+        The response.
+
+    Raises:
+        LabError: The node has no parameter services, or does not answer.
+    """
+    name = f'{node_name}/{service}'
+    if not soon(lambda: name in dict(node.get_service_names_and_types())):
+        raise LabError(f'{node_name} has no parameter services.')
+    with ServiceCalls(node, srv_type, name) as service_calls:
+        if not service_calls.wait_until_ready(READY_SEC):
+            raise LabTimeout('Wait for service timed out')
+        return service_calls.call(request, ANSWER_SEC)

@@ -1,0 +1,77 @@
+"""Note what the learner does: checks, hints, solutions, answers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import datetime, timezone
+from typing import Any
+
+from labkit.exercises.progress_file import Store
+
+__all__ = ['ProgressStore', 'number_of', 'progress_store']
+
+
+class ProgressStore:
+    """Note what the learner does. Each `note_...` returns a note about the file, mostly `''`.
+
+    Args:
+        store: Where it is kept.
+    """
+
+    def __init__(self, store: Store | None = None) -> None:
+        self.store = store or Store()
+
+    def note_check(self, lesson: str, name: str, outcome: str) -> str:
+        """Note the outcome of a check; one that was not attempted is not counted."""
+        if not lesson or outcome == 'NOT ATTEMPTED':
+            return ''
+
+        def change(entry: dict[str, Any]) -> None:
+            _note_try(entry, outcome == 'PASS')
+            entry['last'] = outcome
+
+        return self._change(lesson, 'exercises', name, change)
+
+    def note_hint(self, lesson: str, name: str, number: int) -> str:
+        """Note that a hint was shown."""
+
+        def change(entry: dict[str, Any]) -> None:
+            entry['hints'] = max(number, number_of(entry.get('hints')))
+
+        return self._change(lesson, 'exercises', name, change)
+
+    def note_solution(self, lesson: str, name: str) -> str:
+        """Note that the solution was shown."""
+        return self._change(lesson, 'exercises', name, lambda entry: entry.update(solution=True))
+
+    def note_answer(self, lesson: str, quiz: str, number: int, right: bool) -> str:
+        """Note the answer to a question of a quiz."""
+        name = f'{quiz}.{number}'
+        return self._change(lesson, 'questions', name, lambda entry: _note_try(entry, right))
+
+    def _change(
+        self, lesson: str, kind: str, name: str, change: Callable[[dict[str, Any]], None]
+    ) -> str:
+        if not lesson:
+            return ''
+        return self.store.update(
+            lambda data: change(
+                data['lessons'].setdefault(lesson, {}).setdefault(kind, {}).setdefault(name, {})
+            )
+        )
+
+
+def number_of(value: object) -> int:
+    """Return a count from the file, 0 if it is none."""
+    return value if isinstance(value, int) else 0
+
+
+def _note_try(entry: dict[str, Any], right: bool) -> None:
+    now = datetime.now(timezone.utc).isoformat(timespec='seconds')
+    entry['tries'] = number_of(entry.get('tries')) + 1
+    entry.setdefault('first_try', now)
+    if right:
+        entry.setdefault('passed_at', now)
+
+
+progress_store = ProgressStore()

@@ -1,0 +1,62 @@
+"""The matchers of a check, under one name: `from labkit.exercises import expect`.
+
+Each looks at one thing. It returns what was found, or raises the outcome: `Fail` with what was
+expected, what was seen, the misconception and the next step, or `NotAttempted`.
+"""
+
+from __future__ import annotations
+
+from labkit.exercises.expect.endpoints import alone, node, publisher, qos, subscription
+from labkit.exercises.expect.replies import Reply, logs, replies
+from labkit.exercises.expect.timing import describe_rate, ends_with_node, hanging, messages, rate
+from labkit.exercises.expect.values import (
+    each,
+    equal,
+    first,
+    increasing,
+    show,
+    steps,
+    text_trouble,
+)
+from labkit.exercises.verdict import Fail
+
+__all__ = [
+    'Reply',
+    'alone',
+    'describe_rate',
+    'each',
+    'ends_with_node',
+    'equal',
+    'first',
+    'hanging',
+    'increasing',
+    'logs',
+    'messages',
+    'node',
+    'publisher',
+    'qos',
+    'rate',
+    'replies',
+    'show',
+    'steps',
+    'subscription',
+    'text_trouble',
+    'that',
+]
+
+
+def that(condition: object, *, expected: str, seen: str, why: str = '', todo: str = '') -> None:
+    """Expect anything else.
+
+    Args:
+        condition: Whether it is so.
+        expected: What should have been observed.
+        seen: What was observed.
+        why: The likely misconception.
+        todo: The next step.
+
+    Raises:
+        Fail: It is not so.
+    """
+    if not condition:
+        raise Fail(expected, seen, why=why, todo=todo)

@@ -1,0 +1,222 @@
+"""Install packages with uv or pip, with progress shown, and explain it when that fails."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+
+from labkit.errors import SetupError
+from labkit.setup.machine import clean_environment
+
+__all__ = ['Progress', 'applicable', 'explain', 'install']
+
+_NO_NETWORK = re.compile(
+    r'NewConnectionError|NameResolutionError|Temporary failure in name resolution|'
+    r'Name or service not known|dns error|Network is unreachable|Connection (refused|reset)|'
+    r'ConnectTimeout|ReadTimeout|timed out|ProxyError|error sending request|Could not connect',
+    re.IGNORECASE,
+)
+# pip names each package once, uv the large ones.
+_FETCHED = re.compile(
+    r' *(?:Collecting|Requirement already satisfied:|Obtaining|Downloaded) (\S+)'
+)
+_NO_SPACE = re.compile(r'No space left on device|Disk quota exceeded', re.IGNORECASE)
+_READ_ONLY = re.compile(r'Read-only file system', re.IGNORECASE)
+
+
+class Progress:
+    """Show how many of so many packages have come, in place or, in a log, line by line.
+
+    Args:
+        total: Number of packages to come.
+    """
+
+    def __init__(self, total: int) -> None:
+        self.total = total
+        self._start = time.monotonic()
+        self._in_place = sys.stdout.isatty()
+        self._shown = ''
+
+    def show(self, what: str, count: int) -> None:
+        """Show that `count` packages have come, if that is news.
+
+        Args:
+            what: What is done with them, in one word.
+            count: Number of packages.
+        """
+        count = min(count, self.total)
+        if not self._in_place:
+            count -= count % 50 if count < self.total else 0  # a log needs no line a package
+        line = f'{what:<10} {count:>3} of {self.total} packages'
+        if self._in_place:
+            done = 30 * count // max(self.total, 1)
+            bar = '#' * done + '.' * (30 - done)
+            seconds = time.monotonic() - self._start
+            print(f'\r  [{bar}] {line}, {seconds:.0f} s ', end='', flush=True)
+        elif line != self._shown and count > 0:
+            print(f'  {line}', flush=True)
+        self._shown = line
+
+    def close(self) -> None:
+        """Leave the line in which progress was shown."""
+        if self._in_place and self._shown:
+            print(flush=True)
+
+
+def applicable(lines: Iterable[str], version: tuple[int, ...]) -> list[str]:
+    """Return the packages that a requirements file asks for.
+
+    Args:
+        lines: Lines of requirements, marked with nothing but `python_full_version`.
+        version: The Python version that they are for.
+    """
+    names = []
+    for line in lines:
+        line = line.split('#')[0].strip()
+        if not line:
+            continue
+        marker = re.search(r"; *python_full_version *([<>=]+) *'(\d+)\.(\d+)\.?(\d*)", line)
+        if marker:
+            limit = (int(marker[2]), int(marker[3]), int(marker[4] or 0))
+            fits = {
+                '<': version < limit,
+                '>=': version >= limit,
+                '==': version[:2] == limit[:2],  # it stands with a star: '3.11.*'
+            }
+            if not fits.get(marker[1], True):
+                continue
+        names.append(line)
+    return names
+
+
+def install(
+    python: Path,
+    root: Path,
+    requirements: Sequence[str],
+    progress: Progress,
+    count_installed: Callable[[], int],
+) -> None:
+    """Install what the files ask for, with uv if it is on PATH, else with pip.
+
+    Args:
+        python: Interpreter of the environment.
+        root: Folder that the files and the paths in them are relative to.
+        requirements: Names of the files.
+        progress: Where to show how far it is.
+        count_installed: Tells how many packages are installed.
+
+    Raises:
+        SetupError: It did not work, with the reason and what to do.
+    """
+    files = [option for name in requirements for option in ('-r', name)]
+    uv = shutil.which('uv')
+    if uv:
+        command = [uv, 'pip', 'install', '--python', str(python), *files]
+    else:
+        command = [str(python), '-I', '-m', 'pip', 'install', '--no-input', *files]
+        command += ['--disable-pip-version-check', '--no-warn-script-location']
+    variables = clean_environment()
+    # Settings of the user's own that would install somewhere else.
+    for name in ('PIP_TARGET', 'PIP_PREFIX', 'PIP_ROOT', 'UV_SYSTEM_PYTHON'):
+        variables.pop(name, None)
+    variables.update(PIP_USER='0', UV_NO_PROGRESS='1')
+    code, output = _follow(command, root, variables, progress, count_installed)
+    if code != 0:
+        raise explain(output, root)
+
+
+def _follow(
+    command: Sequence[str],
+    root: Path,
+    variables: dict[str, str],
+    progress: Progress,
+    count_installed: Callable[[], int],
+) -> tuple[int, list[str]]:
+    """Run the installer and show its progress. Return its exit code and its last lines."""
+    process = subprocess.Popen(
+        command,
+        cwd=root,
+        env=variables,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors='replace',
+        close_fds=False,  # it keeps the lock: see setup_env
+    )
+    output: deque[str] = deque(maxlen=400)
+    fetched: set[str] = set()
+
+    def read() -> None:
+        for line in process.stdout or ():
+            output.append(line.rstrip())
+            found = _FETCHED.match(line)
+            if found:
+                fetched.add(found[1])
+
+    reader = threading.Thread(target=read, daemon=True)
+    reader.start()
+    installed_before = count_installed()
+    installing = False
+    try:
+        while process.poll() is None:
+            installed = count_installed()
+            installing = installing or installed != installed_before
+            if installing:
+                progress.show('Installing', installed)
+            else:
+                progress.show('Fetching', len(fetched))
+            try:
+                process.wait(timeout=0.2)
+            except subprocess.TimeoutExpired:
+                pass
+        reader.join()
+        if process.returncode == 0:
+            progress.show('Installed', progress.total)
+    finally:
+        progress.close()
+        if process.poll() is None:
+            process.terminate()
+            process.wait()
+    return process.returncode, list(output)
+
+
+def explain(output: Sequence[str], root: Path) -> SetupError:
+    """Return the error that says why the installer failed and what to do.
+
+    Args:
+        output: What it printed, line by line.
+        root: Folder of the course.
+    """
+    text = '\n'.join(output)
+    if _NO_SPACE.search(text):
+        place = os.environ.get('TMPDIR', '/tmp')
+        return SetupError(
+            f'There is no disk space left in {str(root)!r}, in {place!r} or in your home folder.',
+            todo='Free some space, and repeat the command.',
+        )
+    if _READ_ONLY.search(text):
+        return SetupError(
+            f'The folder {str(root)!r}, or the one for temporary files, can not be written to.',
+            todo='Copy the course to a folder of your own, and repeat the command there.',
+        )
+    errors = [line for line in output if re.match(r'\s*(ERROR|error|×)', line)]
+    last = (errors or [line for line in output if line.strip()] or ['no output'])[-1].strip()
+    if _NO_NETWORK.search(text):
+        return SetupError(
+            'Packages could not be fetched: the network, or the package index, does not answer.',
+            todo='Connect to the internet (behind a proxy, set HTTPS_PROXY), and repeat the '
+            f'command. The installer said: {last}',
+        )
+    return SetupError(
+        f'Packages could not be installed: {last!r}',
+        todo='The last lines of the installer:\n  ' + '\n  '.join(output[-15:]),
+    )

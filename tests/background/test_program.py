@@ -1,0 +1,40 @@
+"""A program that consists of nodes, and how it ends."""
+
+from __future__ import annotations
+
+PROGRAM = """
+import rclpy
+from labkit.background.program import spin_until_interrupted
+from rclpy.node import Node
+from std_msgs.msg import String
+
+class Speaker(Node):
+    def __init__(self):
+        super().__init__('speaker')
+        self.publisher = self.create_publisher(String, 'news', 10)
+        self.create_timer(0.01, self.on_timer)
+
+    def on_timer(self):
+        {first}
+        self.publisher.publish(String(data='late'))
+
+rclpy.init()
+spin_until_interrupted(Speaker())
+print('ended, and ROS is', 'up' if rclpy.ok() else 'down')
+"""
+
+
+def test_shut_down_within_a_callback_that_goes_on_publishing(script):
+    result = script(PROGRAM.format(first='rclpy.shutdown()'))
+    assert (result.stdout, result.stderr) == ('ended, and ROS is down\n', '')
+
+
+def test_interrupted_within_a_callback(script):
+    result = script(PROGRAM.format(first='raise KeyboardInterrupt'))
+    assert (result.stdout, result.stderr) == ('ended, and ROS is down\n', '')
+
+
+def test_a_fault_of_a_callback_is_not_hidden(script):
+    result = script(PROGRAM.format(first="raise RuntimeError('a fault')"))
+    assert (result.stdout, result.exit_code) == ('', 1)
+    assert result.stderr.endswith('RuntimeError: a fault\n')

@@ -1,0 +1,211 @@
+"""What `pytest --nbval` finds in a lesson, and how it tells: real runs on small lessons."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from xml.etree import ElementTree
+
+import nbformat
+import pytest
+from nbformat import NotebookNode
+from nbformat.v4 import new_code_cell, new_notebook, new_output
+
+from labkit.course.record import record
+
+CONFTEST = Path(__file__).resolve().parents[2] / 'notebooks' / 'conftest.py'
+Run = Callable[..., tuple[dict[str, str], str]]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    path = tmp_path / 'course' / 'notebooks'
+    path.mkdir(parents=True)
+    shutil.copy(CONFTEST, path)
+    return path
+
+
+@pytest.fixture
+def nbval(folder: Path, lab_env: dict[str, str]) -> Run:
+    """Give a function that runs nbval, and returns what came of each test, and all it printed."""
+
+    def run(*arguments: str) -> tuple[dict[str, str], str]:
+        report = folder / 'report.xml'
+        command = [sys.executable, '-m', 'pytest', '--nbval', '-v', '-p', 'no:cacheprovider']
+        command += ['-W', 'error', '-W', 'ignore::ResourceWarning', f'--junitxml={report}']
+        done = subprocess.run(
+            [*command, *(arguments or ['notebooks'])],
+            cwd=folder.parent,
+            env=lab_env,
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
+        cases = ElementTree.parse(report).iter('testcase')
+        outcomes = {
+            case.get('name', ''): (case[0].tag if len(case) else 'passed') for case in cases
+        }
+        return outcomes, done.stdout
+
+    return run
+
+
+def write(path: Path, cells: dict[str, str], tags: dict[str, str] | None = None) -> None:
+    notebook = new_notebook(cells=[new_code_cell(text, id=name) for name, text in cells.items()])
+    for cell in notebook.cells:
+        if tags and cell.id in tags:
+            cell.metadata.tags = [tags[cell.id]]
+    nbformat.write(notebook, path)
+
+
+def change(path: Path, changes: dict[str, Callable[[NotebookNode], object]]) -> None:
+    """Change what is stored of some cells."""
+    notebook = nbformat.read(path, as_version=4)
+    for cell in notebook.cells:
+        changes.get(cell.id, lambda cell: None)(cell)
+    nbformat.write(notebook, path)
+
+
+def section(output: str, cell_id: str) -> str:
+    """Return what is reported about one cell."""
+    return re.split(rf'\n_+ \w+::{cell_id} _+\n', output)[1].split('\n____')[0].split('\n====')[0]
+
+
+# Two pictures of one pixel.
+BLACK = (
+    'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNgAAAAAgABSK+kcQAAAABJRU5ErkJggg=='
+)
+WHITE = (
+    'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg=='
+)
+CELLS = {
+    'same': 'print("hello")',
+    'text': 'print("hello")\nprint("world")',
+    'space': 'print("hello")',
+    'line-break': 'print("hello", end="")',
+    'errors': 'import sys; print("careful", file=sys.stderr)',
+    'result': '6 * 7',
+    'extra': 'print("hello")',
+    'missing': 'pass',
+    'order': 'from IPython.display import display\ndisplay(1)\ndisplay(2)',
+    'html': 'from IPython.display import HTML\nHTML("<b>2</b>")',
+    'data': 'display({"application/json": {"a": [1, 2]}}, raw=True)',
+    'meant': 'raise ValueError("no")',
+    'exempted': 'import time; print(time.monotonic())',
+    'picture': f'display({{"image/png": "{BLACK}", "text/plain": "a dot"}}, raw=True)',
+    'picture-text': f'display({{"image/png": "{BLACK}", "text/plain": "a dot"}}, raw=True)',
+    'never-run': 'print("hello")',
+}
+TAGS = {'meant': 'raises-exception', 'exempted': 'nbval-ignore-output'}
+
+
+def stores(index: int, **fields: object) -> Callable[[NotebookNode], object]:
+    return lambda cell: cell.outputs[index].update(**fields)
+
+
+def displays(**data: object) -> Callable[[NotebookNode], object]:
+    named = {mime.replace('__', '/'): value for mime, value in data.items()}
+    return lambda cell: cell.outputs[0].data.update(named)
+
+
+CHANGES: dict[str, Callable[[NotebookNode], object]] = {
+    'text': stores(0, text='hallo\nworld\n'),
+    'space': stores(0, text='hello  \n'),
+    'line-break': stores(0, text='hello\n'),
+    'errors': stores(0, text='harmless\n'),
+    'result': displays(text__plain='41'),
+    'extra': lambda cell: cell.outputs.clear(),
+    'missing': lambda cell: cell.outputs.append(new_output('stream', name='stderr', text='x')),
+    'order': lambda cell: cell.outputs.reverse(),
+    'html': displays(text__html='<b>1</b>'),
+    'data': displays(application__json={'a': [1, 3]}),
+    'meant': stores(0, evalue='yes'),
+    'exempted': stores(0, text='something else\n'),
+    'picture': displays(image__png=WHITE),
+    'picture-text': displays(text__plain='a line'),
+    'never-run': lambda cell: cell.update(execution_count=None, outputs=[]),
+}
+PASS = {'same', 'exempted', 'picture'}
+
+
+def test_every_difference_is_found_and_shown(folder: Path, nbval: Run):
+    write(folder / '01_one.ipynb', {'setup': 'pass', **CELLS}, TAGS)
+    assert record(folder=folder) == 0
+    outcomes, _ = nbval()
+    assert set(outcomes.values()) == {'passed'} and list(outcomes) == ['setup', *CELLS]
+
+    change(folder / '01_one.ipynb', CHANGES)
+    outcomes, output = nbval()
+    assert {name for name in CELLS if outcomes[name] == 'passed'} == PASS
+    told = section(output, 'text')
+    assert "Lesson 01_one, cell 'text': it does not show what is stored" in told
+    assert '    print("hello")\n    print("world")\n' in told
+    assert '-  hallo\n+  hello\n   world\n' in told
+    assert 'python3 -m labkit record 01_one' in told
+    assert '-  hello··\n+  hello\n' in section(output, 'space')
+    assert '+[stdout] (without a line break at the end)\n' in section(output, 'line-break')
+    assert '-  harmless\n+  careful\n' in section(output, 'errors')
+    assert '-  41\n+  42\n' in section(output, 'result')
+    assert '+[stdout]\n+  hello\n' in section(output, 'extra')
+    assert '-  x\n' in section(output, 'missing')
+    assert '-  <b>1</b>\n+  <b>2</b>\n' in section(output, 'html')
+    assert '-  ValueError: yes\n+  ValueError: no\n' in section(output, 'meant')
+    assert '-(the cell has never been recorded)\n' in section(output, 'never-run')
+
+
+def test_each_lesson_tells_what_went_wrong_in_it(folder: Path, nbval: Run):
+    write(folder / '01_one.ipynb', {'long': 'for i in range(100):\n    print("line", i)'})
+    record(folder=folder)
+    longer = ''.join(f'line {i if i != 50 else "fifty"}\n' for i in range(100))
+    change(folder / '01_one.ipynb', {'long': stores(0, text=longer)})
+    write(folder / '02_two.ipynb', {'raises': 'x = 1\ny', 'after': 'print(x)'})
+    deadly = 'import os\nos.write(2, b"my last words")\nos.kill(os.getpid(), 11)'
+    write(folder / '03_three.ipynb', {'dies': deadly, 'skipped': 'pass'})
+    write(folder / '04_four.ipynb', {'tagged': 'pass'}, {'tagged': 'nbval-skip'})
+
+    outcomes, output = nbval()
+    failed = {'long', 'raises', 'after', 'dies'}
+    assert {name for name, outcome in outcomes.items() if outcome == 'failure'} == failed
+    # nbval expects a cell to fail whose kernel is gone: only the first is reported.
+    assert outcomes['skipped'] == outcomes['tagged'] == 'skipped'
+
+    told = section(output, 'long')
+    assert '   line 49\n-  line fifty\n+  line 50\n   line 51\n' in told
+    assert 'line 40' not in told and 'line 60' not in told
+    told = section(output, 'raises')
+    assert "Lesson 02_two, cell 'raises': it raised NameError: name 'y' is not defined" in told
+    assert '----> 2 y' in told and '\x1b' not in told
+    # The cell after it runs all the same, and is compared.
+    assert '+  1\n' in section(output, 'after')
+    told = section(output, 'dies')
+    assert 'Kernel died' in told and 'my last words' in told
+
+
+def test_a_cell_that_hangs_is_ended(folder: Path, nbval: Run):
+    write(folder / '01_one.ipynb', {'long': 'import time\ntime.sleep(1000)', 'next': 'pass'})
+    outcomes, output = nbval('--nbval-cell-timeout=1', 'notebooks')
+    assert outcomes == {'long': 'failure', 'next': 'skipped'}
+    assert 'after 1 seconds' in section(output, 'long')
+
+
+def test_two_workers_can_share_the_lessons(folder: Path, nbval: Run):
+    cells = {'first': 'x = [1]', 'second': 'x.append(2)', 'third': 'x'}
+    for name in ('01_one', '02_two'):
+        write(folder / f'{name}.ipynb', cells)
+    record(folder=folder)
+    outcomes, output = nbval('-n', '2', '--dist', 'loadscope', 'notebooks')
+    assert set(outcomes.values()) == {'passed'}, output
+    assert output.count('PASSED') == 6
+
+
+def test_one_cell_can_be_run_alone(folder: Path, nbval: Run):
+    write(folder / '01_one.ipynb', {'first': 'x = [1]', 'second': 'x.append(2)', 'third': 'x'})
+    record(folder=folder)
+    write(folder / '02_two.ipynb', {'early': 'wrong', 'late': 'pass'})
+    outcomes, output = nbval('notebooks/01_one.ipynb::third', 'notebooks/02_two.ipynb::late')
+    assert outcomes == {'third': 'passed', 'late': 'failure'}, output
+    assert "cell 'late': cell 'early', which runs before it: it raised NameError" in output

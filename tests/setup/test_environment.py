@@ -1,0 +1,334 @@
+"""Making the environment on real machines: what goes wrong, and what is left then."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import venv
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from courses import BARE_PATH, ROOT, TIMEOUT_SEC, Course, Gate, base_python, wait_for_line
+
+from labkit.errors import SetupError
+from labkit.setup import installer, machine
+
+
+@pytest.fixture
+def course(tmp_path: Path) -> Course:
+    return Course(tmp_path / 'course')
+
+
+@pytest.fixture
+def gate(course: Course) -> Iterator[Gate]:
+    gate = Gate(course.folder)
+    yield gate
+    gate.close()
+
+
+def sentence(done: subprocess.CompletedProcess[str]) -> str:
+    """Return the message of a command that was refused in the proper way."""
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert 'Traceback' not in done.stderr
+    assert done.stderr.startswith('labkit: ')
+    return done.stderr
+
+
+def test_made_once_then_completed_then_updated(course: Course) -> None:
+    first = course.make()
+    assert first.returncode == 0, first.stderr
+    assert 'Installed    1 of 1 packages' in first.stdout
+    assert course.installed() == {'alpha-1.0'}
+    again = course.make()
+    assert (again.returncode, again.stdout) == (0, '')
+
+    # What the tests need comes on top.
+    requirements = course.folder / 'tests' / 'requirements.txt'
+    requirements.write_text(course.wheel('checker'))
+    files = "('environment.txt', 'tests/requirements.txt')"
+    with_tests = course.python(f'labkit.setup.environment.make_environment({files})')
+    assert 'tests/requirements.txt was not installed' in with_tests.stdout
+    assert course.installed() == {'alpha-1.0', 'checker-1.0'}
+
+    # A learner's environment is not behind because of them, and neither gets lost.
+    course.require(course.wheel('alpha', '2.0'), course.wheel('beta'))
+    assert 'environment.txt has changed' in course.make().stdout
+    assert course.installed() == {'alpha-2.0', 'beta-1.0', 'checker-1.0'}
+    assert course.python(f'labkit.setup.environment.make_environment({files})').stdout == ''
+
+
+def test_installed_with_pip_where_there_is_no_uv(course: Course) -> None:
+    done = course.make(PATH=BARE_PATH)
+    assert done.returncode == 0, done.stderr
+    assert course.installed() == {'alpha-1.0'}
+    course.require('./missing-1.0-py3-none-any.whl')
+    assert 'missing-1.0' in sentence(course.make(PATH=BARE_PATH))
+    course.require('http://127.0.0.1:9/beta-1.0-py3-none-any.whl')
+    assert 'Connect to the internet' in sentence(course.make(PATH=BARE_PATH))
+    assert course.installed() == {'alpha-1.0'}
+
+
+def test_failed_install_leaves_nothing(course: Course) -> None:
+    course.require('./missing-1.0-py3-none-any.whl')
+    assert 'missing-1.0' in sentence(course.make())
+    assert not course.venv.exists()
+
+
+def test_failed_update_leaves_what_was_there(course: Course) -> None:
+    assert course.make().returncode == 0
+    before = (course.venv / 'labkit.json').read_text()
+    course.require('http://127.0.0.1:9/beta-1.0-py3-none-any.whl')
+    assert 'network' in sentence(course.make())
+    assert (course.venv / 'labkit.json').read_text() == before
+    assert course.installed() == {'alpha-1.0'}
+
+
+def test_killed_half_way_then_repeated(course: Course, gate: Gate) -> None:
+    course.require(course.wheel('alpha'), f'{gate.url}/slow-1.0-py3-none-any.whl')
+    course.wheel('slow')
+    killed = course.start(course.script('labkit.setup.environment.make_environment()'))
+    assert gate.asked.wait(TIMEOUT_SEC)
+    os.kill(killed.pid, signal.SIGKILL)
+    killed.wait(TIMEOUT_SEC)
+    # The installer lives on and keeps the lock, so the second one does not get in its way.
+    second = course.start(course.script('labkit.setup.environment.make_environment()'))
+    wait_for_line(second, 'Another labkit is setting up')
+    gate.opened.set()
+    output = second.communicate(timeout=TIMEOUT_SEC)[0]
+    assert second.returncode == 0, output
+    assert 'making it was interrupted' in output
+    assert course.installed() == {'alpha-1.0', 'slow-1.0'}
+
+
+def test_interrupt_key_leaves_nothing(course: Course, gate: Gate) -> None:
+    course.require(f'{gate.url}/slow-1.0-py3-none-any.whl')
+    course.wheel('slow')
+    process = course.start(course.script('labkit.setup.environment.make_environment()'))
+    assert gate.asked.wait(TIMEOUT_SEC)
+    os.killpg(process.pid, signal.SIGINT)
+    output = process.communicate(timeout=TIMEOUT_SEC)[0]
+    assert process.returncode == 130
+    assert 'interrupted' in output
+    assert 'Traceback' not in output.split('labkit: ')[-1]
+    assert not course.venv.exists()
+
+
+def test_two_at_once(course: Course, gate: Gate) -> None:
+    course.require(f'{gate.url}/slow-1.0-py3-none-any.whl')
+    course.wheel('slow')
+    first = course.start(course.script('labkit.setup.environment.make_environment()'))
+    assert gate.asked.wait(TIMEOUT_SEC)
+    second = course.start(course.script('labkit.setup.environment.make_environment()'))
+    wait_for_line(second, 'Another labkit is setting up')
+    gate.opened.set()
+    assert 'Making the environment' in first.communicate(timeout=TIMEOUT_SEC)[0]
+    assert second.communicate(timeout=TIMEOUT_SEC)[0] == ''
+    assert (first.returncode, second.returncode) == (0, 0)
+    assert course.installed() == {'slow-1.0'}
+
+
+@pytest.mark.parametrize(
+    ('damage', 'reason'),
+    [
+        ('gone', 'its Python is gone'),
+        ('stamp', 'making it was interrupted'),
+        ('moved', 'its folder was moved'),
+        ('other', 'its Python was replaced'),
+    ],
+)
+def test_broken_environment_is_made_anew(course: Course, damage: str, reason: str) -> None:
+    assert course.make().returncode == 0
+    python = course.venv / 'bin' / 'python'
+    if damage == 'gone':
+        # The Python that it was made with is not installed any more.
+        for link in (course.venv / 'bin').glob('python*'):
+            link.unlink()
+            link.symlink_to('/nowhere/python3')
+    elif damage == 'stamp':
+        (course.venv / 'labkit.json').write_text('{"installed": 5')
+    elif damage == 'moved':
+        course.folder = course.folder.rename(course.folder.with_name('elsewhere'))
+        course.venv = course.folder / '.venv'
+    else:
+        # The system's `python3` has become another version: there is no folder for it.
+        python.unlink()
+        shutil.copy('/bin/true', python)
+    done = course.make()
+    assert done.returncode == 0, done.stderr
+    assert f'Making the environment {course.venv} ({reason})' in done.stdout
+    assert course.installed() == {'alpha-1.0'}
+
+
+def test_patch_release_of_python_changes_nothing(course: Course) -> None:
+    assert course.make().returncode == 0
+    stamp = course.venv / 'labkit.json'
+    old = json.loads(stamp.read_text())
+    stamp.write_text(json.dumps({**old, 'interpreter': ['/usr/bin/python3', 1, 1]}))
+    course.require('http://127.0.0.1:9/nothing-1.0-py3-none-any.whl')  # it must not install
+    stamp.write_text(stamp.read_text().replace(*_digests(course, old)))
+    done = course.make()
+    assert (done.returncode, done.stdout) == (0, '')
+    assert json.loads(stamp.read_text())['interpreter'] == old['interpreter']
+
+
+def _digests(course: Course, stamp: dict[str, dict[str, str]]) -> tuple[str, str]:
+    import hashlib
+
+    new = hashlib.sha256((course.folder / 'environment.txt').read_bytes()).hexdigest()
+    return stamp['installed']['environment.txt'], new
+
+
+def test_environment_made_by_hand_is_completed_not_replaced(course: Course) -> None:
+    venv.create(course.venv)
+    (course.venv / 'mine').write_text('kept')
+    done = course.make()
+    assert done.returncode == 0, done.stderr
+    assert 'it is incomplete' in done.stdout
+    assert (course.venv / 'mine').read_text() == 'kept'
+    assert course.installed() == {'alpha-1.0'}
+
+
+def test_folder_that_is_no_environment_is_left_alone(course: Course) -> None:
+    course.venv.mkdir()
+    (course.venv / 'thesis.txt').write_text('years of work')
+    assert 'is not a Python environment' in sentence(course.make())
+    assert (course.venv / 'thesis.txt').read_text() == 'years of work'
+
+
+@pytest.mark.parametrize('version', ['3.9.18', '3.14.0'])
+def test_wrong_python_is_named(course: Course, version: str) -> None:
+    code = (
+        f'(setattr(sys, "version_info", ({version.replace(".", ", ")}, "final", 0)), '
+        f'setattr(__import__("platform"), "python_version", lambda: {version!r}), '
+        'labkit.setup.environment.make_environment())'
+    )
+    done = course.python(code, PATH='/nowhere')
+    assert f'3.10, 3.11, 3.12 or 3.13 (CPython, 64 bits), but this is Python {version}' in (
+        sentence(done)
+    )
+    assert not course.venv.exists()
+    # Where another one is on PATH, that one is used, and it is said which.
+    fitting = course.folder / 'bin' / 'python{}.{}'.format(*machine.find_interpreter().version)
+    fitting.parent.mkdir()
+    fitting.symlink_to(base_python())
+    done = course.python(code, PATH=f'{fitting.parent}:{course.folder / "uv"}')
+    assert done.returncode == 0, done.stderr
+    assert f'with {fitting}, Python' in done.stdout
+
+
+def test_python_without_ensurepip(course: Course) -> None:
+    code = '(sys.modules.update(ensurepip=None), labkit.setup.environment.make_environment())'
+    assert 'sudo apt install python3.' in sentence(course.python(code, PATH=BARE_PATH))
+    assert not course.venv.exists()
+    # uv does not need it.
+    assert course.python(code).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ('system', 'processor', 'libc'),
+    [
+        ('Darwin', 'arm64', 'no glibc'),
+        ('Windows', 'AMD64', 'no glibc'),
+        ('Linux', 'aarch64', 'glibc 2.36'),
+        ('Linux', 'x86_64', 'no glibc'),
+        ('Linux', 'x86_64', 'glibc 2.27'),
+    ],
+)
+def test_other_platforms_are_told_what_to_do(system: str, processor: str, libc: str) -> None:
+    with pytest.raises(SetupError, match='robostack-jazzy'):
+        machine.check_platform(system, processor, libc)
+    machine.check_platform('Linux', 'x86_64', 'glibc 2.28')
+
+
+def test_no_network(course: Course) -> None:
+    course.require('http://127.0.0.1:9/alpha-1.0-py3-none-any.whl')
+    assert 'Connect to the internet' in sentence(course.make())
+    assert not course.venv.exists()
+
+
+def in_namespace(course: Course, mount: str, path: str = '') -> subprocess.CompletedProcess[str]:
+    """Make the environment where a file system was mounted for this command alone."""
+    unshare = ['unshare', '--mount', *([] if os.geteuid() == 0 else ['--map-root-user'])]
+    if subprocess.run([*unshare, 'true'], capture_output=True).returncode != 0:
+        pytest.skip('this system does not allow mount namespaces')
+    command = [*unshare, 'sh', '-ec', f'{mount}; cd "$0"; exec "$@"', str(course.folder)]
+    return subprocess.run(
+        [*command, *course.script('labkit.setup.environment.make_environment()')],
+        env={**course.env, 'PATH': path or course.env['PATH']},
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT_SEC,
+        stdin=subprocess.DEVNULL,
+    )
+
+
+def on_disk_of(megabytes: int, course: Course) -> str:
+    """Return the shell commands that put the course on a disk of its own."""
+    copy = course.folder.with_name('copy')
+    course.folder.rename(copy)
+    course.folder.mkdir()
+    # What the course's `uv` links to is elsewhere.
+    return f'mount -t tmpfs -o size={megabytes}m none "$0"; cp -r {copy}/. "$0"'
+
+
+def test_read_only_disk(course: Course) -> None:
+    done = in_namespace(course, 'mount --bind "$0" "$0"; mount -o remount,ro,bind "$0"')
+    assert 'can not be written to' in sentence(done)
+    assert not course.venv.exists()
+
+
+def test_small_disk(course: Course) -> None:
+    done = in_namespace(course, on_disk_of(40, course))
+    assert 'needs 1.2 GB of disk space, but only 0.0 GB are free' in sentence(done)
+
+
+@pytest.mark.parametrize('path', ['', BARE_PATH], ids=['uv', 'pip'])
+def test_disk_that_gets_full(course: Course, path: str) -> None:
+    big = Path(course.folder, course.wheel('big', size=60_000_000))
+    course.require(str(big.rename(course.folder.with_name(big.name))))
+    # There was space when it was asked for, as it were.
+    module = course.folder / 'labkit' / 'setup_env.py'
+    module.write_text(module.read_text().replace('1_200_000_000', '1_000'))
+    done = in_namespace(course, on_disk_of(50, course), path)
+    assert 'There is no disk space left' in sentence(done)
+
+
+def test_markers_of_requirements() -> None:
+    lines = [
+        '# a remark',
+        'one==1  # why',
+        "two==1 ; python_full_version < '3.11'",
+        "two==2 ; python_full_version >= '3.11'",
+        "three==1 ; python_full_version == '3.11.*'",
+        "four==1 ; python_full_version >= '3.11.5'  # why",
+    ]
+    assert len(installer.applicable(lines, (3, 10, 2))) == 2
+    assert len(installer.applicable(lines, (3, 11, 4))) == 3
+    assert len(installer.applicable(lines, (3, 11, 7))) == 4
+    assert len(installer.applicable(lines, (3, 12, 0))) == 3
+
+
+def test_other_ros_installations_are_kept_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    wheels = '/other/.venv/lib/python3.11/site-packages/ros_rcl.libs'
+    monkeypatch.setenv('_ROS_WHEELS_BOOTSTRAP_COMPLETE', '1')
+    monkeypatch.setenv('AMENT_PREFIX_PATH', '/home/me/ws/install/mine:/opt/ros/humble')
+    monkeypatch.setenv('LD_LIBRARY_PATH', f'/opt/ros/humble/lib:/mine:/other/.venv/lib:{wheels}')
+    monkeypatch.setenv('PYTHONPATH', '/home/me/ws/install/mine/lib/python3.10/site-packages')
+    monkeypatch.setenv('RMW_IMPLEMENTATION', 'rmw_cyclonedds_cpp')
+    clean = machine.clean_environment()
+    assert clean['LD_LIBRARY_PATH'] == '/mine'
+    gone = {'_ROS_WHEELS_BOOTSTRAP_COMPLETE', 'AMENT_PREFIX_PATH', 'PYTHONPATH'}
+    assert not {*gone, 'RMW_IMPLEMENTATION'} & set(clean)
+
+
+def test_every_requirement_is_pinned() -> None:
+    for name in ('environment.txt', 'tests/requirements.txt'):
+        lines = installer.applicable((ROOT / name).read_text().splitlines(), (3, 12, 0))
+        loose = [line for line in lines if '==' not in line and line != '-e .']
+        assert not loose, f'{name}: {loose}'
+        names = [line.partition('==')[0].lower() for line in lines]
+        assert len(names) == len(set(names)), f'{name} has a package twice'
