@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 
-__all__ = ['LabError', 'LabTimeout', 'SetupError']
+__all__ = ['LabError', 'LabTimeout', 'SetupError', 'cell_name', 'nearest']
 
 # Characters in a line of a message in a notebook: what a projector shows side by side.
 WIDTH = 88
@@ -83,3 +84,24 @@ def cell_name(filename: str) -> str:
         return ''
     data = shell.compile.format_code_name(filename)
     return f'{data[0]} {data[1]}' if data is not None else ''
+
+
+def nearest(name: str, names: Iterable[str]) -> str:
+    """Return the one of `names` that was most likely meant, '' if none is much like it.
+
+    Small and capital letters and underscores count for nothing, and a name that ends in the same
+    word is near: `/robot/odom` to `/odom`.
+    """
+    import difflib
+
+    known = list(names)
+    last = _plain(name)
+    for other in known:
+        if last and _plain(other) == last:
+            return other
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.7)
+    return near[0] if near else ''
+
+
+def _plain(name: str) -> str:
+    return name.rsplit('/', 1)[-1].lower().replace('_', '')

@@ -1,4 +1,4 @@
-"""Imports in labkit only go down its layers: read off the code, wherever in it they stand."""
+"""Imports in labkit only go down its floors: read off the code, wherever in it they stand."""
 
 from __future__ import annotations
 
@@ -14,63 +14,38 @@ import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 
-# The layer of every module; `labkit.views.*` stands for all modules of a folder and the folder.
-LAYERS = {
+# The floor of every room, and of the three modules that lie beside them; see docs/design.md.
+FLOORS = {
     'labkit.errors': 0,
-    'labkit.background.supervisor': 0,
-    'labkit.settings': 0,
-    'labkit.sim': 0,
-    'labkit.sim.kinematics': 0,
-    'labkit.sim.simulator': 0,
-    'labkit.sim.world': 0,
-    'labkit.background.console': 1,
-    'labkit.background.executor': 1,
-    'labkit.background.nodes': 1,
-    'labkit.background.notebook_rclpy': 1,
-    'labkit.background.runtime': 1,
-    'labkit.rosgraph.matching': 1,
-    'labkit.background.tracebacks': 1,
-    'labkit.bag': 2,
-    'labkit.rosgraph.snapshot': 2,
-    'labkit.background.child_processes': 2,
-    'labkit.background': 0,
-    'labkit.background.demo_nodes': 2,
-    'labkit.background.discovery': 2,
-    'labkit.background.program': 2,
-    'labkit.background.service_calls': 2,
-    'labkit.course': 5,
-    'labkit.rosgraph': 0,
-    'labkit.rosgraph.interfaces': 2,
-    'labkit.rosgraph.message_yaml': 2,
-    'labkit.rosgraph.packages': 2,
-    'labkit.rosgraph.whose': 3,
-    'labkit.setup': 0,
-    'labkit.ros2.*': 2,
-    'labkit.sim.messages': 2,
-    'labkit.sim.turtlebot': 2,
-    'labkit.background.waiting': 2,
-    'labkit.exercises.*': 3,
-    'labkit.views.*': 3,
-    'labkit.lessons.*': 4,
-    'labkit': 5,
-    'labkit.__main__': 5,
-    'labkit.checkup.*': 5,
-    'labkit.checkup.report': 5,
-    'labkit.setup.installer': 5,
-    'labkit.course.learner_folder': 5,
-    'labkit.course.lesson_run': 5,
-    'labkit.setup.machine': 5,
-    'labkit.course.record': 5,
-    'labkit.course.run_tests': 5,
-    'labkit.setup.environment': 5,
+    'labkit.files': 0.1,
+    'labkit.settings': 0.1,
+    'labkit.setup': 1,
+    'labkit.rosgraph': 1,
+    'labkit.background': 2,
+    'labkit.bags': 3,
+    'labkit.ros2': 4,
+    'labkit.sim': 4,
+    'labkit.checkup': 4,
+    'labkit.views': 5,
+    'labkit.exercises': 6,
+    'labkit.lessons': 7,
+    'labkit.course': 8,
+    'labkit.hub': 8,
+    'labkit': 9,
+    'labkit.__main__': 9.1,
 }
-ROS_LAYERS = (1, 2)
+# Rooms, and one module, in which all that is loaded may need rclpy.
+WITH_ROS = (
+    *('labkit.rosgraph', 'labkit.background', 'labkit.bags', 'labkit.sim.turtlebot'),
+    'labkit.ros2',
+)
+WITHOUT_ROS = ('labkit.errors', 'labkit.files', 'labkit.settings', 'labkit.setup')
 VIEWS_ONLY = ('anywidget', 'ipywidgets', 'matplotlib')
 # What `python3 -m labkit` needs before there is an environment.
 BARE = (
     *('labkit', 'labkit.__main__', 'labkit.checkup.report', 'labkit.errors', 'labkit.settings'),
-    *('labkit.setup.installer', 'labkit.course.learner_folder', 'labkit.setup.machine'),
-    *('labkit.course.run_tests', 'labkit.setup.environment'),
+    *('labkit.files', 'labkit.setup.environment', 'labkit.setup.installer'),
+    *('labkit.setup.machine', 'labkit.course.learner_folder', 'labkit.course.run_tests'),
 )
 
 
@@ -84,13 +59,10 @@ class Import:
     for_types: bool = False
 
 
-def layer_of(module: str) -> int | None:
-    """Return a module's layer, None if the table does not have it."""
-    if module in LAYERS:
-        return LAYERS[module]
-    parts = module.split('.')
-    starred = ('.'.join(parts[:end]) + '.*' for end in range(len(parts), 1, -1))
-    return next((LAYERS[name] for name in starred if name in LAYERS), None)
+def room_of(module: str) -> str | None:
+    """Return the room of a module, None if the table does not have it."""
+    room = '.'.join(module.split('.')[:2])
+    return room if room in FLOORS else None
 
 
 def imports(tree: ast.AST, *, at_load: bool = True, for_types: bool = False) -> Iterator[Import]:
@@ -113,9 +85,15 @@ def targets(node: ast.AST) -> Iterator[str]:
         for alias in node.names:
             inner = f'{node.module}.{alias.name}'
             # `from labkit import settings` takes a module, `from labkit import spin` a name.
-            yield inner if layer_of(inner) is not None else str(node.module)
+            yield inner if is_module(inner) else str(node.module)
     elif isinstance(node, ast.Call) and called(node) in ('import_module', '__import__'):
         yield computed_name(node.args[0])
+
+
+def is_module(name: str) -> bool:
+    """Tell whether a name is that of a module or a package of this repository."""
+    path = ROOT.joinpath(*name.split('.'))
+    return path.is_dir() or path.with_suffix('.py').is_file()
 
 
 def computed_name(argument: ast.expr) -> str:
@@ -124,7 +102,7 @@ def computed_name(argument: ast.expr) -> str:
         return str(argument.value)
     if isinstance(argument, ast.JoinedStr):
         return ''.join(map(computed_name, argument.values))
-    # A package of messages may be computed; one of labkit's own modules only in the top layer.
+    # A package of messages may be computed; one of labkit's own modules only at the top.
     ours = {'labkit', '__name__', '__package__'}
     return 'labkit?' if any(word in ast.unparse(argument) for word in ours) else '?'
 
@@ -135,30 +113,30 @@ def called(node: ast.Call) -> str:
 
 
 def violations(module: str, source: str) -> list[str]:
-    """Return a sentence for each import in a module that the layers forbid."""
-    layer = layer_of(module)
-    if layer is None:
-        return [f'{module} is in no layer: add it to LAYERS, and to DESIGN if it is a new idea']
-    found = [problem(module, layer, imported) for imported in imports(ast.parse(source))]
+    """Return a sentence for each import in a module that the floors forbid."""
+    room = room_of(module)
+    if room is None:
+        return [f'{module} is in no room: add it to FLOORS, and to docs/design.md']
+    found = [problem(module, room, imported) for imported in imports(ast.parse(source))]
     return [sentence for sentence in found if sentence]
 
 
-def problem(module: str, layer: int, imported: Import) -> str:
+def problem(module: str, room: str, imported: Import) -> str:
     """Return what is wrong with one import, `''` if it is in order."""
     target, place = imported.target, f'{module}, line {imported.line}'
     package = target.partition('.')[0]
     if package in ('labkit', 'labkit?'):
-        below = layer_of(target)
-        if below is None:
-            return f'{place}: imports {target}, which is in no layer'
-        if below > layer:
-            return f'{place}: layer {layer} imports {target} of layer {below}; import downwards'
+        other = room_of(target)
+        if other is None:
+            return f'{place}: imports {target}, which is in no room'
+        if other != room and FLOORS[other] >= FLOORS[room]:
+            return f'{place}: {room} imports {target}, which is not below it'
     if package == 'rclpy' and not imported.for_types:
-        if layer == 0:
-            return f'{place}: layer 0 knows nothing of rclpy'
-        if imported.at_load and layer not in ROS_LAYERS:
+        if room in WITHOUT_ROS:
+            return f'{place}: {room} knows nothing of rclpy'
+        if imported.at_load and not module.startswith(WITH_ROS):
             return f'{place}: import rclpy inside the function that needs it'
-    if package in VIEWS_ONLY and not module.startswith('labkit.views'):
+    if package in VIEWS_ONLY and room != 'labkit.views':
         return f'{place}: only labkit.views imports {package}'
     return ''
 
@@ -212,47 +190,24 @@ def test_a_cycle_would_be_found():
 @pytest.mark.parametrize(
     ('module', 'source', 'words'),
     [
-        ('labkit.unheard_of', '', 'in no layer'),
-        ('labkit.background.runtime', 'from labkit.unheard_of import x', 'in no layer'),
-        (
-            'labkit.background.runtime',
-            'from labkit.background.waiting import wait_until',
-            'layer 1 imports',
-        ),
-        (
-            'labkit.background.runtime',
-            'from labkit.background import waiting',
-            'waiting of layer 2',
-        ),
-        (
-            'labkit.background.runtime',
-            'def f():\n    import labkit.views.plot',
-            'line 2: layer 1 imports',
-        ),
-        (
-            'labkit.background.runtime',
-            'if TYPE_CHECKING:\n    import labkit.rosgraph.snapshot',
-            'layer 1 imports',
-        ),
-        ('labkit.lessons.odds', 'import labkit as lab', 'labkit of layer 5'),
-        ('labkit.lessons.odds', 'from labkit import spin', 'labkit of layer 5'),
-        (
-            'labkit.rosgraph.snapshot',
-            "importlib.import_module('labkit.views.x')",
-            'layer 2 imports',
-        ),
-        ('labkit.exercises.x', "import_module(f'labkit.lessons.{name}')", 'layer 3 imports'),
-        ('labkit.exercises.x', "import_module('labkit.' + name)", 'in no layer'),
-        ('labkit.sim.world', 'def f():\n    import rclpy', 'nothing of rclpy'),
+        ('labkit.unheard_of', '', 'in no room'),
+        ('labkit.background.x', 'from labkit.unheard_of import x', 'in no room'),
+        ('labkit.background.x', 'from labkit.views.plot import plot', 'not below it'),
+        ('labkit.background.x', 'def f():\n    import labkit.views.plot', 'line 2: labkit.backgr'),
+        ('labkit.background.x', 'if TYPE_CHECKING:\n    import labkit.views', 'not below it'),
+        ('labkit.ros2.x', 'from labkit.sim import world', 'labkit.sim.world, which is not'),
+        ('labkit.setup.x', 'from labkit import __version__', 'not below it'),
+        ('labkit.lessons.odds', 'import labkit as lab', 'not below it'),
+        ('labkit.lessons.odds', 'from labkit import spin', 'imports labkit, which'),
+        ('labkit.rosgraph.x', "importlib.import_module('labkit.views.x')", 'not below it'),
+        ('labkit.exercises.x', "import_module(f'labkit.lessons.{name}')", 'not below it'),
+        ('labkit.exercises.x', "import_module('labkit.' + name)", 'in no room'),
+        ('labkit.setup.x', 'def f():\n    import rclpy', 'nothing of rclpy'),
         ('labkit.views.graph', 'import rclpy.node', 'inside the function'),
         ('labkit.views.graph', 'class A:\n    from rclpy.qos import QoSProfile', 'inside the'),
         ('labkit.lessons.odds', 'try:\n    import rclpy\nfinally:\n    pass', 'inside the'),
-        (
-            'labkit.rosgraph.snapshot',
-            'def f():\n    import ipywidgets',
-            'only labkit.views imports',
-        ),
-        ('labkit.checkup.report', 'from matplotlib import pyplot', 'only labkit.views imports'),
+        ('labkit.rosgraph.x', 'def f():\n    import ipywidgets', 'only labkit.views imports'),
+        ('labkit.checkup.x', 'from matplotlib import pyplot', 'only labkit.views imports'),
     ],
 )
 def test_a_forbidden_import_would_be_found(module: str, source: str, words: str):
@@ -262,17 +217,25 @@ def test_a_forbidden_import_would_be_found(module: str, source: str, words: str)
 @pytest.mark.parametrize(
     ('module', 'source'),
     [
-        ('labkit.background.runtime', 'import rclpy\nfrom labkit import settings\nimport json'),
+        ('labkit.background.x', 'import rclpy\nfrom labkit import settings\nimport json'),
+        ('labkit.background.x', 'from labkit.rosgraph.names import is_hidden'),
+        ('labkit.sim.turtlebot', 'import rclpy\nfrom labkit.sim.world import World'),
         ('labkit.views.plot', 'import matplotlib\ndef f():\n    import rclpy'),
         ('labkit.views.plot', 'if TYPE_CHECKING:\n    from rclpy.node import Node'),
         ('labkit', 'importlib.import_module(name)'),
-        ('labkit.rosgraph.snapshot', "import_module(f'{package}.msg')"),
-        ('labkit.course.record', 'from labkit import __version__'),
-        ('labkit.ros2.topic', 'from labkit.ros2.parser import verbs'),
+        ('labkit.rosgraph.x', "import_module(f'{package}.msg')"),
+        ('labkit.ros2.topic', 'from labkit.ros2.parser import Verb'),
     ],
 )
 def test_an_allowed_import_is_let_pass(module: str, source: str):
     assert violations(module, source) == []
+
+
+def test_no_room_has_the_name_of_a_public_function():
+    import labkit
+
+    rooms = {name.partition('.')[2].partition('.')[0] for name in modules()}
+    assert rooms & set(labkit.__all__) == set()
 
 
 # Prints what an import has loaded that comes neither with Python nor with labkit.

@@ -1,10 +1,9 @@
-"""The node that all commands ask with, and how long they wait for others to be discovered."""
+"""The node to ask the graph with, and how long others may take to be discovered."""
 
 from __future__ import annotations
 
 import os
 import time
-from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
@@ -12,18 +11,14 @@ from typing import TypeVar
 from rclpy.node import Node
 
 from labkit.background.runtime import runtime
-from labkit.errors import LabError
-from labkit.ros2.parser import Parser, nearest, positive_float
 from labkit.rosgraph.snapshot import UNKNOWN_NODE, is_whole, node_names
 
 __all__ = [
-    'add_discovery_options',
+    'DISCOVERY_SEC',
     'alone',
     'asking_node',
     'calm',
-    'check_node_name',
     'soon',
-    'unknown',
 ]
 
 Found = TypeVar('Found')
@@ -47,30 +42,16 @@ _PORTS_OF_DOMAIN = 250
 _FIRST_PARTICIPANT = 10
 
 
-def add_discovery_options(parser: Parser) -> None:
-    """Add the options that all commands have that look at the graph."""
-    parser.add(
-        '--spin-time',
-        type=positive_float,
-        default=DISCOVERY_SEC,
-        metavar='SPIN_TIME',
-        help='seconds to wait for discovery, if ROS was started just now',
-    )
-    parser.add('-s', '--use-sim-time', action='store_true', help='accepted, without effect')
-    parser.add('--no-daemon', action='store_true', help='accepted; there is no daemon here')
-
-
-def asking_node(args: Namespace) -> Node:
+def asking_node(spin_time: float = DISCOVERY_SEC) -> Node:
     """Return the node to ask the graph with. ROS is started if it is not up.
 
     Args:
-        args: The arguments of the command, with `spin_time`.
+        spin_time: Seconds that others may take to be discovered if ROS was started just now.
     """
-    runtime.refuse_in_callback('Running a ros2 command')
+    runtime.refuse_in_callback('Asking the graph')
     runtime.start()
     assert runtime.helper is not None
     if not alone() and time.monotonic() < runtime.started_at + MOST_SEC:
-        spin_time = getattr(args, 'spin_time', DISCOVERY_SEC)
         # On this machine all that take part can be counted; on others only time helps.
         least = 0.0 if _local() else min(spin_time, 60.0)
         _discover(runtime.helper, runtime.started_at + least)
@@ -164,37 +145,3 @@ def soon(look: Callable[[], Found], timeout_sec: float | None = None) -> Found:
         if found or time.monotonic() >= end:
             return found
         time.sleep(POLL_SEC)
-
-
-def check_node_name(node: Node, name: str, *, timeout_sec: float | None = None) -> str:
-    """Return the full name of a node of the graph.
-
-    Args:
-        node: The node to ask with.
-        name: The name as typed; the first slash may be missing.
-        timeout_sec: Seconds to wait for it.
-
-    Raises:
-        LabError: There is no such node.
-    """
-    full_name = name if name.startswith('/') else f'/{name}'
-    if not soon(lambda: full_name in node_names(node), timeout_sec):
-        raise LabError('Node not found', todo=unknown(full_name, node_names(node), 'node'))
-    return full_name
-
-
-def unknown(name: str, names: list[str], what: str) -> str:
-    """Return what to say of a name that does not exist: the nearest one, or all.
-
-    Args:
-        name: The name that was asked for.
-        names: The names that exist.
-        what: What they are names of, such as `'topic'`.
-    """
-    shown = [other for other in names if '/_' not in other]
-    near = nearest(name, shown)
-    if near:
-        return f'Did you mean {near!r}?'
-    if not shown:
-        return f'There is no {what} at all.'
-    return f'ros2 {what} list shows the {what}s that exist.'

@@ -13,7 +13,8 @@ from argparse import Namespace
 from rclpy.node import Node
 
 from labkit.background.child_processes import end_earlier, environment, start_process
-from labkit.background.discovery import asking_node, calm
+from labkit.background.discovery import calm
+from labkit.ros2.asking import asking_node
 
 __all__ = ['start']
 

@@ -16,7 +16,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSCompatibility, qos_check_compatible
 from rclpy.utilities import get_rmw_implementation_identifier
 
-from labkit.background.discovery import add_discovery_options, asking_node
+from labkit.ros2.asking import add_discovery_options, asking_node
 from labkit.ros2.parser import Command, Parser, Verb
 from labkit.rosgraph.snapshot import EVERY_NODE_HAS, is_hidden
 

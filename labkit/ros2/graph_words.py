@@ -6,8 +6,8 @@ from argparse import Namespace
 from collections.abc import Iterable
 
 from labkit import settings
-from labkit.background.discovery import asking_node
 from labkit.background.runtime import runtime
+from labkit.ros2.asking import asking_node
 from labkit.rosgraph.snapshot import is_hidden
 from labkit.rosgraph.snapshot import node_names as names_of_nodes
 

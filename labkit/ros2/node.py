@@ -11,8 +11,9 @@ from rclpy.action.graph import (
 )
 from rclpy.node import Node
 
-from labkit.background.discovery import add_discovery_options, asking_node, soon, unknown
+from labkit.background.discovery import soon
 from labkit.errors import LabError
+from labkit.ros2.asking import add_discovery_options, asking_node, unknown
 from labkit.ros2.graph_words import node_names
 from labkit.ros2.parser import Command, Parser, Verb
 from labkit.rosgraph.snapshot import is_hidden

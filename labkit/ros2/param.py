@@ -15,14 +15,9 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter as NodeParameter
 from rclpy.parameter import get_parameter_value, parameter_value_to_python
 
-from labkit.background.discovery import (
-    add_discovery_options,
-    asking_node,
-    check_node_name,
-    unknown,
-)
 from labkit.background.service_calls import call_node
 from labkit.errors import LabError
+from labkit.ros2.asking import add_discovery_options, asking_node, check_node_name, unknown
 from labkit.ros2.graph_words import node_names
 from labkit.ros2.parser import Command, Parser, Verb, positive_float
 from labkit.rosgraph.snapshot import is_hidden

@@ -8,13 +8,12 @@ version of Python, so that it can stand in a notebook.
 from __future__ import annotations
 
 import argparse
-import difflib
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
-from labkit.errors import LabError
+from labkit.errors import LabError, nearest
 
 __all__ = [
     'Command',
@@ -22,7 +21,6 @@ __all__ = [
     'Parser',
     'Usage',
     'Verb',
-    'nearest',
     'positive_float',
     'positive_int',
     'unsigned_int',
@@ -216,16 +214,6 @@ def table(rows: Iterable[tuple[str, str]]) -> list[str]:
     found = sorted(rows)
     width = max(len(word) for word, _ in found)
     return [f'  {word:{width}}  {text}' for word, text in found]
-
-
-def nearest(word: str, words: Iterable[str]) -> str:
-    """Return the one of `words` that was most likely meant, '' if none is near."""
-    known = list(words)
-    for other in known:
-        if word and (other.lower() == word.lower() or other.rsplit('/', 1)[-1] == word):
-            return other
-    near = difflib.get_close_matches(word, known, n=1, cutoff=0.7)
-    return near[0] if near else ''
 
 
 def unsigned_int(text: str) -> int:

@@ -19,7 +19,8 @@ from rclpy.node import Node
 
 from labkit import settings
 from labkit.background.child_processes import Process, end_earlier, environment, start_process
-from labkit.background.discovery import alone, asking_node, calm
+from labkit.background.discovery import alone, calm
+from labkit.ros2.asking import asking_node
 from labkit.ros2.parser import Command, Parser, Verb
 from labkit.rosgraph.packages import DEMO, Executable, executable, executables, package_names
 from labkit.rosgraph.snapshot import is_hidden, node_names

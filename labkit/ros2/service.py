@@ -11,9 +11,10 @@ from collections.abc import Iterable
 from rclpy.node import Node
 
 from labkit import settings
-from labkit.background.discovery import add_discovery_options, alone, asking_node, soon, unknown
+from labkit.background.discovery import alone, soon
 from labkit.background.service_calls import ServiceCalls
 from labkit.errors import LabError
+from labkit.ros2.asking import add_discovery_options, asking_node, unknown
 from labkit.ros2.graph_words import service_names, service_types
 from labkit.ros2.parser import Command, Parser, Usage, Verb, positive_float
 from labkit.ros2.streams import expand

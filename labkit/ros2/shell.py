@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from labkit import settings
-from labkit.errors import LabError
-from labkit.ros2.parser import Command, Done, Usage, Verb, nearest, table
+from labkit.errors import LabError, nearest
+from labkit.ros2.parser import Command, Done, Usage, Verb, table
 
 __all__ = ['COMMANDS', 'Ran', 'command', 'execute', 'history', 'run_line', 'split']
 

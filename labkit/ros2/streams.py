@@ -21,8 +21,8 @@ from rclpy.qos import QoSProfile, qos_policy_name_from_kind
 from rclpy.validate_full_topic_name import validate_full_topic_name
 
 from labkit import settings
-from labkit.background.discovery import unknown
 from labkit.errors import LabError
+from labkit.ros2.asking import unknown
 from labkit.ros2.parser import Parser, Usage, positive_float, positive_int
 from labkit.rosgraph.matching import full_topic_name, other_type_here, type_name
 from labkit.rosgraph.snapshot import is_hidden

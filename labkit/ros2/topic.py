@@ -8,8 +8,9 @@ from argparse import Namespace
 from rclpy.node import Node
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from labkit.background.discovery import add_discovery_options, asking_node, soon, unknown
+from labkit.background.discovery import soon
 from labkit.errors import LabError
+from labkit.ros2.asking import add_discovery_options, asking_node, unknown
 from labkit.ros2.graph_words import topic_names
 from labkit.ros2.parser import Command, Parser, Verb
 from labkit.ros2.topic_echo import ECHO

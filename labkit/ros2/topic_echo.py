@@ -11,14 +11,14 @@ from typing import Any
 from rclpy.node import Node
 
 from labkit import settings
-from labkit.background.discovery import add_discovery_options, asking_node, soon
-from labkit.errors import LabError
+from labkit.background.discovery import soon
+from labkit.errors import LabError, nearest
+from labkit.ros2.asking import add_discovery_options, asking_node
 from labkit.ros2.graph_words import topic_names, topic_types
 from labkit.ros2.parser import (
     Parser,
     Usage,
     Verb,
-    nearest,
     positive_float,
     positive_int,
     unsigned_int,

@@ -19,12 +19,13 @@ from rclpy.publisher import Publisher
 from rclpy.qos import ReliabilityPolicy
 
 from labkit import settings
-from labkit.background.discovery import add_discovery_options, asking_node, soon
+from labkit.background.discovery import soon
 from labkit.background.nodes import destroy_node
 from labkit.background.runtime import runtime
-from labkit.errors import LabError
+from labkit.errors import LabError, nearest
+from labkit.ros2.asking import add_discovery_options, asking_node
 from labkit.ros2.graph_words import topic_names, topic_types
-from labkit.ros2.parser import Parser, Usage, Verb, nearest, positive_float, unsigned_int
+from labkit.ros2.parser import Parser, Usage, Verb, positive_float, unsigned_int
 from labkit.ros2.qos_options import add_qos_options, profile_from
 from labkit.ros2.streams import MAX_SHOWN, Stop, expand, tell
 from labkit.rosgraph import interfaces

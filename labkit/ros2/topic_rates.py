@@ -13,8 +13,9 @@ from typing import Any
 from rclpy.qos import qos_profile_sensor_data
 from rclpy.time import Time
 
-from labkit.background.discovery import add_discovery_options, asking_node, soon
+from labkit.background.discovery import soon
 from labkit.errors import LabError
+from labkit.ros2.asking import add_discovery_options, asking_node
 from labkit.ros2.graph_words import topic_names
 from labkit.ros2.parser import Parser, Usage, Verb, positive_int
 from labkit.ros2.streams import (

@@ -11,8 +11,7 @@ from typing import Any
 
 from ament_index_python import get_resource, get_resources, has_resource
 
-from labkit.errors import LabError
-from labkit.ros2.parser import nearest
+from labkit.errors import LabError, nearest
 
 __all__ = [
     'KINDS',

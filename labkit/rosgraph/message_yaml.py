@@ -23,8 +23,7 @@ from rosidl_parser.definition import (  # type: ignore[import-untyped]
     NamespacedType,
 )
 
-from labkit.errors import LabError
-from labkit.ros2.parser import nearest
+from labkit.errors import LabError, nearest
 from labkit.rosgraph.interfaces import message_class
 from labkit.rosgraph.matching import type_name
 

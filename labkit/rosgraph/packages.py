@@ -9,8 +9,7 @@ from pathlib import Path
 
 from ament_index_python import get_packages_with_prefixes
 
-from labkit.errors import LabError
-from labkit.ros2.parser import nearest
+from labkit.errors import LabError, nearest
 from labkit.rosgraph import interfaces
 
 __all__ = ['DEMO', 'Executable', 'executable', 'executables', 'package_names', 'prefix_of']

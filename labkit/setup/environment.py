@@ -17,7 +17,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from labkit import __version__
 from labkit.errors import SetupError
 from labkit.setup.installer import Progress, applicable, install
 from labkit.setup.machine import VERSIONS, check_platform, clean_environment, find_interpreter
@@ -111,8 +110,21 @@ def _wanted(requirements: Sequence[str]) -> dict[str, str]:
     wanted = {
         name: hashlib.sha256((ROOT / name).read_bytes()).hexdigest() for name in requirements
     }
-    # The package itself: its commands and JupyterLab's defaults are installed with it.
-    return {**wanted, 'labkit': __version__}
+    return {**wanted, 'labkit': _own_mark()}
+
+
+def _own_mark() -> str:
+    """Return what changes when the package itself has to be installed anew.
+
+    Its modules are used where they lie. What is copied into the environment is its commands
+    (pyproject.toml) and JupyterLab's defaults (labkit/data).
+    """
+    mark = hashlib.sha256()
+    data = sorted(path for path in (ROOT / 'labkit' / 'data').rglob('*') if path.is_file())
+    for path in (ROOT / 'pyproject.toml', *data):
+        if path.is_file():
+            mark.update(f'{path.relative_to(ROOT)}\0'.encode() + path.read_bytes() + b'\0')
+    return mark.hexdigest()
 
 
 def _lacking(stamp: dict[str, Any] | None, requirements: Sequence[str]) -> str:

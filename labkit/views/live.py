@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import threading
 import time
-from argparse import Namespace
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -85,7 +84,7 @@ def heard(feeds: Sequence[Feed], enough: Callable[[], object]) -> Iterator[None]
         enough: Tells whether there are enough messages. Waiting ends too when time is over, or
             when nobody publishes one of the topics.
     """
-    node = asking_node(Namespace())
+    node = asking_node()
     begin, patience = time.monotonic(), NOBODY_SEC if alone() else NOBODY_ELSEWHERE_SEC
 
     def done() -> bool:

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from operator import attrgetter, itemgetter
 from typing import Any
 
-from labkit.errors import LabError
-from labkit.ros2.parser import nearest
+from labkit.errors import LabError, nearest
 from labkit.rosgraph.interfaces import message_class
 from labkit.rosgraph.matching import type_name
 
