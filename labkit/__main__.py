@@ -50,7 +50,7 @@ def _run(words: list[str]) -> int:
     if others[:1] == ['--']:
         others = others[1:]
     if options.command == 'lab':
-        from labkit.course.learner_folder import start_lab
+        from labkit.course.jupyterlab import start_lab
 
         start_lab(others)
     if options.command == 'test':

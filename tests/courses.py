@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
@@ -17,6 +18,7 @@ ROOT = Path(__file__).resolve().parent.parent
 # A hang ends; nothing is judged by it.
 TIMEOUT_SEC = 120
 BARE_PATH = '/usr/bin:/bin'
+START = '00_start_here.ipynb'
 
 
 class Course:
@@ -142,6 +144,24 @@ class Course:
             check=True,
         )
         return {name for name in answer.stdout.split() if not name.startswith(('pip', 'setup'))}
+
+
+def notebook(text: str) -> str:
+    """Return a lesson with one executed code cell."""
+    output = {'output_type': 'stream', 'name': 'stdout', 'text': ['heard\n']}
+    cell = {
+        'cell_type': 'code',
+        'execution_count': 7,
+        'id': 'talker-class',
+        'metadata': {'tags': ['nbval-ignore-output']},
+        'outputs': [output],
+        'source': [text],
+    }
+    metadata = {
+        'kernelspec': {'display_name': 'Python 3', 'language': 'python', 'name': 'python3'}
+    }
+    content = {'cells': [cell], 'metadata': metadata, 'nbformat': 4, 'nbformat_minor': 5}
+    return json.dumps(content)
 
 
 def base_python() -> str:

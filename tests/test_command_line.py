@@ -9,15 +9,13 @@ from pathlib import Path
 
 import pytest
 from courses import ROOT, Course
+from test_layers import BARE
 
 from labkit import __version__
 from labkit.__main__ import main
 from labkit.course import run_tests
 
 COMMANDS = ('lab', 'test', 'doctor', 'record', 'reset')
-# What a machine that has nothing yet loads, whatever its Python.
-BARE = ('__init__', '__main__', 'errors', 'installer', 'learner', 'machine', 'run_tests')
-BARE += ('settings', 'setup_env')
 
 
 @pytest.fixture
@@ -27,8 +25,9 @@ def course(tmp_path: Path) -> Course:
 
 @pytest.mark.parametrize('module', BARE)
 def test_old_python_can_read_what_tells_it_that_it_is_old(module: str) -> None:
-    source = (ROOT / 'labkit' / f'{module}.py').read_text(encoding='utf-8')
-    ast.parse(source, feature_version=(3, 8))
+    path = ROOT.joinpath(*module.split('.'))
+    path = path / '__init__.py' if path.is_dir() else path.with_suffix('.py')
+    ast.parse(path.read_text(encoding='utf-8'), feature_version=(3, 8))
 
 
 def test_help_of_every_command(capsys: pytest.CaptureFixture[str]) -> None:
@@ -69,7 +68,7 @@ def test_commands_go_on_in_the_environment(course: Course) -> None:
     course.require(course.wheel('rclpy'))
     assert course.make().returncode == 0
     # A stand-in that tells which Python runs it.
-    (course.folder / 'labkit' / 'doctor.py').write_text(
+    (course.folder / 'labkit' / 'checkup' / 'report.py').write_text(
         'import sys\n'
         'class Report(str):\n'
         '    ok = False\n'
@@ -92,7 +91,8 @@ def test_later_parts_are_offered_when_they_are_there(course: Course) -> None:
     course.require(course.wheel('rclpy'))
     assert course.make().returncode == 0
     code = 'import sys\ndef main(argv):\n    print(argv)\n    return 7\n'
-    (course.folder / 'labkit' / 'ros2.py').write_text(code)
+    (course.folder / 'labkit' / 'ros2').mkdir()
+    (course.folder / 'labkit' / 'ros2' / '__init__.py').write_text(code)
     done = course.run('ros2', 'topic', 'pub', '--help', '--once')
     assert (done.returncode, done.stdout) == (7, "['topic', 'pub', '--help', '--once']\n")
     assert '    ros2 ' in course.run('--help').stdout

@@ -45,7 +45,8 @@ VIEWS_ONLY = ('anywidget', 'ipywidgets', 'matplotlib')
 BARE = (
     *('labkit', 'labkit.__main__', 'labkit.checkup.report', 'labkit.errors', 'labkit.settings'),
     *('labkit.files', 'labkit.setup.environment', 'labkit.setup.installer'),
-    *('labkit.setup.machine', 'labkit.course.learner_folder', 'labkit.course.run_tests'),
+    *('labkit.setup.machine', 'labkit.setup.requirements', 'labkit.course.jupyterlab'),
+    *('labkit.course.learner_folder', 'labkit.course.run_tests'),
 )
 
 

@@ -12,8 +12,8 @@ import sysconfig
 from labkit.checkup.lists import inside, some
 from labkit.errors import LabError
 from labkit.setup.environment import ROOT, VENV
-from labkit.setup.installer import applicable
 from labkit.setup.machine import VERSIONS, check_platform
+from labkit.setup.requirements import applicable
 
 __all__ = ['jupyter', 'python', 'ros_packages']
 

@@ -5,12 +5,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
-import os
 import re
 import sys
-import tempfile
 import time
 from collections.abc import Sequence
 from copy import deepcopy
@@ -21,6 +18,7 @@ from nbformat import NotebookNode
 
 from labkit.course.lesson_run import LessonError, LessonRun
 from labkit.errors import LabError
+from labkit.files import write_atomically
 
 __all__ = ['as_stored', 'lesson_paths', 'record']
 
@@ -100,7 +98,7 @@ def _record_lesson(path: Path) -> str:
     number = len(run.notebook.cells)
     if after == before:
         return f'{number} cells unchanged'
-    _replace(path, after)
+    write_atomically(path, after)
     return f'{number} cells recorded'
 
 
@@ -130,19 +128,3 @@ def as_stored(notebook: NotebookNode) -> bytes:
     notebook.metadata = metadata
     notebook.nbformat_minor = 5
     return f'{nbformat.v4.writes(notebook).rstrip()}\n'.encode()
-
-
-def _replace(path: Path, content: bytes) -> None:
-    """Put new content in the place of a file: all of it, or nothing."""
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f'.{path.stem}-', suffix='.tmp')
-    try:
-        with os.fdopen(handle, 'wb') as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        os.chmod(name, path.stat().st_mode)
-        os.replace(name, path)
-    except BaseException:
-        with contextlib.suppress(FileNotFoundError):
-            os.unlink(name)
-        raise

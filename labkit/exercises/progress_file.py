@@ -1,8 +1,8 @@
 """The file that remembers a learner's progress, and survives what happens to files.
 
-It is replaced as a whole: written beside the old one, forced to disk, renamed. So a process that
-is killed at any moment leaves the old file or the new one. Two kernels that write at once wait
-for each other at a lock. A damaged file is kept aside, and said so.
+It is replaced as a whole, so a process that is killed at any moment leaves the old file or the
+new one. Two kernels that write at once wait for each other at a lock. A damaged file is kept
+aside, and said so.
 """
 
 from __future__ import annotations
@@ -10,14 +10,15 @@ from __future__ import annotations
 import contextlib
 import copy
 import fcntl
+import itertools
 import json
-import os
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 from labkit import settings
+from labkit.files import rename_to_free, write_atomically
 
 __all__ = ['Store']
 
@@ -39,7 +40,8 @@ class Store:
 
     def __init__(self, folder: Path | None = None) -> None:
         self._folder = folder
-        self._memory: Data | None = _empty() if folder is None and settings.headless() else None
+        unkept = folder is None and settings.audience().same_each_time
+        self._memory: Data | None = _empty() if unkept else None
 
     @property
     def path(self) -> Path:
@@ -86,7 +88,8 @@ class Store:
                     note = self._keep_aside()
                     data = _empty()
                 change(data)
-                self._replace(data)
+                content = json.dumps(data, indent=1, sort_keys=True)
+                write_atomically(self.path, content.encode())
         except OSError as error:
             return _empty(), f'Your progress could not be saved: {error}'
         return data, note
@@ -122,29 +125,15 @@ class Store:
         return data  # type: ignore[no-any-return]
 
     def _keep_aside(self) -> str:
-        number = 1
-        while (aside := self.path.with_name(f'progress-damaged-{number}.json')).exists():
-            number += 1
-        os.replace(self.path, aside)
+        for number in itertools.count(1):
+            aside = self.path.with_name(f'progress-damaged-{number}.json')
+            with contextlib.suppress(FileExistsError):
+                rename_to_free(self.path, aside)
+                break
         return (
             f'The progress file was damaged. It is kept as {aside.name} in {aside.parent}, and '
             'counting starts anew.'
         )
-
-    def _replace(self, data: Data) -> None:
-        # One name is enough: whoever writes has the lock. What a killed process left behind is
-        # written over.
-        new = self.path.with_suffix('.new')
-        with new.open('w', encoding='utf-8') as file:
-            json.dump(data, file, indent=1, sort_keys=True)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(new, self.path)
-        folder = os.open(self.path.parent, os.O_RDONLY)
-        try:
-            os.fsync(folder)
-        finally:
-            os.close(folder)
 
 
 def _empty() -> Data:

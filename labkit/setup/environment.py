@@ -18,8 +18,10 @@ from pathlib import Path
 from typing import Any
 
 from labkit.errors import SetupError
-from labkit.setup.installer import Progress, applicable, install
+from labkit.files import write_atomically
+from labkit.setup.installer import Progress, install
 from labkit.setup.machine import VERSIONS, check_platform, clean_environment, find_interpreter
+from labkit.setup.requirements import applicable
 
 __all__ = ['ROOT', 'VENV', 'environment_variables', 'existing_environment', 'make_environment']
 
@@ -98,12 +100,7 @@ def _read_stamp() -> dict[str, Any] | None:
 
 
 def _write_stamp(stamp: dict[str, Any]) -> None:
-    new = STAMP.with_suffix('.new')
-    with new.open('w', encoding='utf-8') as file:
-        json.dump(stamp, file, indent=1)
-        file.flush()
-        os.fsync(file.fileno())
-    new.replace(STAMP)
+    write_atomically(STAMP, json.dumps(stamp, indent=1).encode())
 
 
 def _wanted(requirements: Sequence[str]) -> dict[str, str]:

@@ -10,13 +10,13 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from labkit.errors import SetupError
 from labkit.setup.machine import clean_environment
 
-__all__ = ['Progress', 'applicable', 'explain', 'install']
+__all__ = ['Progress', 'explain', 'install']
 
 _NO_NETWORK = re.compile(
     r'NewConnectionError|NameResolutionError|Temporary failure in name resolution|'
@@ -69,32 +69,6 @@ class Progress:
         """Leave the line in which progress was shown."""
         if self._in_place and self._shown:
             print(flush=True)
-
-
-def applicable(lines: Iterable[str], version: tuple[int, ...]) -> list[str]:
-    """Return the packages that a requirements file asks for.
-
-    Args:
-        lines: Lines of requirements, marked with nothing but `python_full_version`.
-        version: The Python version that they are for.
-    """
-    names = []
-    for line in lines:
-        line = line.split('#')[0].strip()
-        if not line:
-            continue
-        marker = re.search(r"; *python_full_version *([<>=]+) *'(\d+)\.(\d+)\.?(\d*)", line)
-        if marker:
-            limit = (int(marker[2]), int(marker[3]), int(marker[4] or 0))
-            fits = {
-                '<': version < limit,
-                '>=': version >= limit,
-                '==': version[:2] == limit[:2],  # it stands with a star: '3.11.*'
-            }
-            if not fits.get(marker[1], True):
-                continue
-        names.append(line)
-    return names
 
 
 def install(
@@ -150,7 +124,7 @@ def _follow(
         stderr=subprocess.STDOUT,
         text=True,
         errors='replace',
-        close_fds=False,  # it keeps the lock: see setup_env
+        close_fds=False,  # it keeps the lock: see environment
     )
     output: deque[str] = deque(maxlen=400)
     fetched: set[str] = set()

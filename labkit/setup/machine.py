@@ -15,6 +15,7 @@ import sys
 from typing import NamedTuple
 
 from labkit.errors import SetupError
+from labkit.files import is_inside
 
 __all__ = ['Interpreter', 'check_platform', 'clean_environment', 'find_interpreter']
 
@@ -111,7 +112,7 @@ def find_interpreter() -> Interpreter:
 def _base_executable() -> str:
     """Return the running Python; not an environment's, which may be about to be made anew."""
     path = str(getattr(sys, '_base_executable', sys.executable))
-    if sys.prefix != sys.base_prefix and _inside(path, sys.prefix):
+    if sys.prefix != sys.base_prefix and is_inside(path, sys.prefix, follow_links=False):
         return os.path.realpath(path)  # before Python 3.11
     return path
 
@@ -152,7 +153,8 @@ def clean_environment() -> dict[str, str]:
         kept = [
             entry
             for entry in entries
-            if entry not in foreign and not any(_inside(entry, prefix) for prefix in prefixes)
+            if entry not in foreign
+            and not any(is_inside(entry, folder, follow_links=False) for folder in prefixes)
         ]
         if kept:
             environment[name] = os.pathsep.join(kept)
@@ -165,11 +167,6 @@ def clean_environment() -> dict[str, str]:
 
 def _entries(text: str) -> list[str]:
     return [entry for entry in text.split(os.pathsep) if entry]
-
-
-def _inside(path: str, folder: str) -> bool:
-    path, folder = os.path.normpath(path), os.path.normpath(folder)
-    return path == folder or path.startswith(folder + os.sep)
 
 
 def _wheel_folders(entries: list[str]) -> list[str]:

@@ -30,10 +30,10 @@ _FOREIGN = (
 _START = """
 import sys
 from pathlib import Path
-from labkit.course import learner_folder
+from labkit.course import jupyterlab, learner_folder
 learner_folder.WORK = Path(sys.argv[1])
-learner_folder.make_environment = lambda: Path(sys.executable)
-learner_folder.start_lab(sys.argv[2:])
+jupyterlab.make_environment = lambda: Path(sys.executable)
+jupyterlab.start_lab(sys.argv[2:])
 """
 
 

@@ -4,43 +4,17 @@ from __future__ import annotations
 
 import json
 import os
-import signal
-import socket
-import subprocess
-import sys
-import time
-import urllib.error
-import urllib.request
-import zipfile
+import stat
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
-from courses import ROOT, TIMEOUT_SEC, Course, wait_for_line
+from courses import START, notebook
 
 from labkit.course import learner_folder
 from labkit.errors import LabError, SetupError
 
-START = '00_start_here.ipynb'
 TALKER = '02_talker_listener.ipynb'
-
-
-def notebook(text: str) -> str:
-    """Return a lesson with one executed code cell."""
-    output = {'output_type': 'stream', 'name': 'stdout', 'text': ['heard\n']}
-    cell = {
-        'cell_type': 'code',
-        'execution_count': 7,
-        'id': 'talker-class',
-        'metadata': {'tags': ['nbval-ignore-output']},
-        'outputs': [output],
-        'source': [text],
-    }
-    metadata = {
-        'kernelspec': {'display_name': 'Python 3', 'language': 'python', 'name': 'python3'}
-    }
-    content = {'cells': [cell], 'metadata': metadata, 'nbformat': 4, 'nbformat_minor': 5}
-    return json.dumps(content)
 
 
 @pytest.fixture
@@ -149,6 +123,31 @@ def test_reset_of_what_is_no_lesson(work: Path, word: str) -> None:
         learner_folder.reset(word)
 
 
+@pytest.fixture
+def narrow_umask() -> Iterator[None]:
+    """Let what is made here be for its owner alone."""
+    before = os.umask(0o077)
+    yield
+    os.umask(before)
+
+
+def test_copies_are_for_those_whom_the_umask_lets(narrow_umask: None, work: Path) -> None:
+    (work / START).chmod(0o640)
+    (work / START).write_text(notebook('an attempt'))
+    learner_folder.reset('00')
+    files = [path for path in work.rglob('*') if path.is_file() and 'backup' not in path.name]
+    assert len(files) == 4
+    assert {stat.S_IMODE(path.stat().st_mode) for path in files} == {0o600}
+
+
+def test_update_keeps_the_permissions_of_a_copy(lessons: Path, work: Path) -> None:
+    (work / START).chmod(0o640)
+    (lessons / START).write_text(notebook('1 + 1 + 1'))
+    learner_folder.copy_lessons()
+    assert source_of(work / START) == '1 + 1 + 1'
+    assert stat.S_IMODE((work / START).stat().st_mode) == 0o640
+
+
 def test_file_systems_without_hard_links(work: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_paths: object) -> None:
         raise OSError('Operation not permitted')
@@ -175,94 +174,3 @@ def test_file_instead_of_the_folder(lessons: Path) -> None:
     with pytest.raises(SetupError, match='Move it away'):
         learner_folder.copy_lessons()
     assert learner_folder.WORK.read_text() == 'notes'
-
-
-# --- JupyterLab ----------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def ready(tmp_path: Path) -> Course:
-    """Give a course whose environment has all that the one of this test has."""
-    course = Course(tmp_path / 'course')
-    (course.folder / 'notebooks' / START).write_text(notebook('1 + 1'))
-    course.make_complete()
-    home = tmp_path / 'home'
-    home.mkdir()
-    course.env.update(HOME=str(home), JUPYTER_CONFIG_DIR=str(home / 'config'))
-    return course
-
-
-def wait_for_server(base: str, process: subprocess.Popen[str]) -> None:
-    """Wait until the server listens: it names its address a moment before."""
-    host, _, port = base.removeprefix('http://').partition(':')
-    end = time.monotonic() + TIMEOUT_SEC
-    while process.poll() is None and time.monotonic() < end:
-        try:
-            socket.create_connection((host, int(port)), timeout=TIMEOUT_SEC).close()
-            return
-        except ConnectionRefusedError:
-            time.sleep(0.05)
-    pytest.fail(f'JupyterLab does not listen; exit code {process.poll()}')
-
-
-def answer(url: str) -> Any:
-    with urllib.request.urlopen(url, timeout=TIMEOUT_SEC) as response:
-        return json.load(response)
-
-
-def test_lab_serves_the_copies_to_those_who_have_the_token(ready: Course) -> None:
-    # A kernel of the same name that some other Python has left for the user.
-    spec = Path(ready.env['HOME'], '.local/share/jupyter/kernels/python3')
-    spec.mkdir(parents=True)
-    (spec / 'kernel.json').write_text(json.dumps({'argv': ['false'], 'display_name': 'wrong'}))
-    process = ready.start(ready.command('lab', '--no-browser'))
-    try:
-        line = wait_for_line(process, 'token=').split()[-1]
-        base, _, token = line.partition(f'/lab/tree/{START}?')
-        assert base.startswith('http://127.0.0.1:')
-        wait_for_server(base, process)
-        assert [f['name'] for f in answer(f'{base}/api/contents?{token}')['content']] == [START]
-        settings = f'{base}/lab/api/settings/@jupyterlab/apputils-extension:notification?{token}'
-        defaults = answer(settings)['schema']['properties']
-        assert defaults['fetchNews']['default'] == 'false'
-        assert defaults['checkForUpdates']['default'] is False
-        kernels = answer(f'{base}/api/kernelspecs?{token}')
-        assert kernels['default'] == 'python3'
-        assert kernels['kernelspecs']['python3']['spec']['display_name'] != 'wrong'
-        with pytest.raises(urllib.error.HTTPError, match='403'):
-            answer(f'{base}/api/contents')
-    finally:
-        os.killpg(process.pid, signal.SIGTERM)
-        process.communicate(timeout=TIMEOUT_SEC)
-
-
-def test_port_in_use(ready: Course) -> None:
-    with socket.socket() as taken:
-        taken.bind(('127.0.0.1', 0))
-        taken.listen()
-        port = taken.getsockname()[1]
-        for words in (
-            ['--port', f'{port}'],
-            [f'--port={port}'],
-            ['--', f'--ServerApp.port={port}'],
-        ):
-            done = ready.run('lab', '--no-browser', *words)
-            assert done.returncode == 2
-            assert f'Port {port} can not be used' in done.stderr
-            assert 'Give another one with --port' in done.stderr
-
-
-def test_package_brings_the_defaults_of_jupyterlab(tmp_path: Path) -> None:
-    # The editable install of environment.txt, without installing.
-    code = 'import sys, flit_core.buildapi as b; print(b.build_editable(sys.argv[1]))'
-    built = subprocess.run(
-        [sys.executable, '-c', code, str(tmp_path)],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    with zipfile.ZipFile(tmp_path / built.stdout.strip()) as wheel:
-        names = wheel.namelist()
-    overrides = 'data/etc/jupyter/labconfig/default_setting_overrides.json'
-    assert any(name.endswith(f'.data/{overrides}') for name in names), names

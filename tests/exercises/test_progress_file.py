@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import errno
 import json
 import os
 import random
@@ -70,11 +71,12 @@ def test_kill_at_any_moment_leaves_a_whole_file(store: Store, tmp_path: Path) ->
 
 
 def test_killed_writer_leaves_nothing_that_stops_the_next(store: Store, tmp_path: Path) -> None:
-    store.path.with_suffix('.new').write_text('{"half')
+    half = store.path.with_name('.labkit-0123456789abcdef.new')
+    half.write_text('{"half')
     store.path.with_suffix('.lock').write_text('')
     assert ProgressStore(store).note_check('odds', 'count_up', 'PASS') == ''
     assert tries(store) == 1
-    assert not store.path.with_suffix('.new').exists()
+    assert not half.exists()
 
 
 @pytest.mark.parametrize(
@@ -100,15 +102,29 @@ def test_what_a_newer_version_has_added_is_kept(store: Store) -> None:
     assert data['new'] == [1] and data['version'] == 2
 
 
-@pytest.mark.parametrize('where', ['file', 'lock'])
+@pytest.mark.parametrize('where', ['.json', '.lock'])
 def test_folder_that_cannot_be_written_is_said_and_nothing_raises(
-    store: Store, tmp_path: Path, where: str
+    store: Store, where: str
 ) -> None:
     # Also for root, whom permissions do not stop: a folder is where a file should be.
-    path = store.path.with_suffix('.new' if where == 'file' else '.lock')
-    path.mkdir()
+    store.path.with_suffix(where).mkdir()
     note = ProgressStore(store).note_check('odds', 'count_up', 'PASS')
     assert note.startswith('Your progress could not be saved')
+
+
+def test_full_disk_is_said_and_leaves_the_old_file(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ProgressStore(store).note_check('odds', 'count_up', 'FAIL')
+
+    def fail(_handle: int) -> None:
+        raise OSError(errno.ENOSPC, 'No space left on device')
+
+    monkeypatch.setattr(os, 'fsync', fail)
+    note = ProgressStore(store).note_check('odds', 'count_up', 'PASS')
+    assert note.startswith('Your progress could not be saved')
+    assert 'No space left on device' in note
+    assert tries(store) == 1
 
 
 def test_home_that_is_a_file_is_said(tmp_path: Path) -> None:

@@ -15,7 +15,8 @@ import pytest
 from courses import BARE_PATH, ROOT, TIMEOUT_SEC, Course, Gate, base_python, wait_for_line
 
 from labkit.errors import SetupError
-from labkit.setup import installer, machine
+from labkit.setup import machine
+from labkit.setup.requirements import applicable
 
 
 @pytest.fixture
@@ -291,7 +292,7 @@ def test_disk_that_gets_full(course: Course, path: str) -> None:
     big = Path(course.folder, course.wheel('big', size=60_000_000))
     course.require(str(big.rename(course.folder.with_name(big.name))))
     # There was space when it was asked for, as it were.
-    module = course.folder / 'labkit' / 'setup_env.py'
+    module = course.folder / 'labkit' / 'setup' / 'environment.py'
     module.write_text(module.read_text().replace('1_200_000_000', '1_000'))
     done = in_namespace(course, on_disk_of(50, course), path)
     assert 'There is no disk space left' in sentence(done)
@@ -306,10 +307,10 @@ def test_markers_of_requirements() -> None:
         "three==1 ; python_full_version == '3.11.*'",
         "four==1 ; python_full_version >= '3.11.5'  # why",
     ]
-    assert len(installer.applicable(lines, (3, 10, 2))) == 2
-    assert len(installer.applicable(lines, (3, 11, 4))) == 3
-    assert len(installer.applicable(lines, (3, 11, 7))) == 4
-    assert len(installer.applicable(lines, (3, 12, 0))) == 3
+    assert len(applicable(lines, (3, 10, 2))) == 2
+    assert len(applicable(lines, (3, 11, 4))) == 3
+    assert len(applicable(lines, (3, 11, 7))) == 4
+    assert len(applicable(lines, (3, 12, 0))) == 3
 
 
 def test_other_ros_installations_are_kept_out(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -327,7 +328,7 @@ def test_other_ros_installations_are_kept_out(monkeypatch: pytest.MonkeyPatch) -
 
 def test_every_requirement_is_pinned() -> None:
     for name in ('environment.txt', 'tests/requirements.txt'):
-        lines = installer.applicable((ROOT / name).read_text().splitlines(), (3, 12, 0))
+        lines = applicable((ROOT / name).read_text().splitlines(), (3, 12, 0))
         loose = [line for line in lines if '==' not in line and line != '-e .']
         assert not loose, f'{name}: {loose}'
         names = [line.partition('==')[0].lower() for line in lines]

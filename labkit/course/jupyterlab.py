@@ -1,0 +1,75 @@
+"""Start JupyterLab on the learner's folder: `python3 -m labkit lab`."""
+
+from __future__ import annotations
+
+import os
+import platform
+import re
+import socket
+from collections.abc import Sequence
+from typing import NoReturn
+
+from labkit.course import learner_folder
+from labkit.errors import SetupError
+from labkit.setup.environment import environment_variables, make_environment
+
+__all__ = ['start_lab']
+
+
+def start_lab(arguments: Sequence[str]) -> NoReturn:
+    """Make the environment, bring the lessons up to date, and become JupyterLab.
+
+    Args:
+        arguments: Options for JupyterLab, besides those set here.
+
+    Raises:
+        SetupError: This machine, or a port that was asked for, does not allow it.
+    """
+    _check_port(arguments)
+    python = make_environment()
+    for sentence in learner_folder.copy_lessons():
+        print(sentence)
+    options = [
+        f'--ServerApp.root_dir={learner_folder.WORK}',
+        '--ServerApp.ip=127.0.0.1',
+        f'--LabApp.default_url=/lab/tree/{learner_folder.FIRST}',
+        # Without it a server whose output is no terminal gives login shells, and those may set
+        # PATH anew: the command `ros2` would be gone.
+        f'--ServerApp.terminado_settings=shell_command={os.environ.get("SHELL") or "/bin/sh"}',
+    ]
+    if _asked_port(arguments) is not None:
+        options.append('--ServerApp.port_retries=0')
+    if os.geteuid() == 0:
+        options.append('--allow-root')  # containers, and WSL set up without a user
+    if 'microsoft' in platform.release().lower() or os.path.exists('/snap/bin/firefox'):
+        # A Windows browser, or Firefox as a snap, can't read the file through which JupyterLab
+        # opens its page otherwise.
+        options.append('--ServerApp.use_redirect_file=False')
+    variables = environment_variables()
+    # A kernel that was installed for the user would belong to another Python, without ROS.
+    variables['JUPYTER_PREFER_ENV_PATH'] = '1'
+    print('Starting JupyterLab. To stop it, press Ctrl+C here, twice.', flush=True)
+    os.chdir(learner_folder.WORK)
+    os.execve(python, [str(python), '-m', 'jupyterlab', *options, *arguments], variables)
+
+
+def _asked_port(arguments: Sequence[str]) -> int | None:
+    """Return the port that is asked for in the options, None if there is none."""
+    text = ' '.join(arguments)
+    found = re.search(r'--(?:port|ServerApp\.port)[= ](\d+)', text)
+    return int(found[1]) if found else None
+
+
+def _check_port(arguments: Sequence[str]) -> None:
+    port = _asked_port(arguments)
+    if port is None:
+        return  # JupyterLab takes the first free one from 8888 on
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind(('127.0.0.1', port))
+        except (OSError, OverflowError) as error:
+            raise SetupError(
+                f'Port {port} can not be used: {error}.',
+                todo='Give another one with --port, or none: then a free one is taken.',
+            ) from error
