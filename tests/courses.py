@@ -70,11 +70,15 @@ class Course:
         """Make the environment, and give it all that the one of this test has."""
         done = self.make()
         assert done.returncode == 0, done.stderr
+        self.lend_packages()
+        shutil.copytree(ROOT / 'labkit' / 'data' / 'etc', self.venv / 'etc')
+        (self.venv / 'share').symlink_to(Path(sys.prefix) / 'share')
+
+    def lend_packages(self) -> None:
+        """Let the environment see all packages of the one of this test."""
         packages = next((self.venv / 'lib').glob('python3.*')) / 'site-packages'
         here = next((Path(sys.prefix) / 'lib').glob('python3.*')) / 'site-packages'
         (packages / 'all.pth').write_text(f'import site; site.addsitedir({str(here)!r})\n')
-        shutil.copytree(ROOT / 'labkit' / 'data' / 'etc', self.venv / 'etc')
-        (self.venv / 'share').symlink_to(Path(sys.prefix) / 'share')
 
     def command(self, *words: str) -> list[str]:
         """Return the command line of labkit in a Python without any packages."""

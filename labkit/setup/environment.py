@@ -10,6 +10,7 @@ import errno
 import hashlib
 import json
 import os
+import re
 import shutil
 import subprocess
 from collections.abc import Iterator, Sequence
@@ -32,6 +33,12 @@ STAMP = VENV / 'labkit.json'
 LEARNER = ('environment.txt',)
 # A new environment takes 0.9 GB with what the tests need, and pip keeps what it has fetched.
 SPACE_BYTES = 1_200_000_000
+_VERSION = re.compile(r'^__version__ = .*', re.MULTILINE)
+# The tables of pyproject.toml that are about the package. The settings of tools change more often,
+# and then nothing has to be installed. Python has a module for TOML only from 3.11 on.
+_PACKAGE_TABLES = re.compile(
+    r'^\[(?:build-system|project|tool\.flit)\b.*(?:\n(?!\[\w).*)*', re.MULTILINE
+)
 
 
 def make_environment(requirements: Sequence[str] = LEARNER) -> Path:
@@ -113,14 +120,17 @@ def _wanted(requirements: Sequence[str]) -> dict[str, str]:
 def _own_mark() -> str:
     """Return what changes when the package itself has to be installed anew.
 
-    Its modules are used where they lie. What is copied into the environment is its commands
-    (pyproject.toml) and JupyterLab's defaults (labkit/data).
+    Its modules are used where they lie. What is copied into the environment is its version, its
+    commands, and the files in labkit/data: JupyterLab's defaults and completion for bash.
     """
     mark = hashlib.sha256()
-    data = sorted(path for path in (ROOT / 'labkit' / 'data').rglob('*') if path.is_file())
-    for path in (ROOT / 'pyproject.toml', *data):
-        if path.is_file():
-            mark.update(f'{path.relative_to(ROOT)}\0'.encode() + path.read_bytes() + b'\0')
+    data = ROOT / 'labkit' / 'data'
+    for path in sorted(path for path in data.rglob('*') if path.is_file()):
+        mark.update(f'{path.relative_to(ROOT)}\0'.encode() + path.read_bytes() + b'\0')
+    for name, part in (('labkit/__init__.py', _VERSION), ('pyproject.toml', _PACKAGE_TABLES)):
+        if (ROOT / name).is_file():
+            text = (ROOT / name).read_text(encoding='utf-8')
+            mark.update('\0'.join(part.findall(text)).encode())
     return mark.hexdigest()
 
 

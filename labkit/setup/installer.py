@@ -94,6 +94,9 @@ def install(
     uv = shutil.which('uv')
     if uv:
         command = [uv, 'pip', 'install', '--python', str(python), *files]
+        # pip does that by itself. uv looks at the version and at pyproject.toml, not at the files
+        # that are copied into the environment.
+        command += ['--reinstall-package', 'labkit']
     else:
         command = [str(python), '-I', '-m', 'pip', 'install', '--no-input', *files]
         command += ['--disable-pip-version-check', '--no-warn-script-location']

@@ -183,6 +183,57 @@ def _digests(course: Course, stamp: dict[str, dict[str, str]]) -> tuple[str, str
     return stamp['installed']['environment.txt'], new
 
 
+@pytest.fixture(params=['uv', 'pip'])
+def installed(course: Course, request: pytest.FixtureRequest) -> Course:
+    """Give a course whose environment has labkit itself, built without a network."""
+    if request.param == 'pip':
+        course.env['PATH'] = BARE_PATH
+    course.env.update(UV_NO_BUILD_ISOLATION='1', PIP_NO_BUILD_ISOLATION='0')
+    for name in ('pyproject.toml', 'LICENSE'):
+        shutil.copy(ROOT / name, course.folder)
+    done = course.make()
+    assert done.returncode == 0, done.stderr
+    course.lend_packages()
+    course.require('-e .')
+    done = course.make()
+    assert done.returncode == 0, done.stderr
+    assert (course.venv / 'bin' / 'labkit').is_file()
+    return course
+
+
+def change(path: Path, old: str, new: str) -> None:
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+
+
+def test_new_command_of_the_same_version_arrives(installed: Course) -> None:
+    commands = "ros2 = 'labkit.ros2:main'"
+    change(installed.folder / 'pyproject.toml', commands, f"{commands}\nros3 = 'labkit:main'")
+    done = installed.make()
+    assert (done.returncode, 'labkit has changed' in done.stdout) == (0, True), done.stderr
+    assert (installed.venv / 'bin' / 'ros3').is_file()
+    assert installed.make().stdout == ''
+
+
+def test_new_defaults_of_jupyterlab_of_the_same_version_arrive(installed: Course) -> None:
+    name = 'etc/jupyter/labconfig/default_setting_overrides.json'
+    (installed.folder / 'labkit' / 'data' / name).write_text('{"new": true}')
+    done = installed.make()
+    assert (done.returncode, 'labkit has changed' in done.stdout) == (0, True), done.stderr
+    assert (installed.venv / name).read_text() == '{"new": true}'
+    assert installed.make().stdout == ''
+
+
+def test_new_settings_of_a_tool_install_nothing(course: Course) -> None:
+    shutil.copy(ROOT / 'pyproject.toml', course.folder)
+    assert course.make().returncode == 0
+    change(course.folder / 'pyproject.toml', 'line-length = 99', 'line-length = 100')
+    assert course.make().stdout == ''
+    change(course.folder / 'labkit' / '__init__.py', "__version__ = '", "__version__ = '9")
+    assert 'labkit has changed' in course.make().stdout
+
+
 def test_environment_made_by_hand_is_completed_not_replaced(course: Course) -> None:
     venv.create(course.venv)
     (course.venv / 'mine').write_text('kept')
