@@ -1,23 +1,24 @@
-"""One place for environment variables, defaults, the headless switch and the choice of domain."""
+"""Environment variables, switches, and who looks at what is shown."""
 
 from __future__ import annotations
 
+import functools
 import os
-import socket
 import sys
-import zlib
+from dataclasses import dataclass
 from pathlib import Path
 
 from labkit.errors import LabError
 
 __all__ = [
     'LAST_DOMAIN_ID',
-    'DomainClaim',
+    'LEARNER',
+    'RECORDING',
+    'TERMINAL',
+    'Audience',
+    'audience',
     'check_domain_id',
-    'claim_domain',
-    'claimed_domains',
     'dropped_variables',
-    'headless',
     'in_kernel',
     'notebook_name',
     'prepare_environment',
@@ -26,17 +27,11 @@ __all__ = [
 ]
 
 # Domains 0 to 101 are safe on Linux: above them the ports of DDS overlap with the range that the
-# system hands out by itself (docs.ros.org, "The ROS_DOMAIN_ID"). Domain 0 is everybody's default,
-# so a notebook takes one of the others.
-FIRST_DOMAIN_ID = 1
+# system hands out by itself (docs.ros.org, "The ROS_DOMAIN_ID").
 LAST_DOMAIN_ID = 101
 
 # What `prepare_environment` has taken out of the environment, with the values.
 dropped_variables: dict[str, str] = {}
-
-# Names of sockets, see `DomainClaim`.
-_CLAIM = 'labkit/ros-domain/'
-_NAME = 'labkit/notebook/'
 
 
 def prepare_environment() -> None:
@@ -74,14 +69,40 @@ def _drop_unusable_middleware() -> None:
         dropped_variables['RMW_IMPLEMENTATION'] = os.environ.pop('RMW_IMPLEMENTATION')
 
 
-def headless() -> bool:
-    """Tell whether a program, not a person, runs the notebook.
+@dataclass(frozen=True)
+class Audience:
+    """Who looks at what labkit shows, and what follows from it.
 
-    True under nbval and `labkit record` (they set `LABKIT_HEADLESS=1`). Views are then shown in
-    their static form, and a cell's output is cut where its last wait ended, so that it is the
-    same each time.
+    Attributes:
+        live: A page shows it to a person: views move, forms can be filled in.
+        same_each_time: What is shown is stored and compared, so it depends on counts, never on
+            time or on the machine: a cell's output is cut where its last wait ended, reports
+            leave out what differs between healthy machines, progress is not kept.
+        patience_sec: How long a command that nobody ends waits for others, s; None for no end,
+            because there is a person with a stop button.
     """
-    return os.environ.get('LABKIT_HEADLESS', '') not in ('', '0')
+
+    live: bool
+    same_each_time: bool
+    patience_sec: float | None
+
+
+LEARNER = Audience(live=True, same_each_time=False, patience_sec=None)
+"""A person in front of a notebook."""
+
+TERMINAL = Audience(live=False, same_each_time=False, patience_sec=None)
+"""A person in front of a terminal, or a script."""
+
+RECORDING = Audience(live=False, same_each_time=True, patience_sec=5.0)
+"""A program that runs a lesson: nbval and `labkit record`. They set `LABKIT_HEADLESS=1`."""
+
+
+@functools.lru_cache(maxsize=1)
+def audience() -> Audience:
+    """Return who looks at what this process shows; it is found out once, at the first question."""
+    if os.environ.get('LABKIT_HEADLESS', '') not in ('', '0'):
+        return RECORDING
+    return LEARNER if in_kernel() else TERMINAL
 
 
 def in_kernel() -> bool:
@@ -128,75 +149,4 @@ def check_domain_id(domain_id: object) -> None:
         return
     raise LabError(
         f'domain_id must be a whole number from 0 to {LAST_DOMAIN_ID}, but it is {domain_id!r}.'
-    )
-
-
-class DomainClaim:
-    """A ROS domain that no other notebook on this machine uses while this process lives.
-
-    The claim is the name of a socket in Linux's abstract namespace. It takes no file, it counts
-    for all users of the machine, and it ends with the process, however the process ends.
-
-    Args:
-        domain_id: The domain to claim.
-
-    Raises:
-        OSError: Another process has claimed it.
-    """
-
-    def __init__(self, domain_id: int) -> None:
-        self.domain_id = domain_id
-        # The second name tells others which notebook it is.
-        notebook = Path(notebook_name()).name[-40:] or f'process {os.getpid()}'
-        self._sockets: list[socket.socket] = []
-        try:
-            for name in (f'{_CLAIM}{domain_id}', f'{_NAME}{domain_id}/{notebook}'):
-                self._sockets.append(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM))
-                self._sockets[-1].bind(f'\0{name}')
-        except OSError:
-            self.close()
-            raise
-
-    def close(self) -> None:
-        """Give the domain back."""
-        for claim in self._sockets:
-            claim.close()
-
-
-def claimed_domains() -> dict[int, str]:
-    """Return the domains that notebooks on this machine have claimed, and the notebooks' names."""
-    try:
-        table = Path('/proc/net/unix').read_text(encoding='utf-8', errors='replace')
-    except OSError:
-        return {}
-    found = {}
-    for line in table.splitlines():
-        _, sign, name = line.partition(f'@{_NAME}')
-        domain_id, slash, notebook = name.partition('/')
-        if sign and slash and domain_id.isdecimal():
-            found[int(domain_id)] = notebook
-    return dict(sorted(found.items()))
-
-
-def claim_domain() -> DomainClaim:
-    """Claim a domain that no other notebook has.
-
-    The search starts from a number made from the notebook's name, so that a notebook whose kernel
-    is restarted mostly meets its own domain again.
-
-    Raises:
-        LabError: All domains are taken.
-    """
-    name = notebook_name() or str(os.getpid())
-    count = LAST_DOMAIN_ID - FIRST_DOMAIN_ID + 1
-    first = zlib.crc32(name.encode())
-    for step in range(count):
-        try:
-            return DomainClaim(FIRST_DOMAIN_ID + (first + step) % count)
-        except OSError:
-            continue
-    raise LabError(
-        f'All {count} ROS domains of this machine are in use by other notebooks.',
-        todo='Shut down kernels that are not needed any more (in JupyterLab: the square symbol '
-        'at the left), or share a domain on purpose with lab.start(domain_id=...).',
     )

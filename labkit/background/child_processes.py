@@ -6,11 +6,13 @@ Their output appears under the cell that started them. They end with the kernel,
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import threading
 import time
 from collections import deque
+from collections.abc import Collection
 from pathlib import Path
 
 from labkit import settings
@@ -18,8 +20,18 @@ from labkit.background.console import Cell
 from labkit.background.runtime import runtime
 from labkit.errors import LabTimeout
 from labkit.rosgraph.snapshot import node_names
+from labkit.rosgraph.whose import process_id
 
-__all__ = ['Process', 'Processes', 'end_earlier', 'environment', 'processes', 'start_process']
+__all__ = [
+    'Process',
+    'Processes',
+    'end_earlier',
+    'environment',
+    'interrupt_child',
+    'processes',
+    'start_process',
+    'starting_children',
+]
 
 SUPERVISOR = Path(__file__).with_name('supervisor.py')
 # How many lines of output are kept.
@@ -30,6 +42,8 @@ STOP_SEC = 8.0
 # that is lost, others forget it after 20 s (the lease of a participant, DDSI-RTPS 2.5, 8.5.3).
 GONE_SEC = 30.0
 POLL_SEC = 0.05
+# How old a process that this notebook started may be and still count as starting.
+_YOUNG_SEC = 5.0
 
 
 class Process:
@@ -111,7 +125,7 @@ class Process:
         if len(lines) < count:
             state = 'and goes on' if self.running else f'and ended with code {self.exit_code}'
             raise LabTimeout(f'{self.name} printed {len(lines)} of {count} lines, {state}.')
-        if settings.headless():
+        if settings.audience().same_each_time:
             print(*lines[:count], sep='\n')
 
     def stop(self) -> None:
@@ -212,3 +226,42 @@ def end_earlier(command: list[str]) -> None:
     for process in _started:
         if process.running and (process.command, process.cell.cell_id) == (command, cell_id):
             process.stop()
+
+
+def starting_children(gids: Collection[bytes]) -> tuple[bool, bool]:
+    """Tell whether this process has lately started others, whose nodes may be about to appear.
+
+    Args:
+        gids: Global ids of endpoints that are in the graph.
+
+    Returns:
+        Whether one of them has nothing in the graph yet, and whether one has: what else it makes
+        may follow.
+    """
+    import psutil  # type: ignore[import-untyped]
+
+    appeared = {process_id(gid) for gid in gids}
+    oldest = time.time() - _YOUNG_SEC
+    found = set()
+    for child in psutil.Process().children(recursive=True):
+        try:
+            if child.create_time() > oldest and child.status() != psutil.STATUS_ZOMBIE:
+                found.add(child.pid & 0xFFFF in appeared)
+        except psutil.NoSuchProcess:
+            continue
+    return False in found, True in found
+
+
+def interrupt_child(gid: bytes) -> bool:
+    """Press Ctrl-C in the process of an endpoint, if this process has started it.
+
+    Returns:
+        Whether it has.
+    """
+    import psutil
+
+    for child in psutil.Process().children(recursive=True):
+        if child.pid & 0xFFFF == process_id(gid):
+            child.send_signal(signal.SIGINT)
+            return True
+    return False

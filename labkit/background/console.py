@@ -172,7 +172,7 @@ class Console:
         cell = self._cell
         if cell is None or not cell.parent:
             stream.write(text)
-        elif settings.headless() and not self._waiting:
+        elif settings.audience().same_each_time and not self._waiting:
             if not cell.ended:
                 cell.held.append((stream, text))
         else:
@@ -187,7 +187,7 @@ class Console:
             cell: The execution that started the process.
             text: Whole lines. Each process has a thread of its own that calls this.
         """
-        if settings.headless():
+        if settings.audience().same_each_time:
             return
         if cell.parent and threading.current_thread() is not threading.main_thread():
             _set_thread_parent(cell.parent)

@@ -11,7 +11,9 @@ from typing import TypeVar
 from rclpy.node import Node
 
 from labkit.background.runtime import runtime
-from labkit.rosgraph.snapshot import UNKNOWN_NODE, is_whole, node_names
+from labkit.rosgraph.endpoints import publishers
+from labkit.rosgraph.snapshot import is_whole, node_names
+from labkit.rosgraph.whose import participant_of
 
 __all__ = [
     'DISCOVERY_SEC',
@@ -110,11 +112,10 @@ def _participants_here() -> int:
 
 
 def _participants_known(node: Node) -> int:
-    # Every node publishes there. The first 12 bytes of an id are those of the participant. Which
-    # node it is comes a moment later.
-    ends = node.get_publishers_info_by_topic('/parameter_events')
-    unknown = {bytes(end.endpoint_gid[:12]) for end in ends if end.node_name == UNKNOWN_NODE}
-    return len({bytes(end.endpoint_gid[:12]) for end in ends} - unknown)
+    # Every node publishes there. Which node it is comes a moment later.
+    ends = publishers(node, '/parameter_events')
+    unknown = {participant_of(end.gid) for end in ends if not end.is_known}
+    return len({participant_of(end.gid) for end in ends} - unknown)
 
 
 def _local() -> bool:

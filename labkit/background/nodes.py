@@ -21,7 +21,7 @@ __all__ = [
     'check_node',
     'destroy_node',
     'existing_nodes',
-    'hidden_node',
+    'helper_node',
     'node_exists',
 ]
 
@@ -107,17 +107,26 @@ def destroy_node(node: Node) -> None:
         tell()
 
 
-def hidden_node(name: str, context: Context) -> Node:
-    """Make a node for labkit's own use: people don't see it, and it costs next to nothing.
+def helper_node(
+    name: str,
+    *,
+    namespace: str | None = None,
+    context: Context | None = None,
+    enable_rosout: bool = False,
+) -> Node:
+    """Make a node of labkit's own, which costs next to nothing: it has no services.
 
     Args:
         name: Its name; a leading `_` hides it from lists.
-        context: What `rclpy.init` has started.
+        namespace: Its namespace, the root if None.
+        context: What `rclpy.init` has started; the default one if None.
+        enable_rosout: Whether its log messages go to `/rosout`.
     """
     node = Node(
         name,
+        namespace=namespace,
         context=context,
-        enable_rosout=False,
+        enable_rosout=enable_rosout,
         start_parameter_services=False,
         use_global_arguments=False,
         parameter_overrides=[Parameter('start_type_description_service', value=False)],  # type: ignore[no-untyped-call]

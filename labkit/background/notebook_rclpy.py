@@ -22,7 +22,8 @@ from rclpy.utilities import get_default_context
 from rclpy.validate_node_name import validate_node_name
 
 from labkit.errors import LabError
-from labkit.rosgraph.matching import full_topic_name, other_type_here
+from labkit.rosgraph.matching import other_type_here
+from labkit.rosgraph.names import full_topic_name
 
 if TYPE_CHECKING:
     from rclpy.executors import Executor
@@ -129,7 +130,7 @@ def _second_type(runtime: Runtime, node: Node, topic: str, msg_type: Any) -> str
         return ''
     try:
         name = full_topic_name(topic, node)
-    except (ValueError, TypeError):
+    except LabError:
         return ''  # rclpy says what is wrong with the name
     end = time.monotonic() + GONE_SEC
     # What was destroyed a moment ago may still be in the graph.

@@ -7,7 +7,6 @@ that a cell can be run again without leaving a second node behind.
 from __future__ import annotations
 
 import atexit
-import difflib
 import os
 import threading
 import time
@@ -19,6 +18,7 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import get_default_context, ok, try_shutdown
 
 from labkit import settings
+from labkit.background import domains
 from labkit.background.console import CallbackError, Console
 from labkit.background.executor import BackgroundExecutor
 from labkit.background.nodes import (
@@ -26,10 +26,11 @@ from labkit.background.nodes import (
     check_node,
     destroy_node,
     existing_nodes,
-    hidden_node,
+    helper_node,
 )
 from labkit.background.notebook_rclpy import install, originals
-from labkit.errors import LabError
+from labkit.errors import LabError, nearest
+from labkit.rosgraph.whose import foreign_nodes
 
 __all__ = [
     'Runtime',
@@ -69,7 +70,7 @@ class Runtime:
         self._entries: dict[str, NodeEntry] = {}
         self._reported: set[str] = set()
         self._executor: BackgroundExecutor | None = None
-        self._claim: settings.DomainClaim | None = None
+        self._claim: domains.DomainClaim | None = None
 
     @property
     def started(self) -> bool:
@@ -226,15 +227,7 @@ class Runtime:
         """Return the full names of the nodes that other processes have in this domain."""
         if self.helper is None:
             return set()
-        # Every node publishes on this topic. The first 12 bytes of an endpoint's id are those of
-        # its DDS participant, and a process has one participant (DDSI-RTPS 2.5, 9.3.1).
-        infos = self.helper.get_publishers_info_by_topic('/parameter_events')
-        own = {bytes(i.endpoint_gid[:12]) for i in infos if i.node_name == self.helper.get_name()}
-        return {
-            f'{info.node_namespace.rstrip("/")}/{info.node_name}'
-            for info in infos
-            if bytes(info.endpoint_gid[:12]) not in own
-        }
+        return foreign_nodes(self.helper)
 
     # -- waiting --------------------------------------------------------------------------------
 
@@ -258,7 +251,7 @@ class Runtime:
         if domain_id is None:
             domain_id = settings.read_domain_id()
         if domain_id is None and settings.in_kernel():
-            self._claim = self._claim or settings.claim_domain()
+            self._claim = self._claim or domains.claim_domain()
             domain_id = self._claim.domain_id
         if domain_id is not None:
             # rclpy reads it here, and so do the processes that the notebook starts.
@@ -287,7 +280,7 @@ class Runtime:
         originals.shutdown()
 
     def _add_helper(self, executor: BackgroundExecutor) -> None:
-        self.helper = hidden_node(f'_labkit_{os.getpid()}', executor.context)
+        self.helper = helper_node(f'_labkit_{os.getpid()}', context=executor.context)
         self.helper.create_timer(DUPLICATE_CHECK_SEC, self._report_duplicates)
         name = self.helper.get_fully_qualified_name()
         executor.add_entry(NodeEntry(self.helper, name, self.console.current_cell()))
@@ -393,11 +386,11 @@ def _find(name: str) -> NodeEntry:
     full_name = name if name.startswith('/') else f'/{name}'
     if full_name in entries:
         return entries[full_name]
-    near = difflib.get_close_matches(full_name, entries, n=1)
+    near = nearest(full_name, entries)
     if full_name in runtime.foreign_nodes():
         todo = 'It runs in another process: end it where that was started.'
     elif near:
-        todo = f'Did you mean {near[0]!r}?'
+        todo = f'Did you mean {near!r}?'
     elif entries:
         todo = f'Running here: {", ".join(entries)}.'
     else:

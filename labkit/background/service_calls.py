@@ -6,12 +6,12 @@ import threading
 import time
 from typing import Any
 
-from rclpy._rclpy_pybind11 import RCLError
 from rclpy.node import Node
 
+from labkit.background.compat import RCLError
 from labkit.background.discovery import soon
 from labkit.errors import LabError, LabTimeout
-from labkit.rosgraph.matching import type_name
+from labkit.rosgraph.interfaces import type_name
 
 __all__ = ['ServiceCalls', 'call_node']
 

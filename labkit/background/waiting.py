@@ -15,16 +15,16 @@ from typing import Any, TypeVar
 from rclpy.publisher import Publisher
 from rclpy.qos import (
     DurabilityPolicy,
-    QoSCompatibility,
     QoSProfile,
     ReliabilityPolicy,
-    qos_check_compatible,
 )
 from rclpy.subscription import Subscription
 
 from labkit.background.runtime import runtime
 from labkit.errors import LabError, LabTimeout
-from labkit.rosgraph.matching import full_topic_name, nearest_name, type_name, why_silent
+from labkit.rosgraph.interfaces import type_name
+from labkit.rosgraph.matching import who_subscribes, why_silent
+from labkit.rosgraph.names import full_topic_name
 
 __all__ = ['listen', 'wait_for_message', 'wait_for_subscribers', 'wait_until']
 
@@ -143,11 +143,12 @@ def wait_for_subscribers(
         )
     _check_timeout(timeout_sec)
     if not runtime.wait(lambda: publisher.get_subscription_count() >= count, timeout_sec):
-        seen = publisher.get_subscription_count()
+        seen, topic = publisher.get_subscription_count(), publisher.topic_name
+        assert runtime.helper is not None
         raise LabTimeout(
-            f'Waited {_seconds(timeout_sec)} for {count} subscriber(s) of {publisher.topic_name}, '
+            f'Waited {_seconds(timeout_sec)} for {count} subscriber(s) of {topic}, '
             f'but {seen or "none"} came.',
-            todo=_who_subscribes(publisher),
+            todo=who_subscribes(runtime.helper, topic, publisher.msg_type, publisher.qos_profile),
         )
 
 
@@ -167,13 +168,7 @@ class _Listener:
         self._node = runtime.helper
         self._type = msg_type
         self._profile = _profile(qos_profile)
-        try:
-            self.topic = full_topic_name(topic, self._node)
-        except (ValueError, TypeError) as error:
-            raise LabError(
-                f'{topic!r} is no name of a topic: {str(error).splitlines()[0]}',
-                todo="Use letters, digits, _ and /, such as '/chatter'.",
-            ) from error
+        self.topic = full_topic_name(topic, self._node)
         self._subscription: Subscription = self._node.create_subscription(
             msg_type, self.topic, messages.append, self._profile
         )
@@ -234,30 +229,6 @@ def _why_nothing_happened(errors_before: int) -> str:
 
 def _heard(subscription: Subscription) -> bool:
     return any(entry.counts.get(subscription) for entry in runtime.nodes())
-
-
-def _who_subscribes(publisher: Publisher) -> str:
-    """Say why a publisher has too few subscribers."""
-    assert runtime.helper is not None
-    topic = publisher.topic_name
-    infos = runtime.helper.get_subscriptions_info_by_topic(topic)
-    wanted = type_name(publisher.msg_type)
-    for info in infos:
-        name = f'{info.node_namespace.rstrip("/")}/{info.node_name}'
-        if info.topic_type != wanted:
-            return f'{name} subscribes to {topic}, but to {info.topic_type}, not {wanted}.'
-        compatibility, reason = qos_check_compatible(publisher.qos_profile, info.qos_profile)
-        if compatibility == QoSCompatibility.ERROR:
-            return f'{name} subscribes to {topic}, but its QoS profile does not match: {reason}'
-    names = [
-        name
-        for name, _ in runtime.helper.get_topic_names_and_types()
-        if runtime.helper.count_subscribers(name)
-    ]
-    near = nearest_name(topic, names)
-    if near:
-        return f'Somebody subscribes to {near}. Is one of the two names misspelt?'
-    return f'{"Too few nodes subscribe" if infos else "Nobody subscribes"} to {topic}.'
 
 
 def _source(condition: Callable[[], object]) -> str:

@@ -12,9 +12,9 @@ import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from labkit import settings
 from labkit.checkup import packages, ros, system, variables
 from labkit.errors import LabError
-from labkit.settings import headless
 
 __all__ = ['Line', 'Report', 'doctor']
 
@@ -135,7 +135,8 @@ def doctor() -> Report:
     Returns:
         A report with `ok` and `lines`. It shows itself as a table.
     """
-    return Report(tuple(_line(name, check) for name, check in _CHECKS), brief=headless())
+    lines = tuple(_line(name, check) for name, check in _CHECKS)
+    return Report(lines, brief=settings.audience().same_each_time)
 
 
 def _line(name: str, check: Callable[[], str]) -> Line:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from labkit import settings
 from labkit.checkup.lists import some
 from labkit.errors import LabError
+from labkit.rosgraph.names import is_hidden
 
 if TYPE_CHECKING:
     from labkit.background.nodes import NodeEntry
@@ -190,7 +191,7 @@ def nodes() -> str:
     runtime = _runtime()
     if runtime is None:
         return 'none'
-    entries = [entry for entry in runtime.nodes() if not _is_hidden(entry.name)]
+    entries = [entry for entry in runtime.nodes() if not is_hidden(entry.name)]
     found = [*_unspun(runtime), *_left_behind(entries), *_doubles(runtime, entries)]
     if found:
         raise LabError(
@@ -205,7 +206,7 @@ def _unspun(runtime: Runtime) -> list[tuple[str, str]]:
         node.get_fully_qualified_name()
         for node in runtime.unspun_nodes()
         # A node on another executor is spun by whoever made that.
-        if node.executor is None and not _is_hidden(node.get_name())
+        if node.executor is None and not is_hidden(node.get_name())
     ]
     counts = Counter(names)
     return [
@@ -291,7 +292,3 @@ def _runtime() -> Runtime | None:
     from labkit.background.runtime import runtime
 
     return runtime
-
-
-def _is_hidden(name: str) -> bool:
-    return name.rpartition('/')[2].startswith('_')

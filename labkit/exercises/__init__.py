@@ -123,7 +123,7 @@ from __future__ import annotations
 from labkit.exercises import expect
 from labkit.exercises.exercise import Exercise, Solution, Style, Wrong, changed
 from labkit.exercises.lesson import Lesson
-from labkit.exercises.probe import Endpoint, Probe
+from labkit.exercises.probe import Probe
 from labkit.exercises.questions import Choice, Number, Several, Word, right, wrong
 from labkit.exercises.quiz import Quiz
 from labkit.exercises.verdict import Fail, NotAttempted, Outcome
@@ -131,7 +131,6 @@ from labkit.exercises.watch import Watch
 
 __all__ = [
     'Choice',
-    'Endpoint',
     'Exercise',
     'Fail',
     'Lesson',

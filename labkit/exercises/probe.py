@@ -9,16 +9,18 @@ from __future__ import annotations
 import contextlib
 import os
 import time
-from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Collection, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
 
 from labkit.exercises.callbacks import Callbacks, find_node
 from labkit.exercises.verdict import Fail
 from labkit.exercises.watch import Watch, build, message_class
-from labkit.rosgraph.whose import interrupt_child, place, same_process, starting_children
+from labkit.rosgraph.names import EVERY_NODE_HAS, is_hidden
 
-__all__ = ['Endpoint', 'Probe', 'is_hidden']
+if TYPE_CHECKING:
+    from labkit.rosgraph.endpoints import Endpoint
+
+__all__ = ['Probe']
 
 # A check answers within 5 s; the rest is for making and ending the probe.
 TIMEOUT_SEC = 4.5
@@ -29,37 +31,6 @@ POLL_SEC = 0.004
 THREAD_GRACE_SEC = 0.15
 PROCESS_GRACE_SEC = 3.0
 ENDPOINT_GRACE_SEC = 1.0
-
-_EVERY_NODE_HAS = ('/rosout', '/parameter_events')
-
-
-@dataclass(frozen=True)
-class Endpoint:
-    """A publisher or a subscription as the graph shows it.
-
-    Attributes:
-        node: Full name of its node.
-        topic: Full name of its topic.
-        msg_type: Name of its type, such as `'std_msgs/msg/Int16'`.
-        gid: Its global id; another run of the same cell has another one.
-        qos: Its QoS profile. The graph does not know history and depth.
-        place: Where it runs, in words that follow the node's name.
-    """
-
-    node: str
-    topic: str
-    msg_type: str
-    gid: bytes
-    qos: Any
-    place: str
-
-    def __str__(self) -> str:
-        return f'{self.node} {self.place}'
-
-
-def is_hidden(name: str) -> bool:
-    """Tell whether a node or topic is nobody's business: a part of its name starts with `_`."""
-    return any(part.startswith('_') for part in name.split('/'))
 
 
 class Probe:
@@ -102,23 +73,14 @@ class Probe:
         self._end = time.monotonic() + timeout_sec
 
     def __enter__(self) -> Probe:
-        from rclpy.node import Node
-        from rclpy.parameter import Parameter
-
+        from labkit.background.nodes import helper_node
         from labkit.background.runtime import runtime
 
         self._fresh = not runtime.started
         runtime.start()
         self.callbacks = Callbacks()
-        self.node = Node(
-            f'_check_{self.name}',
-            enable_rosout=False,
-            start_parameter_services=False,
-            use_global_arguments=False,
-            parameter_overrides=[Parameter('start_type_description_service', value=False)],  # type: ignore[no-untyped-call]
-        )
+        self.node = helper_node(f'_check_{self.name}')
         self.logs = self.watch('/rosout', 'rcl_interfaces/msg/Log')
-        self._gid = self._own_gid()
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -169,6 +131,8 @@ class Probe:
             return 0.0
         # Every node publishes there.
         infos = self.node.get_publishers_info_by_topic('/parameter_events')
+        from labkit.background.child_processes import starting_children
+
         new, known = starting_children([bytes(info.endpoint_gid) for info in infos])
         if self._fresh or new:
             return PROCESS_GRACE_SEC
@@ -182,30 +146,38 @@ class Probe:
 
     def publishers(self, topic: str) -> list[Endpoint]:
         """Return the learner's publishers on a topic."""
+        from labkit.rosgraph import endpoints
+
         self.touched.add(topic)
-        return self._endpoints(topic, self.node.get_publishers_info_by_topic(topic))
+        return self._learners(endpoints.publishers(self.node, topic))
 
     def subscriptions(self, topic: str) -> list[Endpoint]:
         """Return the learner's subscriptions to a topic."""
+        from labkit.rosgraph import endpoints
+
         self.touched.add(topic)
-        return self._endpoints(topic, self.node.get_subscriptions_info_by_topic(topic))
+        return self._learners(endpoints.subscriptions(self.node, topic))
 
     def all_publishers(self) -> list[Endpoint]:
         """Return the learner's publishers on all topics."""
-        ask = self.node.get_publishers_info_by_topic
-        return [found for topic in self.topics() for found in self._endpoints(topic, ask(topic))]
+        from labkit.rosgraph.endpoints import publishers
+
+        found = (end for topic in self.topics() for end in publishers(self.node, topic))
+        return self._learners(found)
 
     def all_subscriptions(self) -> list[Endpoint]:
         """Return the learner's subscriptions to all topics."""
-        ask = self.node.get_subscriptions_info_by_topic
-        return [found for topic in self.topics() for found in self._endpoints(topic, ask(topic))]
+        from labkit.rosgraph.endpoints import subscriptions
+
+        found = (end for topic in self.topics() for end in subscriptions(self.node, topic))
+        return self._learners(found)
 
     def topics(self) -> dict[str, list[str]]:
         """Return the topics that are not part of every node, with their types."""
         return {
             name: types
             for name, types in self.node.get_topic_names_and_types()
-            if name not in _EVERY_NODE_HAS and not is_hidden(name)
+            if name not in EVERY_NODE_HAS and not is_hidden(name)
         }
 
     def node_names(self) -> list[str]:
@@ -226,23 +198,18 @@ class Probe:
 
     def in_this_process(self, endpoint: Endpoint) -> bool:
         """Tell whether an endpoint belongs to this notebook's process."""
-        return same_process(endpoint.gid, self._gid)
+        from labkit.rosgraph.whose import is_own
 
-    def _endpoints(self, topic: str, infos: Sequence[Any]) -> list[Endpoint]:
-        found = []
-        for info in infos:
-            node = f'{info.node_namespace.rstrip("/")}/{info.node_name}'
-            if not is_hidden(node) and node not in self.given:
-                gid = bytes(info.endpoint_gid)
-                where = place(gid, self._gid)
-                found.append(Endpoint(node, topic, info.topic_type, gid, info.qos_profile, where))
-        return found
+        return is_own(endpoint.gid, self.node)
 
-    def _own_gid(self) -> bytes:
-        for info in self.node.get_subscriptions_info_by_topic('/rosout'):
-            if info.node_name == self.node.get_name():
-                return bytes(info.endpoint_gid)
-        return bytes(16)
+    def place(self, endpoint: Endpoint) -> str:
+        """Say where an endpoint runs, in words that follow its node's name."""
+        from labkit.rosgraph import whose
+
+        return whose.place(endpoint.gid, self.node)
+
+    def _learners(self, found: Iterable[Endpoint]) -> list[Endpoint]:
+        return [e for e in found if not is_hidden(e.node) and e.node not in self.given]
 
     # -- messages -------------------------------------------------------------------------------
 
@@ -287,9 +254,15 @@ class Probe:
             from labkit.background.runtime import remove
 
             remove(node)
-        elif not interrupt_child(endpoint.gid):
+        elif not _interrupt(endpoint.gid):
             raise Fail(
                 f'{endpoint.node} runs in this notebook, so that the check can end it',
-                f'it runs {endpoint.place}',
+                f'it runs {self.place(endpoint)}',
                 todo='End it there, start it here, and check again.',
             )
+
+
+def _interrupt(gid: bytes) -> bool:
+    from labkit.background.child_processes import interrupt_child
+
+    return interrupt_child(gid)

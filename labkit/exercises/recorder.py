@@ -57,19 +57,12 @@ class Recorder:
             watch.samples.clear()
 
     def _open(self) -> None:
-        from rclpy.node import Node
-        from rclpy.parameter import Parameter
+        from labkit.background.nodes import helper_node
 
         self._kept = {topic: watch.samples for topic, watch in self._watches.items()}
         self._watches = {}
-        self._node = Node(
-            # Each has a name of its own: in a kernel a second node of a name replaces the first.
-            f'_recorder_{os.getpid()}_{next(_numbers)}',
-            enable_rosout=False,
-            start_parameter_services=False,
-            use_global_arguments=False,
-            parameter_overrides=[Parameter('start_type_description_service', value=False)],  # type: ignore[no-untyped-call]
-        )
+        # Each has a name of its own: in a kernel a second node of a name replaces the first.
+        self._node = helper_node(f'_recorder_{os.getpid()}_{next(_numbers)}')
 
     def _listen(self) -> None:
         for topic in self._topics.keys() - self._watches.keys():

@@ -18,7 +18,7 @@ from rclpy.utilities import get_rmw_implementation_identifier
 
 from labkit.ros2.asking import add_discovery_options, asking_node
 from labkit.ros2.parser import Command, Parser, Verb
-from labkit.rosgraph.snapshot import EVERY_NODE_HAS, is_hidden
+from labkit.rosgraph.names import EVERY_NODE_HAS, is_hidden
 
 __all__ = ['COMMAND']
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from labkit import settings
 from labkit.background.runtime import runtime
 from labkit.ros2.asking import asking_node
-from labkit.rosgraph.snapshot import is_hidden
+from labkit.rosgraph.names import is_hidden
 from labkit.rosgraph.snapshot import node_names as names_of_nodes
 
 __all__ = ['node_names', 'service_names', 'service_types', 'topic_names', 'topic_types']

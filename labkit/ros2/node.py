@@ -16,7 +16,7 @@ from labkit.errors import LabError
 from labkit.ros2.asking import add_discovery_options, asking_node, unknown
 from labkit.ros2.graph_words import node_names
 from labkit.ros2.parser import Command, Parser, Verb
-from labkit.rosgraph.snapshot import is_hidden
+from labkit.rosgraph.names import is_hidden
 from labkit.rosgraph.snapshot import node_names as names_of_nodes
 
 __all__ = ['COMMAND']

@@ -22,8 +22,9 @@ from labkit.background.child_processes import Process, end_earlier, environment,
 from labkit.background.discovery import alone, calm
 from labkit.ros2.asking import asking_node
 from labkit.ros2.parser import Command, Parser, Verb
+from labkit.rosgraph.names import is_hidden
 from labkit.rosgraph.packages import DEMO, Executable, executable, executables, package_names
-from labkit.rosgraph.snapshot import is_hidden, node_names
+from labkit.rosgraph.snapshot import node_names
 
 __all__ = ['COMMAND']
 

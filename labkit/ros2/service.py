@@ -17,18 +17,16 @@ from labkit.errors import LabError
 from labkit.ros2.asking import add_discovery_options, asking_node, unknown
 from labkit.ros2.graph_words import service_names, service_types
 from labkit.ros2.parser import Command, Parser, Usage, Verb, positive_float
-from labkit.ros2.streams import expand
 from labkit.rosgraph import interfaces
-from labkit.rosgraph.matching import type_name
+from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.message_yaml import fill, prototype, read_yaml
-from labkit.rosgraph.snapshot import is_hidden
+from labkit.rosgraph.names import full_topic_name, is_hidden
 
 __all__ = ['COMMAND']
 
 HIDDEN = '--include-hidden-services'
 # A service that the graph knows is ready soon.
 READY_SEC = 1.0
-HEADLESS_SEC = 5.0
 
 
 def list_services(args: Namespace) -> None:
@@ -70,9 +68,9 @@ def call(args: Namespace) -> None:
     request = srv_type.Request()
     fill(request, read_yaml(_values(args)))
     node = asking_node(args)
-    name = expand(node, args.service_name)
+    name = full_topic_name(args.service_name, node)
     _check_type(node, name, type_name(srv_type))
-    limit = HEADLESS_SEC if settings.headless() else None
+    limit = settings.audience().patience_sec
     with ServiceCalls(node, srv_type, name) as service:
         known = name in dict(node.get_service_names_and_types())
         if not service.wait_until_ready(READY_SEC if known else 0.0):

@@ -13,26 +13,24 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from rclpy._rclpy_pybind11 import RCLError
 from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
-from rclpy.exceptions import InvalidTopicNameException
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, qos_policy_name_from_kind
-from rclpy.validate_full_topic_name import validate_full_topic_name
 
 from labkit import settings
+from labkit.background.compat import RCLError
 from labkit.errors import LabError
 from labkit.ros2.asking import unknown
 from labkit.ros2.parser import Parser, Usage, positive_float, positive_int
-from labkit.rosgraph.matching import full_topic_name, other_type_here, type_name
-from labkit.rosgraph.snapshot import is_hidden
+from labkit.rosgraph.interfaces import type_name
+from labkit.rosgraph.matching import other_type_here
+from labkit.rosgraph.names import is_hidden
 
 __all__ = [
     'MAX_SHOWN',
     'Arrivals',
     'Stop',
     'add_stop_options',
-    'expand',
     'subscribed',
     'tell',
     'wait_for_type',
@@ -71,7 +69,8 @@ class Stop:
     """
 
     def __init__(self, count: int | None, timeout_sec: float | None) -> None:
-        if count is None and timeout_sec is None and settings.headless():
+        endless = count is None and timeout_sec is None
+        if endless and settings.audience().patience_sec is not None:
             raise Usage(
                 'This goes on until the stop button is pressed, and nobody is there to press it.',
                 todo='Add --timeout N or --count N.',
@@ -136,28 +135,6 @@ def tell(text: str, end: str = '\n') -> None:
     thousand such messages; left alone, ipykernel sends what was printed five times a second.
     """
     print(text, end=end, flush=not settings.in_kernel())
-
-
-def expand(node: Node, topic: str) -> str:
-    """Return a topic's full name.
-
-    Raises:
-        LabError: It is no name of a topic.
-    """
-    try:
-        name = full_topic_name(topic, node)
-        validate_full_topic_name(name)
-        return name
-    except (ValueError, TypeError, InvalidTopicNameException) as error:
-        raise LabError(
-            f'{topic!r} is no name of a topic: {_reason(error)}.',
-            todo='Use letters, digits, _ and /, such as /chatter.',
-        ) from error
-
-
-def _reason(error: Exception) -> str:
-    """Return the first line of an error of rcl's, without the place in its source."""
-    return str(error).splitlines()[0].partition(', at /')[0].rstrip(':')
 
 
 def wait_for_type(node: Node, topic: str, stop: Stop) -> str | None:

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 from labkit import settings
+from labkit.background import domains
 from labkit.errors import LabError
 
 __all__ = ['BASH', 'choose_domain', 'real_ros2', 'run']
@@ -69,7 +70,7 @@ def choose_domain() -> None:
     """
     if settings.read_domain_id() is not None:
         return
-    notebooks = settings.claimed_domains()
+    notebooks = domains.claimed_domains()
     if len(notebooks) > 1:
         lines = [f'  ROS_DOMAIN_ID={number}  {name}' for number, name in notebooks.items()]
         first = next(iter(notebooks))

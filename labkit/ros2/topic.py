@@ -17,7 +17,7 @@ from labkit.ros2.topic_echo import ECHO
 from labkit.ros2.topic_pub import PUB
 from labkit.ros2.topic_rates import BW, DELAY, HZ
 from labkit.rosgraph import interfaces
-from labkit.rosgraph.snapshot import full_node_name, is_hidden
+from labkit.rosgraph.names import full_node_name, is_hidden
 
 __all__ = ['COMMAND']
 

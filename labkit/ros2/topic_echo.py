@@ -24,10 +24,12 @@ from labkit.ros2.parser import (
     unsigned_int,
 )
 from labkit.ros2.qos_options import add_qos_options, matching_profile
-from labkit.ros2.streams import MAX_SHOWN, Arrivals, Stop, expand, subscribed, tell, wait_for_type
+from labkit.ros2.streams import MAX_SHOWN, Arrivals, Stop, subscribed, tell, wait_for_type
 from labkit.rosgraph import interfaces
-from labkit.rosgraph.matching import type_name, why_silent
+from labkit.rosgraph.interfaces import type_name
+from labkit.rosgraph.matching import why_silent
 from labkit.rosgraph.message_yaml import field_paths, to_csv, to_yaml
+from labkit.rosgraph.names import full_topic_name
 
 __all__ = ['ECHO']
 
@@ -43,7 +45,7 @@ def echo(args: Namespace) -> str | None:
         )
     stop = Stop(1 if args.once else args.count, args.timeout)
     node = asking_node(args)
-    topic = expand(node, args.topic_name)
+    topic = full_topic_name(args.topic_name, node)
     msg_type = _type_of(node, topic, args, stop)
     if msg_type is None:
         return f'No message came: {topic} has not appeared.'

@@ -11,7 +11,6 @@ from argparse import Namespace
 from collections.abc import Iterable
 from typing import Any
 
-from rclpy._rclpy_pybind11 import RCLError
 from rclpy.clock import ROSClock
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -19,6 +18,7 @@ from rclpy.publisher import Publisher
 from rclpy.qos import ReliabilityPolicy
 
 from labkit import settings
+from labkit.background.compat import RCLError
 from labkit.background.discovery import soon
 from labkit.background.nodes import destroy_node
 from labkit.background.runtime import runtime
@@ -27,11 +27,12 @@ from labkit.ros2.asking import add_discovery_options, asking_node
 from labkit.ros2.graph_words import topic_names, topic_types
 from labkit.ros2.parser import Parser, Usage, Verb, positive_float, unsigned_int
 from labkit.ros2.qos_options import add_qos_options, profile_from
-from labkit.ros2.streams import MAX_SHOWN, Stop, expand, tell
+from labkit.ros2.streams import MAX_SHOWN, Stop, tell
 from labkit.rosgraph import interfaces
-from labkit.rosgraph.matching import other_type_here, type_name
+from labkit.rosgraph.interfaces import type_name
+from labkit.rosgraph.matching import other_type_here
 from labkit.rosgraph.message_yaml import fill, prototype, read_yaml
-from labkit.rosgraph.snapshot import is_hidden
+from labkit.rosgraph.names import full_topic_name, is_hidden
 
 __all__ = ['PUB']
 
@@ -42,7 +43,6 @@ MATCH_SEC = 1.0
 FOUND_SEC = 0.5
 # As long as that, a subscriber that has matched may take to get what was sent.
 TAKEN_SEC = 5.0
-HEADLESS_WAIT_SEC = 5.0
 
 
 def pub(args: Namespace) -> str | None:
@@ -57,7 +57,7 @@ def pub(args: Namespace) -> str | None:
     message = msg_type()
     setters = fill(message, read_yaml(_values(args)))
     asking = asking_node(args)
-    topic = expand(asking, args.topic_name)
+    topic = full_topic_name(args.topic_name, asking)
     node = _node(args.node_name, asking)
     try:
         publisher = _publisher(node, topic, msg_type, args)
@@ -124,8 +124,8 @@ def _wait_for_subscribers(
 ) -> None:
     """Wait until enough subscribers are there, and say so each second."""
     started = time.monotonic()
-    if max_wait_sec is None and settings.headless():
-        max_wait_sec = HEADLESS_WAIT_SEC  # nobody is there to press the stop button
+    if max_wait_sec is None:
+        max_wait_sec = settings.audience().patience_sec
     known = node.count_subscribers(publisher.topic_name) >= count
     hint = _other_topic(node, publisher.topic_name)
     due = started + (MATCH_SEC if known else 0.0)

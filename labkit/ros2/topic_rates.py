@@ -22,12 +22,13 @@ from labkit.ros2.streams import (
     Arrivals,
     Stop,
     add_stop_options,
-    expand,
     subscribed,
     wait_for_type,
 )
 from labkit.rosgraph import interfaces
-from labkit.rosgraph.matching import type_name, why_silent
+from labkit.rosgraph.interfaces import type_name
+from labkit.rosgraph.matching import why_silent
+from labkit.rosgraph.names import full_topic_name
 
 __all__ = ['BW', 'DELAY', 'HZ']
 
@@ -151,7 +152,7 @@ def _measure(
     """Listen to a topic, and print a report each second in which something came."""
     stop = Stop(args.count, args.timeout)
     node = asking_node(args)
-    topic = expand(node, topic)
+    topic = full_topic_name(topic, node)
     soon(lambda: dict(node.get_topic_names_and_types()).get(topic))
     name = wait_for_type(node, topic, stop)
     if name is None:

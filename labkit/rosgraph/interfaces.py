@@ -23,6 +23,7 @@ __all__ = [
     'packages',
     'path_of',
     'service_class',
+    'type_name',
 ]
 
 KINDS = {'msg': 'message', 'srv': 'service', 'action': 'action'}
@@ -123,6 +124,12 @@ def service_class(name: str) -> Any:
         LabError: There is none of that name.
     """
     return _class(check_exists(name, 'srv'))
+
+
+def type_name(msg_type: Any) -> str:
+    """Return the ROS name of a message or service class, such as `std_msgs/msg/String`."""
+    package, kind, *_ = msg_type.__module__.split('.')
+    return f'{package}/{kind}/{msg_type.__name__}'
 
 
 def path_of(name: str) -> Path:

@@ -24,8 +24,7 @@ from rosidl_parser.definition import (  # type: ignore[import-untyped]
 )
 
 from labkit.errors import LabError, nearest
-from labkit.rosgraph.interfaces import message_class
-from labkit.rosgraph.matching import type_name
+from labkit.rosgraph.interfaces import message_class, type_name
 
 __all__ = ['field_paths', 'fill', 'prototype', 'read_yaml', 'to_csv', 'to_yaml']
 

@@ -11,29 +11,29 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from rclpy.node import Node, NodeNameNonExistentError
-from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
-from rclpy.topic_endpoint_info import TopicEndpointInfo
+
+from labkit.rosgraph.endpoints import Endpoint, publishers, subscriptions
+from labkit.rosgraph.matching import why_apart
+from labkit.rosgraph.names import (
+    EVERY_NODE_HAS,
+    UNKNOWN_NODE,
+    full_node_name,
+    is_hidden,
+    split_node_name,
+)
+from labkit.rosgraph.whose import foreign_nodes
 
 __all__ = [
-    'UNKNOWN_NODE',
-    'Endpoint',
     'Graph',
     'GraphNode',
     'GraphService',
     'GraphTopic',
     'Mismatch',
-    'endpoints',
-    'full_node_name',
-    'is_hidden',
     'is_whole',
     'node_names',
     'read_graph',
 ]
 
-# Every node has these, so they say nothing about one.
-EVERY_NODE_HAS = ('/parameter_events', '/rosout')
-# What ROS calls the node of an end as long as it does not know which one that is.
-UNKNOWN_NODE = '_NODE_NAME_UNKNOWN_'
 _EVERY_NODE_OFFERS = ('rcl_interfaces/srv/', 'type_description_interfaces/srv/')
 
 
@@ -50,21 +50,6 @@ class GraphNode:
     name: str
     own: bool
     count: int = 1
-
-
-@dataclass(frozen=True)
-class Endpoint:
-    """A publisher or a subscription.
-
-    Attributes:
-        node: Full name of its node.
-        msg_type: Name of the type, such as `std_msgs/msg/String`.
-        qos: QoS profile. History and depth are unknown to the graph.
-    """
-
-    node: str
-    msg_type: str
-    qos: QoSProfile
 
 
 @dataclass(frozen=True)
@@ -98,7 +83,7 @@ class GraphTopic:
         seen = set()
         for publisher in self.publishers:
             for subscription in self.subscriptions:
-                reason = _why_apart(publisher, subscription)
+                reason = why_apart(publisher, subscription)
                 mismatch = Mismatch(self.name, publisher.node, subscription.node, reason)
                 if reason and mismatch not in seen:
                     seen.add(mismatch)
@@ -152,7 +137,6 @@ class Graph:
 def read_graph(
     node: Node,
     *,
-    foreign: Iterable[str] = (),
     include_hidden: bool = False,
     include_services: bool = False,
 ) -> Graph:
@@ -160,7 +144,6 @@ def read_graph(
 
     Args:
         node: The node to ask with.
-        foreign: Full names of the nodes of other processes, see `Runtime.foreign_nodes`.
         include_hidden: Whether to include hidden nodes and topics (a part of the name starts with
             `_`), and the two topics and the parameter services that every node has.
         include_services: Whether to include services.
@@ -168,7 +151,7 @@ def read_graph(
     Returns:
         The graph, sorted by name.
     """
-    others = set(foreign)
+    others = foreign_nodes(node)
     names = [name for name in node_names(node) if include_hidden or not is_hidden(name)]
     nodes = tuple(
         GraphNode(name, name not in others, names.count(name)) for name in sorted(set(names))
@@ -176,22 +159,12 @@ def read_graph(
     topics = []
     for topic, types in sorted(node.get_topic_names_and_types()):
         if include_hidden or not (is_hidden(topic) or topic in EVERY_NODE_HAS):
-            publishers = endpoints(node.get_publishers_info_by_topic(topic), include_hidden)
-            subscriptions = endpoints(node.get_subscriptions_info_by_topic(topic), include_hidden)
-            if publishers or subscriptions:
-                topics += [GraphTopic(topic, tuple(types), publishers, subscriptions)]
+            senders = publishers(node, topic, include_hidden=include_hidden)
+            hearers = subscriptions(node, topic, include_hidden=include_hidden)
+            if senders or hearers:
+                topics += [GraphTopic(topic, tuple(types), senders, hearers)]
     services = _services(node, names, include_hidden) if include_services else ()
     return Graph(nodes, tuple(topics), services)
-
-
-def is_hidden(name: str) -> bool:
-    """Tell whether a node, topic or service is hidden: a part of its name starts with `_`."""
-    return any(part.startswith('_') for part in name.split('/'))
-
-
-def full_node_name(name: str, namespace: str) -> str:
-    """Return a node's full name: `/talker`, or `/robot/talker` in a namespace."""
-    return f'{namespace.rstrip("/")}/{name}'
 
 
 def node_names(node: Node) -> list[str]:
@@ -211,9 +184,8 @@ def node_names(node: Node) -> list[str]:
 
 
 def _has_ends(node: Node, full_name: str) -> bool:
-    namespace, _, name = full_name.rpartition('/')
     return any(
-        _asked(ask, name, namespace or '/')
+        _asked(ask, *split_node_name(full_name))
         for ask in (
             node.get_publisher_names_and_types_by_node,
             node.get_subscriber_names_and_types_by_node,
@@ -236,33 +208,15 @@ def is_whole(node: Node) -> bool:
     )
 
 
-def endpoints(infos: list[TopicEndpointInfo], include_hidden: bool = True) -> tuple[Endpoint, ...]:
-    """Return publishers or subscriptions as data, sorted by node and type.
-
-    Args:
-        infos: What `get_publishers_info_by_topic` and its like return.
-        include_hidden: Whether to include those of hidden nodes.
-    """
-    found = [
-        Endpoint(
-            full_node_name(info.node_name, info.node_namespace), info.topic_type, info.qos_profile
-        )
-        for info in infos
-    ]
-    shown = [end for end in found if include_hidden or not is_hidden(end.node)]
-    return tuple(sorted(shown, key=lambda end: (end.node, end.msg_type)))
-
-
 def _services(node: Node, names: list[str], include_hidden: bool) -> tuple[GraphService, ...]:
     servers: dict[str, set[str]] = {}
     clients: dict[str, set[str]] = {}
     for full_name in set(names):
-        namespace, _, name = full_name.rpartition('/')
         for ask, ends in (
             (node.get_service_names_and_types_by_node, servers),
             (node.get_client_names_and_types_by_node, clients),
         ):
-            for service, _types in _asked(ask, name, namespace or '/'):
+            for service, _types in _asked(ask, *split_node_name(full_name)):
                 ends.setdefault(service, set()).add(full_name)
     return tuple(
         GraphService(
@@ -283,16 +237,6 @@ def _asked(
         return ask(name, namespace)
     except NodeNameNonExistentError:
         return []  # it has gone meanwhile
-
-
-def _why_apart(publisher: Endpoint, subscription: Endpoint) -> str:
-    """Return why two ends of a topic do not match, '' if they do."""
-    if publisher.msg_type != subscription.msg_type:
-        return f'{publisher.msg_type} is not {subscription.msg_type}'
-    compatibility, reason = qos_check_compatible(publisher.qos, subscription.qos)
-    if compatibility != QoSCompatibility.ERROR:
-        return ''
-    return str(reason).removeprefix('ERROR: ').strip().rstrip(';.')
 
 
 def _told(node: GraphNode) -> str:

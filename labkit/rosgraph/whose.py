@@ -1,92 +1,107 @@
-"""Where an endpoint of the graph runs: in this notebook, in another one, in which process."""
+"""Whose an endpoint is: this process's, another one's, another computer's. Read off its GUID.
+
+Fast DDS makes the first 8 of an endpoint's 16 bytes once for each process: vendor (2), host (2),
+process id, low bytes (2), random (2). The participant follows (4), so two contexts of one process
+differ there and nowhere before. Source: fastrtps 2.14, src/cpp/rtps/common/GuidUtils.hpp.
+"""
 
 from __future__ import annotations
 
 import functools
 import os
-import signal
-import time
-from collections.abc import Collection
 from pathlib import Path
 
+from rclpy.node import Node
+
 from labkit import settings
+from labkit.rosgraph.names import full_node_name
 
-__all__ = ['interrupt_child', 'place', 'same_process', 'starting_children']
+__all__ = ['foreign_nodes', 'is_own', 'participant_of', 'place', 'process_id']
 
-# Fast DDS makes the first bytes of a GUID so: vendor (2), host (2), process id, low bytes (2),
-# random (2), participant (4). Source: fastrtps 2.14, src/cpp/rtps/common/GuidUtils.hpp.
 _HOST = slice(2, 4)
-_PROCESS = slice(4, 6)
-_HOST_AND_PROCESS = slice(2, 6)
+_PROCESS_ID = slice(4, 6)
+_PROCESS = slice(0, 8)
+_PARTICIPANT = slice(0, 12)
 
-# How old a process that this notebook started may be and still count as starting.
-_YOUNG_SEC = 5.0
-
-
-def same_process(gid: bytes, own_gid: bytes) -> bool:
-    """Tell whether two endpoints belong to one process."""
-    return gid[_HOST_AND_PROCESS] == own_gid[_HOST_AND_PROCESS]
+# What the GUIDs of this process start with, once it is known, and the process: a fork is another.
+_own: tuple[int, bytes] = (0, b'')
 
 
-@functools.lru_cache(maxsize=256)
-def place(gid: bytes, own_gid: bytes) -> str:
+def is_own(gid: bytes, node: Node) -> bool:
+    """Tell whether an endpoint belongs to this process, whichever of its contexts made it.
+
+    Args:
+        gid: The endpoint's GUID, as the graph gives it.
+        node: A node of this process, to ask the graph with.
+    """
+    return gid[_PROCESS] == _own_start(node)
+
+
+def participant_of(gid: bytes) -> bytes:
+    """Return what the GUIDs of all endpoints of one DDS participant start with."""
+    return gid[_PARTICIPANT]
+
+
+def process_id(gid: bytes) -> int:
+    """Return the lower 16 bits of the id of an endpoint's process."""
+    return int.from_bytes(gid[_PROCESS_ID], 'little')
+
+
+def foreign_nodes(node: Node) -> set[str]:
+    """Return the full names of the nodes that other processes have in this domain.
+
+    Args:
+        node: A node of this process, to ask the graph with.
+    """
+    # Every node publishes on this topic.
+    return {
+        full_node_name(info.node_name, info.node_namespace)
+        for info in node.get_publishers_info_by_topic('/parameter_events')
+        if not is_own(bytes(info.endpoint_gid), node)
+    }
+
+
+def place(gid: bytes, node: Node) -> str:
     """Say where an endpoint runs.
 
     Args:
-        gid: The endpoint's global id, as the graph gives it.
-        own_gid: That of any endpoint of this process.
+        gid: The endpoint's GUID, as the graph gives it.
+        node: A node of this process, to ask the graph with.
 
     Returns:
         Words that follow a node's name, such as `'in this notebook'`.
     """
-    if same_process(gid, own_gid):
+    own = _own_start(node)
+    if gid[_PROCESS] == own:
         return 'in this notebook' if settings.in_kernel() else 'in this program'
-    if gid[_HOST] != own_gid[_HOST]:
+    if gid[_HOST] != own[_HOST]:
         return 'on another computer or in another container'
-    low = int.from_bytes(gid[_PROCESS], 'little')
-    pids = [pid for pid in _pids() if pid & 0xFFFF == low]
+    return _place_of_process(gid[_PROCESS])
+
+
+def _own_start(node: Node) -> bytes:
+    """Return what the GUIDs of this process start with, '' as long as the graph can't tell."""
+    global _own
+    if _own[0] != os.getpid():
+        mine = (node.get_name(), node.get_namespace())
+        for info in node.get_publishers_info_by_topic('/parameter_events'):
+            gid = bytes(info.endpoint_gid)
+            # Another process may have a node of the same name.
+            if process_id(gid) == os.getpid() & 0xFFFF and mine == (
+                info.node_name,
+                info.node_namespace,
+            ):
+                _own = (os.getpid(), gid[_PROCESS])
+                return _own[1]
+        return b''
+    return _own[1]
+
+
+@functools.lru_cache(maxsize=256)
+def _place_of_process(start: bytes) -> str:
+    pids = [pid for pid in _pids() if pid & 0xFFFF == process_id(start)]
     # With two processes whose ids end alike there is no telling which one it is.
     return _describe(pids[0]) if len(pids) == 1 else 'in another process'
-
-
-def starting_children(gids: Collection[bytes]) -> tuple[bool, bool]:
-    """Tell whether this process has lately started others, whose nodes may be about to appear.
-
-    Args:
-        gids: Global ids of endpoints that are in the graph.
-
-    Returns:
-        Whether one of them has nothing in the graph yet, and whether one has: what else it makes
-        may follow.
-    """
-    import psutil  # type: ignore[import-untyped]
-
-    appeared = {int.from_bytes(gid[_PROCESS], 'little') for gid in gids}
-    oldest = time.time() - _YOUNG_SEC
-    found = set()
-    for child in psutil.Process().children(recursive=True):
-        try:
-            if child.create_time() > oldest and child.status() != psutil.STATUS_ZOMBIE:
-                found.add(child.pid & 0xFFFF in appeared)
-        except psutil.NoSuchProcess:
-            continue
-    return False in found, True in found
-
-
-def interrupt_child(gid: bytes) -> bool:
-    """Press Ctrl-C in the process of an endpoint, if this process has started it.
-
-    Returns:
-        Whether it has.
-    """
-    import psutil
-
-    low = int.from_bytes(gid[_PROCESS], 'little')
-    for child in psutil.Process().children(recursive=True):
-        if child.pid & 0xFFFF == low:
-            child.send_signal(signal.SIGINT)
-            return True
-    return False
 
 
 def _describe(pid: int) -> str:

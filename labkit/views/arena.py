@@ -80,7 +80,7 @@ class Arena:
         self._heard: set[str] = set()
         self._entities: list[tuple[str, Any]] = []
         self._canvas: _Canvas | None = None
-        if not settings.headless():
+        if settings.audience().live:
             self._canvas = _Canvas()
             self._canvas.on_msg(self._on_message)
         replace_earlier(_live, self)

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 from labkit.background.nodes import node_exists
 from labkit.errors import LabError
 from labkit.ros2.qos_options import match_all
-from labkit.ros2.streams import expand
-from labkit.rosgraph.interfaces import message_class
-from labkit.rosgraph.matching import nobody_publishes, other_type_here, type_name, why_silent
-from labkit.rosgraph.snapshot import UNKNOWN_NODE, Endpoint, endpoints
+from labkit.rosgraph.endpoints import Endpoint, publishers
+from labkit.rosgraph.interfaces import message_class, type_name
+from labkit.rosgraph.matching import nobody_publishes, other_type_here, why_silent
+from labkit.rosgraph.names import full_topic_name
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -64,7 +64,7 @@ class Feed:
         qos_profile: QoSProfile | int | None = None,
         raw: bool = False,
     ) -> None:
-        self.topic = expand(node, topic)
+        self.topic = full_topic_name(topic, node)
         self.msg_type = self._wanted = msg_type
         self.publishers: tuple[Endpoint, ...] = ()
         self.count = 0
@@ -102,9 +102,7 @@ class Feed:
     @property
     def is_settled(self) -> bool:
         """Tell whether the last look has seen all publishers, and the names of their nodes."""
-        return not self.has_new_publishers and all(
-            UNKNOWN_NODE not in end.node for end in self.publishers
-        )
+        return not self.has_new_publishers and all(end.is_known for end in self.publishers)
 
     @property
     def is_promising(self) -> bool:
@@ -115,7 +113,7 @@ class Feed:
         """Look who publishes, and subscribe, subscribe anew or no more if that asks for it."""
         if self._node is None or not node_exists(self._node):
             return
-        seen = endpoints(self._node.get_publishers_info_by_topic(self.topic))
+        seen = publishers(self._node, self.topic)
         if seen != self.publishers:
             self.publishers, self._changed_at = seen, time.monotonic()
         self._problem = ''
@@ -166,8 +164,9 @@ class Feed:
         )
 
     def _subscribe(self, profile: Any) -> None:
-        from rclpy._rclpy_pybind11 import RCLError
         from rclpy.event_handler import SubscriptionEventCallbacks
+
+        from labkit.background.compat import RCLError
 
         assert self._node is not None
         self._profile = profile

@@ -36,7 +36,7 @@ class GraphView:
     def __init__(self, *, services: bool, hidden: bool, live: bool) -> None:
         self._services = services
         self._hidden = hidden
-        self._is_live = live and not settings.headless()
+        self._is_live = live and settings.audience().live
         self._handle: Any = None
         self._timer: Any = None
         runtime.start()
@@ -102,7 +102,6 @@ class GraphView:
         assert runtime.helper is not None
         return read_graph(
             runtime.helper,
-            foreign=runtime.foreign_nodes(),
             include_hidden=self._hidden,
             include_services=self._services,
         )

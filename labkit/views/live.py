@@ -42,7 +42,7 @@ NOBODY_ELSEWHERE_SEC = 3.0
 
 def is_live() -> bool:
     """Tell whether somebody may look at a page: there is a kernel, and a person before it."""
-    return settings.in_kernel() and not settings.headless()
+    return settings.audience().live
 
 
 def page_widget(name: str) -> type[anywidget.AnyWidget]:

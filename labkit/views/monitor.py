@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from labkit.background.runtime import runtime
 from labkit.errors import LabError
-from labkit.rosgraph.matching import type_name
-from labkit.rosgraph.snapshot import UNKNOWN_NODE, Endpoint
+from labkit.rosgraph.endpoints import Endpoint
+from labkit.rosgraph.interfaces import type_name
+from labkit.rosgraph.names import UNKNOWN_NODE
 from labkit.views.feed import Feed, checked_type
 from labkit.views.live import Live, heard, page_widget
 from labkit.views.message_tree import as_text, rows

@@ -16,8 +16,8 @@ import numpy as np
 
 from labkit.background.runtime import runtime
 from labkit.errors import LabError
-from labkit.ros2.streams import expand
 from labkit.rosgraph.interfaces import message_class
+from labkit.rosgraph.names import full_topic_name
 from labkit.views.feed import Feed
 from labkit.views.live import Live, heard, page_widget
 from labkit.views.plot_fields import Source, parse, resolve, unit_of
@@ -225,7 +225,7 @@ def _feeds(series: list[Series]) -> list[Feed]:
     assert runtime.helper is not None
     groups: dict[str, list[Series]] = {}
     for each in series:
-        each.topic = expand(runtime.helper, each.source.topic)
+        each.topic = full_topic_name(each.source.topic, runtime.helper)
         groups.setdefault(each.topic, []).append(each)
     return [Feed(topic, runtime.helper, _adder(group)) for topic, group in groups.items()]
 

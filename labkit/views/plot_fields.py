@@ -12,8 +12,7 @@ from operator import attrgetter, itemgetter
 from typing import Any
 
 from labkit.errors import LabError, nearest
-from labkit.rosgraph.interfaces import message_class
-from labkit.rosgraph.matching import type_name
+from labkit.rosgraph.interfaces import message_class, type_name
 
 __all__ = ['Source', 'number_paths', 'parse', 'resolve', 'unit_of']
 

@@ -16,9 +16,10 @@ from typing import Any
 import anywidget
 
 from labkit import settings
-from labkit.background.nodes import destroy_node, node_exists
+from labkit.background.nodes import destroy_node, helper_node, node_exists
 from labkit.background.runtime import runtime
 from labkit.errors import LabError
+from labkit.rosgraph.names import full_node_name
 from labkit.sim.kinematics import BURGER
 from labkit.views.arena_picture import two
 
@@ -87,24 +88,15 @@ class Teleop:
         self._msg_type = _message_class(stamped)
         self._open(topic, namespace, name)
         self._pad: _Pad | None = None
-        if not settings.headless():
+        if settings.audience().live:
             self._pad = _Pad()
             self._pad.on_msg(self._on_message)
 
     def _open(self, topic: str, namespace: str, name: str) -> None:
-        from rclpy.node import Node
-        from rclpy.parameter import Parameter
-
-        earlier = _live.get(f'/{namespace.strip("/")}/{name}'.replace('//', '/'))
+        earlier = _live.get(full_node_name(name, namespace))
         if earlier is not None:
             earlier.close()
-        # It has no parameters for others to set, and services cost time at every wake-up.
-        self.node = Node(
-            name,
-            namespace=namespace or None,
-            start_parameter_services=False,
-            parameter_overrides=[Parameter('start_type_description_service', value=False)],  # type: ignore[no-untyped-call]
-        )
+        self.node = helper_node(name, namespace=namespace or None, enable_rosout=True)
         self._publisher = self.node.create_publisher(self._msg_type, topic, QUEUE_DEPTH)
         self.topic: str = self._publisher.topic_name
         self.node.create_timer(1 / RATE, self._on_timer)

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import labkit
-from labkit import settings
+from labkit.background import domains
 
 ROBOT = Path(__file__).with_name('robot.py')
 
@@ -55,7 +55,7 @@ def ros_ends() -> Iterator[None]:
 @pytest.fixture
 def domain() -> Iterator[dict[str, str]]:
     """Give the variables for processes that are to hear each other, and nobody else."""
-    claim = settings.claim_domain()
+    claim = domains.claim_domain()
     yield {
         'ROS_DOMAIN_ID': str(claim.domain_id),
         'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from labkit import settings
+from labkit.background import domains
 from labkit.errors import LabError
 from labkit.ros2 import terminal
 
@@ -73,19 +73,19 @@ def test_run_stays_in_front(domain, lab_env):
 
 def test_a_notebook_tells_its_domain(domain):
     # The fixture holds a domain as a notebook does.
-    assert int(domain['ROS_DOMAIN_ID']) in settings.claimed_domains()
+    assert int(domain['ROS_DOMAIN_ID']) in domains.claimed_domains()
 
 
 def test_domain_of_the_one_running_notebook(monkeypatch):
     monkeypatch.delenv('ROS_DOMAIN_ID', raising=False)
-    monkeypatch.setattr(settings, 'claimed_domains', lambda: {7: '04_odds.ipynb'})
+    monkeypatch.setattr(domains, 'claimed_domains', lambda: {7: '04_odds.ipynb'})
     terminal.choose_domain()
     assert os.environ.pop('ROS_DOMAIN_ID') == '7'
-    monkeypatch.setattr(settings, 'claimed_domains', lambda: {})
+    monkeypatch.setattr(domains, 'claimed_domains', lambda: {})
     terminal.choose_domain()
     assert 'ROS_DOMAIN_ID' not in os.environ
     two = {7: '04_odds.ipynb', 9: '05_my_name_is.ipynb'}
-    monkeypatch.setattr(settings, 'claimed_domains', lambda: two)
+    monkeypatch.setattr(domains, 'claimed_domains', lambda: two)
     with pytest.raises(LabError) as caught:
         terminal.choose_domain()
     assert '  ROS_DOMAIN_ID=7  04_odds.ipynb\n  ROS_DOMAIN_ID=9  05_my' in str(caught.value)
@@ -100,7 +100,7 @@ def test_a_kernel_claims_its_domain_by_the_name_of_its_notebook(start_kernel):
         'import labkit as lab\nlab.start()\nfrom labkit.background.runtime import runtime\n'
         'print(runtime.domain_id)'
     )
-    assert settings.claimed_domains()[int(result.text)] == '04_odds.ipynb'
+    assert domains.claimed_domains()[int(result.text)] == '04_odds.ipynb'
 
 
 def test_steps_aside_for_a_real_one(tmp_path: Path, lab_env):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 
+from labkit.background.domains import claim_domain
+
 # Nodes of this process; what `read_graph` says of them.
 READ = """
 import json
@@ -88,17 +90,36 @@ print(before == after, [topic.name for topic in after.topics], after.mismatches)
 
 
 def test_nodes_of_other_processes_are_told_apart(script):
+    claim = claim_domain()
     result = script(
-        READ
+        'import subprocess, sys\n'
+        + READ
         + """
-graph = read_graph(runtime.helper, foreign={'/talker'})
+import rclpy
+from rclpy.context import Context
+second = Context()
+rclpy.init(context=second)
+guest = Node('guest', context=second)  # of this process, though of another participant
+program = "import rclpy; rclpy.init(); rclpy.spin(rclpy.create_node('stranger'))"
+process = subprocess.Popen([sys.executable, '-c', program])
+names = ['/ears/listener', '/guest', '/stranger', '/talker']
+seen = lambda: [node.name for node in read_graph(runtime.helper).nodes] == names
+lab.wait_until(seen, timeout_sec=60)
+graph = read_graph(runtime.helper)
+process.kill()
 print([(node.name, node.own, node.count) for node in graph.nodes])
-print(str(graph).splitlines()[2])
-"""
+print(str(graph).splitlines()[3])
+guest.destroy_node()
+rclpy.shutdown(context=second)
+""",
+        ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST',
+        ROS_DOMAIN_ID=str(claim.domain_id),
     )
+    claim.close()
     assert result.stdout == (
-        "[('/ears/listener', True, 1), ('/talker', False, 1)]\n  /talker (another process)\n"
-    )
+        "[('/ears/listener', True, 1), ('/guest', True, 1), ('/stranger', False, 1), "
+        "('/talker', True, 1)]\n  /stranger (another process)\n"
+    ), result.stderr
 
 
 def test_an_empty_graph(script):
@@ -133,7 +154,8 @@ def test_a_graph_is_whole_when_each_end_has_its_node(script):
     result = script(
         READ
         + """
-from labkit.rosgraph.snapshot import UNKNOWN_NODE, is_whole
+from labkit.rosgraph.snapshot import is_whole
+from labkit.rosgraph.names import UNKNOWN_NODE
 class Half:
     node_name = UNKNOWN_NODE
 class Early:

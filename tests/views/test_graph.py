@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 from rclpy.qos import QoSProfile
 
-from labkit.rosgraph.snapshot import Endpoint, Graph, GraphNode, GraphTopic
+from labkit.rosgraph.endpoints import Endpoint
+from labkit.rosgraph.snapshot import Graph, GraphNode, GraphTopic
 from labkit.views.graph import to_mermaid
 
 NODES = """
@@ -76,7 +77,7 @@ def test_live_picture_follows_and_ends_when_closed(kernel):
     'name', ['/a"]); click n0 "javascript:1"', '/<img onerror=1>', '/x#quot;']
 )
 def test_names_have_no_power_over_the_picture(name):
-    end = Endpoint(name, 'std_msgs/msg/String', QoSProfile(depth=1))
+    end = Endpoint(name, '/topic', 'std_msgs/msg/String', QoSProfile(depth=1), bytes(16))
     topic = GraphTopic(name, (name,), (end,), (end,))
     text = to_mermaid(Graph((GraphNode(name, own=False),), (topic,)))
     for line in text.splitlines():

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from labkit import settings
 from labkit.errors import LabError
 from labkit.exercises import Choice, Number, Quiz, right, wrong
 from labkit.views.card import Card
@@ -16,6 +17,7 @@ EVIL = '<img src=x onerror=alert(1)>'
 @pytest.fixture(autouse=True)
 def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv('LABKIT_HOME', str(tmp_path))
+    monkeypatch.setattr(settings, 'audience', lambda: settings.LEARNER)
 
 
 def send(form: QuizForm, number: Any, answer: Any) -> None:
@@ -41,7 +43,7 @@ def test_page_gets_the_questions_and_not_the_answers(quiz: Quiz) -> None:
 def test_where_a_program_runs_the_notebook_a_quiz_is_text(
     quiz: Quiz, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv('LABKIT_HEADLESS', '1')
+    monkeypatch.setattr(settings, 'audience', lambda: settings.RECORDING)
     assert quiz._repr_mimebundle_() == {'text/plain': repr(quiz)}
 
 

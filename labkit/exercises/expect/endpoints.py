@@ -8,9 +8,13 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from labkit.exercises.probe import Endpoint, Probe
+from labkit.exercises.probe import Probe
 from labkit.exercises.verdict import Fail, NotAttempted
+
+if TYPE_CHECKING:
+    from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['alone', 'node', 'publisher', 'qos', 'subscription']
 
@@ -100,10 +104,11 @@ def alone(probe: Probe, topic: str) -> None:
     if len(found) < 2:
         return
     nodes = {endpoint.node for endpoint in found}
-    places = {endpoint.place for endpoint in found}
-    seen = f'{len(found)} publishers on {topic}: {_list([str(endpoint) for endpoint in found])}'
+    places = [probe.place(endpoint) for endpoint in found]
+    listed = [f'{e.node} {place}' for e, place in zip(found, places, strict=True)]
+    seen = f'{len(found)} publishers on {topic}: {_list(listed)}'
     expected = f'one publisher on {topic}'
-    if len(nodes) == 1 and len(places) == 1 and probe.node_names().count(found[0].node) == 1:
+    if len(nodes) == 1 and len(set(places)) == 1 and probe.node_names().count(found[0].node) == 1:
         raise Fail(
             expected,
             seen,

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from labkit.exercises.expect.timing import hanging
 from labkit.exercises.expect.values import show, text_trouble
-from labkit.exercises.probe import Endpoint, Probe
+from labkit.exercises.probe import Probe
 from labkit.exercises.verdict import Fail
 from labkit.exercises.watch import Watch
+
+if TYPE_CHECKING:
+    from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['Reply', 'logs', 'replies']
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 import statistics
 import time
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from labkit.exercises.expect.endpoints import alone
-from labkit.exercises.probe import Endpoint, Probe
+from labkit.exercises.probe import Probe
 from labkit.exercises.verdict import Fail, NotAttempted
 from labkit.exercises.watch import Watch
+
+if TYPE_CHECKING:
+    from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['ends_with_node', 'hanging', 'messages', 'rate']
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from labkit.exercises import (
-    Endpoint,
     Exercise,
     Fail,
     Probe,
@@ -16,6 +16,9 @@ from labkit.exercises import (
     expect,
 )
 from labkit.lessons.my_name_is.two_stages import STRING
+
+if TYPE_CHECKING:
+    from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['two_names']
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from labkit.exercises import (
-    Endpoint,
     Exercise,
     Fail,
     Outcome,
@@ -18,6 +17,9 @@ from labkit.exercises import (
     expect,
 )
 from labkit.lessons._stage import find_stage
+
+if TYPE_CHECKING:
+    from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['OPENING', 'STRING', 'two_stages']
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from labkit.exercises import (
-    Endpoint,
     Exercise,
     NotAttempted,
     Probe,
@@ -14,6 +15,9 @@ from labkit.exercises import (
     expect,
 )
 from labkit.lessons.odds.stadium import GATES, VISITORS, wrong_gates
+
+if TYPE_CHECKING:
+    from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['find_gate']
 
@@ -47,7 +51,7 @@ _DIFFERS = "!= 'std_msgs/msg/Int16'"
 
 
 def _judge_find_gate(probe: Probe) -> str:
-    from labkit.rosgraph.snapshot import UNKNOWN_NODE
+    from labkit.rosgraph.names import UNKNOWN_NODE
 
     gates = wrong_gates()
     if not gates:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from labkit.exercises import (
-    Endpoint,
     Exercise,
     Fail,
     Outcome,
@@ -15,6 +16,9 @@ from labkit.exercises import (
     expect,
 )
 from labkit.lessons.talker_listener.script import in_process
+
+if TYPE_CHECKING:
+    from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['hear_chatter']
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from labkit.exercises import (
-    Endpoint,
     Exercise,
     Fail,
     Outcome,
@@ -28,6 +29,9 @@ from labkit.lessons.turtlebot.drive import (
     stands,
 )
 from labkit.sim.kinematics import Pose, Twist2
+
+if TYPE_CHECKING:
+    from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['bot']
 

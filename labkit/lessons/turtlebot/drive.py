@@ -12,10 +12,13 @@ from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from labkit.exercises import Endpoint, Fail, Probe, Watch, expect
+from labkit.exercises import Fail, Probe, Watch, expect
 from labkit.sim.kinematics import Pose, Twist2, yaw_from_quaternion
+
+if TYPE_CHECKING:
+    from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = [
     'EMPTY',

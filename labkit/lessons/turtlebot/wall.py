@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from labkit.exercises import (
     Exercise,
     Fail,
@@ -13,7 +15,6 @@ from labkit.exercises import (
     changed,
     expect,
 )
-from labkit.exercises.probe import Endpoint
 from labkit.lessons.turtlebot.drawing import observed
 from labkit.lessons.turtlebot.drive import (
     EMPTY,
@@ -26,6 +27,9 @@ from labkit.lessons.turtlebot.drive import (
     stands,
 )
 from labkit.sim.kinematics import BURGER
+
+if TYPE_CHECKING:
+    from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['wall']
 

@@ -1,0 +1,121 @@
+"""A ROS domain for each notebook: claimed while its kernel lives, found by its terminals."""
+
+from __future__ import annotations
+
+import errno
+import os
+import socket
+import zlib
+from pathlib import Path
+
+from labkit.errors import LabError
+from labkit.settings import LAST_DOMAIN_ID, notebook_name
+
+__all__ = ['DomainClaim', 'claim_domain', 'claimed_domains']
+
+# Domain 0 is everybody's default, so a notebook takes one of the others.
+FIRST_DOMAIN_ID = 1
+# Names of sockets, see `DomainClaim`. The first holds for all users of the machine, the second
+# tells terminals of one user which of the notebooks are theirs.
+_CLAIM = 'labkit/ros-domain/{domain_id}'
+_NOTEBOOK = 'labkit/notebook/{user_id}/{domain_id}/'
+# Bytes in the name of a socket, the zero at its start included (unix(7), sun_path).
+_LONGEST = 108
+
+
+class DomainClaim:
+    """A ROS domain that no other notebook on this machine uses while this process lives.
+
+    The claim is the name of a socket in Linux's abstract namespace. It takes no file, it counts
+    for all users of the machine, and it ends with the process, however the process ends.
+
+    Args:
+        domain_id: The domain to claim.
+
+    Raises:
+        BlockingIOError: Another process has claimed it.
+        OSError: The system refuses, for another reason.
+    """
+
+    def __init__(self, domain_id: int) -> None:
+        self.domain_id = domain_id
+        notebook = Path(notebook_name()).name or f'process {os.getpid()}'
+        # The second one tells others which notebook it is.
+        start = _NOTEBOOK.format(user_id=os.getuid(), domain_id=domain_id)
+        self._sockets: list[socket.socket] = []
+        try:
+            for name in (_CLAIM.format(domain_id=domain_id), start + _printable(notebook)):
+                self._sockets.append(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM))
+                self._sockets[-1].bind(_address(name))
+        except OSError as error:
+            self.close()
+            if error.errno == errno.EADDRINUSE:
+                raise BlockingIOError(f'domain {domain_id} is taken') from error
+            raise
+
+    def close(self) -> None:
+        """Give the domain back."""
+        for claim in self._sockets:
+            claim.close()
+
+
+def claim_domain() -> DomainClaim:
+    """Claim a domain that no other notebook has.
+
+    The search starts from a number made from the notebook's name, so that a notebook whose kernel
+    is restarted mostly meets its own domain again.
+
+    Raises:
+        LabError: All domains are taken, or the system lets none be claimed.
+    """
+    name = notebook_name() or str(os.getpid())
+    count = LAST_DOMAIN_ID - FIRST_DOMAIN_ID + 1
+    first = zlib.crc32(name.encode(errors='replace'))
+    for step in range(count):
+        try:
+            return DomainClaim(FIRST_DOMAIN_ID + (first + step) % count)
+        except BlockingIOError:
+            continue
+        except OSError as error:
+            raise LabError(
+                f'The system does not let a ROS domain be claimed: {error}.',
+                todo='Choose a domain yourself: lab.start(domain_id=7)',
+            ) from error
+    raise LabError(
+        f'All {count} ROS domains of this machine are in use by other notebooks.',
+        todo='Shut down kernels that are not needed any more (in JupyterLab: the square symbol '
+        'at the left), or share a domain on purpose with lab.start(domain_id=...).',
+    )
+
+
+def claimed_domains() -> dict[int, str]:
+    """Return the domains that this user's notebooks have claimed, and the notebooks' names.
+
+    The names are text of others: what is no printable character in them is shown as `?`.
+    """
+    try:
+        table = Path('/proc/net/unix').read_text(encoding='utf-8', errors='replace')
+    except OSError:
+        return {}
+    start = _NOTEBOOK.format(user_id=os.getuid(), domain_id='').rstrip('/') + '/'
+    found = {}
+    for line in table.splitlines():
+        _, sign, name = line.partition(f'@{start}')
+        domain_id, slash, notebook = name.partition('/')
+        if sign and slash and domain_id.isdecimal() and int(domain_id) <= LAST_DOMAIN_ID:
+            found[int(domain_id)] = _printable(notebook)
+    return dict(sorted(found.items()))
+
+
+def _address(name: str) -> bytes:
+    """Return a name as the address of an abstract socket, with as much of its end as fits."""
+    start, slash, end = name.rpartition('/')
+    room = _LONGEST - 1 - len(f'{start}{slash}'.encode())
+    kept = end.encode()[-room:].decode(errors='ignore')
+    return b'\0' + f'{start}{slash}{kept}'.encode()
+
+
+def _printable(text: str) -> str:
+    """Return text without what could move a terminal's cursor, or end a line."""
+    text = text.encode(errors='replace').decode()
+    return ''.join(char if char.isprintable() else '?' for char in text)

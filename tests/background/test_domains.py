@@ -1,0 +1,278 @@
+"""A domain for each notebook: claimed, given back, told apart."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+
+import pytest
+
+from labkit.background import domains
+from labkit.errors import LabError
+
+LOCALHOST = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
+
+
+CLAIMING = """
+import sys
+from labkit.background.domains import claim_domain
+claim = claim_domain()
+print(claim.domain_id, flush=True)
+sys.stdin.read()
+"""
+
+
+TALKER = """
+import labkit as lab
+from labkit.background.runtime import runtime
+from rclpy.node import Node
+from std_msgs.msg import String
+
+class Talker(Node):
+    def __init__(self, name='talker'):
+        super().__init__(name)
+        self.count = 0
+        self.publisher = self.create_publisher(String, 'chatter', 10)
+        self.create_timer(0.02, self.on_timer)
+
+    def on_timer(self):
+        self.publisher.publish(String(data=WORD))
+        self.count += 1
+
+class Listener(Node):
+    def __init__(self):
+        super().__init__('listener')
+        self.heard = set()
+        self.create_subscription(String, 'chatter', lambda msg: self.heard.add(msg.data), 10)
+"""
+
+
+@contextmanager
+def claiming(env: dict[str, str]) -> Iterator[tuple[int, subprocess.Popen[str]]]:
+    """Run a process that claims a domain; give the domain and the process."""
+    pipe = subprocess.PIPE
+    command = [sys.executable, '-c', CLAIMING]
+    with subprocess.Popen(command, env=env, stdin=pipe, stdout=pipe, text=True) as process:
+        try:
+            assert process.stdout is not None
+            yield int(process.stdout.readline()), process
+        finally:
+            process.kill()
+
+
+def test_processes_of_one_name_never_get_the_same_domain(lab_env: dict[str, str]) -> None:
+    # The same name leads each of them to the same first choice.
+    env = {**lab_env, 'JPY_SESSION_NAME': '/home/me/02_talker_listener.ipynb'}
+    with ExitStack() as stack:
+        domain_ids = [stack.enter_context(claiming(env))[0] for _ in range(6)]
+    assert len(set(domain_ids)) == 6
+    assert all(1 <= domain_id <= 101 for domain_id in domain_ids)
+
+
+def test_processes_that_claim_at_once_never_get_the_same_domain(lab_env: dict[str, str]) -> None:
+    env = {**lab_env, 'JPY_SESSION_NAME': '/home/me/same.ipynb'}
+    pipe = subprocess.PIPE
+    command = [sys.executable, '-c', CLAIMING]
+    with ExitStack() as stack:
+        processes = []
+        for _ in range(6):
+            process = subprocess.Popen(command, env=env, stdin=pipe, stdout=pipe, text=True)
+            stack.enter_context(process)
+            stack.callback(process.kill)
+            processes.append(process)
+        domain_ids = [int(process.stdout.readline()) for process in processes]
+    assert len(set(domain_ids)) == 6
+
+
+@pytest.mark.parametrize('how', [signal.SIGKILL, signal.SIGTERM])
+def test_claim_ends_with_its_process(lab_env: dict[str, str], how: signal.Signals) -> None:
+    with claiming(lab_env) as (domain_id, process):
+        with pytest.raises(OSError):
+            domains.DomainClaim(domain_id)
+        process.send_signal(how)
+        process.wait(60)
+        domains.DomainClaim(domain_id).close()
+
+
+def test_a_notebook_meets_its_own_domain_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv('JPY_SESSION_NAME', '/home/me/again.ipynb')
+    first = domains.claim_domain()
+    first.close()
+    again = domains.claim_domain()
+    # Unless another program took it in between, which a test can't forbid.
+    assert again.domain_id == first.domain_id or _taken(first.domain_id)
+    again.close()
+
+
+def _taken(domain_id: int) -> bool:
+    try:
+        domains.DomainClaim(domain_id).close()
+    except OSError:
+        return True
+    return False
+
+
+def test_all_domains_taken(script: Callable[..., object]) -> None:
+    # Sockets of this kind belong to a network namespace: there all can be taken without harm.
+    unshare = ['unshare', '--net', *([] if os.geteuid() == 0 else ['--map-root-user'])]
+    if subprocess.run([*unshare, 'true'], capture_output=True).returncode != 0:
+        pytest.skip('this system does not allow namespaces (net)')
+    result = script(f"""
+import subprocess, sys
+code = '''
+from labkit.errors import LabError
+from labkit.background.domains import claim_domain
+claims = [claim_domain() for _ in range(101)]
+print(sorted(claim.domain_id for claim in claims) == list(range(1, 102)))
+try:
+    claim_domain()
+except LabError as error:
+    print(error)
+claims[41].close()
+print(claim_domain().domain_id == claims[41].domain_id)
+'''
+sys.exit(subprocess.run([*{unshare!r}, sys.executable, '-c', code]).returncode)
+""")
+    assert result.exit_code == 0, result.stderr
+    lines = result.stdout.splitlines()
+    assert (lines[0], lines[-1]) == ('True', 'True')
+    assert lines[1] == 'All 101 ROS domains of this machine are in use by other notebooks.'
+    assert 'Shut down kernels that are not needed any more' in lines[2]
+
+
+def test_bad_domain_is_said_in_the_cell_and_nothing_is_started(
+    start_kernel: Callable[..., object],
+) -> None:
+    kernel = start_kernel(ROS_DOMAIN_ID='seven')
+    result = kernel.run('import labkit as lab\nlab.start()')
+    assert result.error.startswith(
+        'LabError: ROS_DOMAIN_ID must be a number from 0 to 101, but it is'
+    )
+    assert kernel.run('import os\nos.environ["ROS_DOMAIN_ID"] = ""\nlab.start()').error == ''
+
+
+def test_variable_wins_over_a_domain_of_its_own(
+    start_kernel: Callable[..., object], script: Callable[..., object]
+) -> None:
+    claim = domains.claim_domain()
+    kernel = start_kernel(ROS_DOMAIN_ID=str(claim.domain_id))
+    show = 'import labkit as lab\nlab.start()\nfrom labkit.background.runtime import runtime\n'
+    show += 'print(runtime.domain_id, runtime.own_domain)'
+    assert kernel.run(show).text == f'{claim.domain_id} False\n'
+    assert script(show, ROS_DOMAIN_ID=str(claim.domain_id)).stdout == f'{claim.domain_id} False\n'
+    # A script is in the domain that any ROS program is in.
+    assert script(show).stdout == '0 False\n'
+    claim.close()
+
+
+def test_two_notebooks_do_not_hear_each_other_until_they_mean_to(
+    start_kernel: Callable[..., object],
+) -> None:
+    one, other = start_kernel(**LOCALHOST), start_kernel(**LOCALHOST)
+    start = 'talker = lab.spin(Talker(NAME))\nlistener = lab.spin(Listener())\n'
+    for kernel, word in ((one, 'one'), (other, 'other')):
+        names = f'WORD = {word!r}\nNAME = "talker_{word}"\n'
+        assert not kernel.run(names + TALKER + start).error
+    domain_ids = [kernel.run('print(runtime.domain_id)').text for kernel in (one, other)]
+    assert domain_ids[0] != domain_ids[1]
+    # A third process, in the domain of the first, shows when discovery has had its time.
+    witness = start_kernel(**LOCALHOST, ROS_DOMAIN_ID=domain_ids[0].strip())
+    assert not witness.run('WORD = "witness"\n' + TALKER + 'talker = lab.spin(Talker("w"))').error
+    heard = one.run(
+        'lab.wait_until(lambda: "witness" in listener.heard, timeout_sec=60)\n'
+        'print(sorted(listener.heard), sorted(runtime.foreign_nodes()))'
+    )
+    assert heard.text.startswith("['one', 'witness'] ")
+    assert '/talker_other' not in heard.text
+    # What the notebook starts joins it.
+    children = one.run('import os\nprint(os.environ["ROS_DOMAIN_ID"])').text
+    assert children == domain_ids[0]
+
+    refused = other.run(f'lab.start(domain_id={domain_ids[0]})')
+    assert 'it can move to domain' in refused.error
+    joined = other.run(
+        f'lab.stop()\nlab.start(domain_id={domain_ids[0]})\n{start}'
+        'lab.wait_until(lambda: "one" in listener.heard, timeout_sec=60)\n'
+        'print(runtime.domain_id, runtime.own_domain)'
+    )
+    assert (joined.error, joined.text) == ('', f'{domain_ids[0].strip()} False\n')
+    assert not one.run('lab.wait_until(lambda: "other" in listener.heard, timeout_sec=60)').error
+
+
+def test_second_participant_of_the_same_name_is_reported(
+    start_kernel: Callable[..., object],
+) -> None:
+    claim = domains.claim_domain()
+    env = {**LOCALHOST, 'ROS_DOMAIN_ID': str(claim.domain_id)}
+    one, other = start_kernel(**env), start_kernel(**env)
+    cell = one.run('WORD = "one"\n' + TALKER + 'talker = lab.spin(Talker())')
+    double = other.run('WORD = "other"\n' + TALKER + 'talker = lab.spin(Talker())')
+    said = f'Two nodes are called /talker in domain {claim.domain_id}'
+    one.wait_for_output(cell.msg_id, said)
+    other.wait_for_output(double.msg_id, said)
+    # Once: as many looks at the graph again, and no second report.
+    looks = (
+        'looks = runtime.entry_of(runtime.helper).callbacks\n'
+        'lab.wait_until(lambda: runtime.entry_of(runtime.helper).callbacks > looks + 2)'
+    )
+    assert not one.run(looks).error
+    assert one.wait_for_output(cell.msg_id, said).count('Two nodes are called') == 1
+    # When the other is gone and comes back, it is news again.
+    assert not other.run('lab.remove(talker)').error
+    assert not one.run(
+        'lab.wait_until(lambda: "/talker" not in runtime.foreign_nodes(), timeout_sec=60)\n'
+        + looks
+    ).error
+    assert not other.run('talker = lab.spin(Talker())').error
+    again = 'lab.wait_until(lambda: "/talker" in runtime.foreign_nodes(), timeout_sec=60)\n'
+    assert not one.run(again + looks).error
+    assert one.wait_for_output(cell.msg_id, said).count('Two nodes are called') == 2
+    claim.close()
+
+
+def test_a_name_too_long_for_a_socket_keeps_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    # 42 characters, 126 bytes.
+    name = (
+        'ロボットの動かし方を学ぶための最初の一歩' + 'とその次の一歩と道のり全部四十二文字.ipynb'
+    )
+    monkeypatch.setenv('JPY_SESSION_NAME', f'/home/me/{name}')
+    claim = domains.claim_domain()
+    told = domains.claimed_domains()[claim.domain_id]
+    claim.close()
+    assert told.endswith('四十二文字.ipynb') and name.endswith(told)
+
+
+def test_an_error_of_the_system_is_not_taken_for_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise OSError(errno.EMFILE, 'Too many open files')
+
+    monkeypatch.setattr(domains.socket, 'socket', refuse)
+    with pytest.raises(LabError, match='Too many open files'):
+        domains.claim_domain()
+
+
+def test_names_are_told_without_escape_codes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv('JPY_SESSION_NAME', '/me/\x1b[31mred\x1b[0m\nline.ipynb')
+    claim = domains.claim_domain()
+    assert domains.claimed_domains()[claim.domain_id] == '?[31mred?[0m?line.ipynb'
+    claim.close()
+    # Another program may have taken such a name without labkit.
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as other:
+        other.bind(f'\0labkit/notebook/{os.getuid()}/99/\x1b[2Jcleared'.encode())
+        assert domains.claimed_domains()[99] == '?[2Jcleared'
+
+
+def test_notebooks_of_other_users_are_not_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    claim = domains.claim_domain()
+    assert claim.domain_id in domains.claimed_domains()
+    monkeypatch.setattr(os, 'getuid', lambda: os.geteuid() + 1)
+    assert claim.domain_id not in domains.claimed_domains()
+    with pytest.raises(BlockingIOError):
+        domains.DomainClaim(claim.domain_id)
+    claim.close()
