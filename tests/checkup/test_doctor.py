@@ -8,14 +8,14 @@ from collections.abc import Callable, Iterator
 import pytest
 from visits import NAMES, Visit, look, visit
 
-from labkit import settings
+from labkit.background import domains
 from labkit.checkup.report import Line, Report
 
 
 @pytest.fixture
 def domain_id() -> Iterator[str]:
     """Give a domain that no other test or notebook has."""
-    claim = settings.claim_domain()
+    claim = domains.claim_domain()
     yield str(claim.domain_id)
     claim.close()
 

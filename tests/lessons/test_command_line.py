@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from labkit import settings
+from labkit.background import domains
 
 # Asks as a learner does, answers, and prints what came of each answer.
 SCRIPT = """
@@ -75,7 +75,7 @@ lab.processes().stop()
 
 @pytest.fixture
 def domain_id() -> Iterator[int]:
-    claim = settings.claim_domain()
+    claim = domains.claim_domain()
     yield claim.domain_id
     claim.close()
 
