@@ -31,6 +31,10 @@ def main(command: list[str]) -> int:
     Returns:
         Its exit code; as in a shell, 128 and the number of the signal that ended it.
     """
+    # Who wants the command to end only says so. A handler that waited for the end would wait in
+    # vain: it interrupts `child.wait()` below, which holds the lock that every wait needs.
+    asked = threading.Event()
+    signal.signal(signal.SIGTERM, lambda *_: asked.set())
     try:
         child = subprocess.Popen(
             command,
@@ -41,20 +45,21 @@ def main(command: list[str]) -> int:
     except OSError as error:
         print(f'{command[0]} can not be run: {error.strerror}', flush=True)
         return 127
-    threading.Thread(target=_watch, args=(child,), daemon=True).start()
-    signal.signal(signal.SIGTERM, lambda *_: _stop(child))
+    threading.Thread(target=_watch, args=(asked,), daemon=True).start()
+    threading.Thread(target=_stop, args=(child, asked), daemon=True).start()
     code = child.wait()
     _signal_all(child, signal.SIGKILL)  # whatever it has started and left behind
     return 128 - code if code < 0 else code
 
 
-def _watch(child: subprocess.Popen[bytes]) -> None:
+def _watch(asked: threading.Event) -> None:
     while os.read(sys.stdin.fileno(), 1):
         pass
-    _stop(child)
+    asked.set()
 
 
-def _stop(child: subprocess.Popen[bytes]) -> None:
+def _stop(child: subprocess.Popen[bytes], asked: threading.Event) -> None:
+    asked.wait()
     for number in (signal.SIGINT, signal.SIGKILL):
         _signal_all(child, number)
         with contextlib.suppress(subprocess.TimeoutExpired):
