@@ -3,18 +3,29 @@
 from __future__ import annotations
 
 from argparse import Namespace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from labkit.background import discovery
 from labkit.background.discovery import DISCOVERY_SEC, soon
 from labkit.errors import LabError, nearest
 from labkit.ros2.parser import Parser, positive_float
+from labkit.rosgraph.interfaces import type_name
+from labkit.rosgraph.matching import other_type_here
+from labkit.rosgraph.names import full_topic_name
+from labkit.rosgraph.refusals import Refusal, Refused
 from labkit.rosgraph.snapshot import node_names
 
 if TYPE_CHECKING:
     from rclpy.node import Node
 
-__all__ = ['add_discovery_options', 'asking_node', 'check_node_name', 'unknown']
+__all__ = [
+    'add_discovery_options',
+    'asking_node',
+    'check_node_name',
+    'full_name',
+    'other_type',
+    'unknown',
+]
 
 
 def add_discovery_options(parser: Parser) -> None:
@@ -54,6 +65,39 @@ def check_node_name(node: Node, name: str, *, timeout_sec: float | None = None) 
     if not soon(lambda: full_name in node_names(node), timeout_sec):
         raise LabError('Node not found', todo=unknown(full_name, node_names(node), 'node'))
     return full_name
+
+
+def full_name(name: str, node: Node) -> str:
+    """Return the full name of a topic or service, which need not exist.
+
+    Args:
+        name: The name as typed; the first slash may be missing.
+        node: The node to ask with.
+
+    Raises:
+        Refused: It is no name of a topic.
+    """
+    try:
+        return full_topic_name(name, node)
+    except LabError as error:
+        reason = Refusal.REPEATED_SLASH if '//' in name else Refusal.BAD_NAME
+        raise Refused(error.message, todo=error.todo, reason=reason) from error
+
+
+def other_type(node: Node, topic: str, msg_type: Any, error: Exception) -> Refused:
+    """Return what to raise when a topic can't be used with a type.
+
+    Args:
+        node: The node to ask with.
+        topic: Full name of the topic.
+        msg_type: The type that was asked for.
+        error: What ROS has said. It is shown if nobody here uses another type.
+    """
+    why = other_type_here(node, topic, msg_type)
+    return Refused(
+        f'{topic} can not be used with messages of {type_name(msg_type)}. {why or error}',
+        reason=Refusal.OTHER_TYPE if why else Refusal.OTHER,
+    )
 
 
 def unknown(name: str, names: list[str], what: str) -> str:

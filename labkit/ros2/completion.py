@@ -63,28 +63,13 @@ def _candidates(words: list[str], last: str) -> Iterable[str]:
 
 def _arguments(parser: Parser, words: list[str], last: str) -> Iterable[str]:
     """Return what may stand at the end of the words after the verb."""
-    options = {name: action for action in parser.actions for name in action.option_strings}
-    positionals = [action for action in parser.actions if not action.option_strings]
-    known = Namespace()
-    waiting: argparse.Action | None = None
-    count = 0
-    for word in words:
-        if waiting is not None:
-            setattr(known, waiting.dest, word)
-            waiting = None
-        elif word in options:
-            action = options[word]
-            waiting = action if action.nargs is None else None
-        elif (not word.startswith('-') or word == '-') and count < len(positionals):
-            setattr(known, positionals[count].dest, word)
-            several = positionals[count].nargs in ('+', '*', argparse.REMAINDER)
-            count += 0 if several else 1
-    if waiting is not None:
-        return _words_for(waiting, known)
-    if last.startswith('-'):
-        shown = (n for n, action in options.items() if action.help != argparse.SUPPRESS)
-        return [name for name in shown if name.startswith('--') or len(last) < 2]
-    return _words_for(positionals[count], known) if count < len(positionals) else ()
+    known, wanted = parser.guess(words)
+    in_option = wanted is not None and bool(wanted.option_strings)
+    if last.startswith('-') and not in_option:
+        shown = [action for action in parser.actions if action.help != argparse.SUPPRESS]
+        names = [name for action in shown for name in action.option_strings]
+        return [name for name in names if name.startswith('--') or len(last) < 2]
+    return _words_for(wanted, known) if wanted is not None else ()
 
 
 def _words_for(action: argparse.Action, known: Namespace) -> Iterable[str]:

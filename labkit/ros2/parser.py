@@ -13,7 +13,8 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
-from labkit.errors import LabError, nearest
+from labkit.errors import nearest
+from labkit.rosgraph.refusals import Refusal, Refused
 
 __all__ = [
     'Command',
@@ -30,7 +31,7 @@ Complete = Callable[[argparse.Namespace], Iterable[str]]
 """Return the words that may stand at a place of the line, given what stands before it."""
 
 
-class Usage(LabError):
+class Usage(Refused):
     """Report that a line can't be understood. Exit code 2, as with the real `ros2`."""
 
 
@@ -90,12 +91,40 @@ class Parser(argparse.ArgumentParser):
         # Options may stand anywhere, also before a positional that may be left out.
         found, others = self.parse_known_intermixed_args(list(words))
         if others:
-            raise self._refuse(others)
+            raise self._refuse(others, found)
         return found
+
+    def guess(self, words: Sequence[str]) -> tuple[argparse.Namespace, argparse.Action | None]:
+        """Tell what words mean that are perhaps not complete, or wrong. Nothing is refused.
+
+        Args:
+            words: The words after the verb.
+
+        Returns:
+            What is known by the names of the arguments, and which one the next word would be.
+        """
+        options = {name: action for action in self._actions for name in action.option_strings}
+        positionals = [action for action in self._actions if not action.option_strings]
+        known = argparse.Namespace()
+        waiting: argparse.Action | None = None
+        for word in words:
+            if waiting is not None:
+                setattr(known, waiting.dest, word)
+                waiting = None
+            elif word in options or word.startswith('--'):
+                # An option may be cut short, as long as it is clear which one it is.
+                meant = [action for name, action in options.items() if name.startswith(word)]
+                action = options.get(word) or next(iter(meant), None)
+                waiting = action if action is not None and action.nargs is None else None
+            elif (not word.startswith('-') or word == '-') and positionals:
+                setattr(known, positionals[0].dest, word)
+                if positionals[0].nargs not in ('+', '*', argparse.REMAINDER):
+                    del positionals[0]
+        return known, waiting or next(iter(positionals), None)
 
     def error(self, message: str) -> NoReturn:
         """Raise a `Usage` error; called by argparse."""
-        raise Usage(f'{self.prog}: {message}', todo=self.usage_line)
+        raise Usage(f'{self.prog}: {message}', todo=self.usage_line, reason=Refusal.BAD_ARGUMENT)
 
     def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
         """End the line; called by argparse after it has shown help."""
@@ -112,18 +141,26 @@ class Parser(argparse.ArgumentParser):
                 words += [f'[{name}]' if left_out else name]
         return f'usage: {" ".join(words)}'
 
-    def _refuse(self, others: list[str]) -> Usage:
+    def _refuse(self, others: list[str], found: argparse.Namespace) -> Usage:
         options = [name for action in self._actions for name in action.option_strings]
         wrong = next((word for word in others if word.startswith('-')), '')
         if wrong:
             near = nearest(wrong.partition('=')[0], options)
             hint = f' Did you mean {near!r}?' if near else ''
-            return Usage(f'{self.prog} has no option {wrong!r}.{hint}', todo=self.usage_line)
+            return Usage(
+                f'{self.prog} has no option {wrong!r}.{hint}',
+                todo=self.usage_line,
+                reason=Refusal.UNKNOWN_OPTION,
+            )
         rest = ' '.join(others)
-        hint = ''
-        if set(rest) & set('{}[]:'):
+        hint, reason = '', Refusal.TOO_MANY_WORDS
+        # Of `data: 1` the first word has been taken for all of the YAML.
+        if set(rest) & set('{}[]:') or str(getattr(found, 'values', '')).endswith(':'):
             hint = ' YAML goes in quotation marks: "{data: 1}"'
-        return Usage(f'{self.prog}: {rest!r} is too much.{hint}', todo=self.usage_line)
+            reason = Refusal.QUOTES_MISSING
+        return Usage(
+            f'{self.prog}: {rest!r} is too much.{hint}', todo=self.usage_line, reason=reason
+        )
 
 
 @dataclass(frozen=True)
@@ -186,6 +223,7 @@ class Command:
         raise Usage(
             f'ros2 {self.name} has no verb {name!r}.{hint}',
             todo=f'usage: ros2 {self.name} <verb>   with one of: {", ".join(sorted(names))}',
+            reason=Refusal.UNKNOWN_VERB,
         )
 
     def help(self) -> str:

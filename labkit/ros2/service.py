@@ -14,13 +14,14 @@ from labkit import settings
 from labkit.background.discovery import alone, soon
 from labkit.background.service_calls import ServiceCalls
 from labkit.errors import LabError
-from labkit.ros2.asking import add_discovery_options, asking_node, unknown
+from labkit.ros2.asking import add_discovery_options, asking_node, full_name, unknown
 from labkit.ros2.graph_words import service_names, service_types
 from labkit.ros2.parser import Command, Parser, Usage, Verb, positive_float
 from labkit.rosgraph import interfaces
 from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.message_yaml import fill, prototype, read_yaml
-from labkit.rosgraph.names import full_topic_name, is_hidden
+from labkit.rosgraph.names import is_hidden
+from labkit.rosgraph.refusals import Refusal, Refused
 
 __all__ = ['COMMAND']
 
@@ -68,7 +69,7 @@ def call(args: Namespace) -> None:
     request = srv_type.Request()
     fill(request, read_yaml(_values(args)))
     node = asking_node(args)
-    name = full_topic_name(args.service_name, node)
+    name = full_name(args.service_name, node)
     _check_type(node, name, type_name(srv_type))
     limit = settings.audience().patience_sec
     with ServiceCalls(node, srv_type, name) as service:
@@ -91,7 +92,9 @@ def _check_type(node: Node, name: str, wanted: str) -> None:
     soon(lambda: name in dict(node.get_service_names_and_types()), 0.0 if alone() else 0.3)
     types = dict(node.get_service_names_and_types()).get(name, [wanted])
     if wanted not in types:
-        raise LabError(f'{name} is a {", ".join(types)}, not a {wanted}.')
+        raise Refused(
+            f'{name} is a {", ".join(types)}, not a {wanted}.', reason=Refusal.OTHER_TYPE
+        )
     if not node.count_services(name):
         names = [other for other, _ in _services(node, include_hidden=False)]
         hint = unknown(name, names, 'service')

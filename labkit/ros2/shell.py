@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from labkit import settings
 from labkit.errors import LabError, nearest
 from labkit.ros2.parser import Command, Done, Usage, Verb, table
+from labkit.rosgraph.refusals import Refusal, Refused
 
 __all__ = ['COMMANDS', 'Ran', 'command', 'execute', 'history', 'run_line', 'split']
 
@@ -41,13 +42,25 @@ _SHELL_SIGNS = {'|', '||', '&', '&&', ';', '>', '>>', '<', '<<'}
 class Ran:
     """A command that was run.
 
+    A judge takes the last one of `history` that has to do with its exercise. If `reason` is one
+    that it has an explanation for, it explains that; if `topic` is not its own, the command went
+    elsewhere; otherwise it shows `complaint`. It need not read the words, nor the complaint.
+
+        tried = [ran for ran in history if ran.words[:2] == ('topic', 'pub')]
+        if tried and tried[-1].reason is Refusal.SPACE_AFTER_COLON: ...
+
     Attributes:
         words: The words after `ros2`.
         complaint: What was said to be wrong with it, '' if nothing was.
+        reason: Why it was refused, None if it was not.
+        topic: Full name of the topic that it named, '' if it named none. Of a command that was
+            refused as far as can be told, so it may be no name that a topic can have.
     """
 
     words: tuple[str, ...]
     complaint: str
+    reason: Refusal | None = None
+    topic: str = ''
 
 
 history: deque[Ran] = deque(maxlen=100)
@@ -66,7 +79,7 @@ def run_line(line: str) -> int:
     try:
         words = split(line)
     except Usage as error:
-        return _complain(tuple(line.split()), 2, str(error))
+        return _complain(line.split(), 2, error)
     if _ends_in_background(line, words):
         return execute(words[:-1], background=True)
     return execute(words)
@@ -89,7 +102,9 @@ def split(line: str) -> list[str]:
             words += [word]
     except ValueError as error:
         raise Usage(
-            f'The line can not be read: {error}.', todo='A quotation mark " or \' is missing.'
+            f'The line can not be read: {error}.',
+            todo='A quotation mark " or \' is missing.',
+            reason=Refusal.QUOTE_NOT_CLOSED,
         ) from error
     sent = words[:-1] if _ends_in_background(line, words) else words
     sign = next((word for word in sent if word in _SHELL_SIGNS), '')
@@ -97,6 +112,7 @@ def split(line: str) -> list[str]:
         raise Usage(
             f'{sign!r} belongs to a terminal; %ros2 runs one command.',
             todo='Leave it out, put it in quotation marks, or use a terminal: !ros2 ...',
+            reason=Refusal.TERMINAL_SIGN,
         )
     return words
 
@@ -112,7 +128,6 @@ def execute(words: Sequence[str], *, background: bool = False) -> int:
         The exit code: 0 if all went well, 2 if the words can't be understood or it was
         interrupted, else 1.
     """
-    code = 1
     try:
         result = _start(list(words)) if background else _run(list(words))
     except Done:
@@ -120,23 +135,37 @@ def execute(words: Sequence[str], *, background: bool = False) -> int:
     except KeyboardInterrupt:
         result = 2  # SIGINT, as the real one
     except Usage as error:
-        result, code = str(error), 2
+        return _complain(words, 2, error)
     except LabError as error:
-        result = str(error)
+        return _complain(words, 1, error)
     except BrokenPipeError:
         raise
     except Exception as error:  # never a traceback: nobody who types a command can read it
-        result = f'{type(error).__name__}: {error}'
+        return _complain(words, 1, LabError(f'{type(error).__name__}: {error}'))
     if isinstance(result, str):
-        return _complain(tuple(words), code, result)
-    history.append(Ran(tuple(words), ''))
+        return _complain(words, 1, LabError(result))
+    history.append(Ran(tuple(words), '', topic=_topic_in(words)))
     return int(result or 0)
 
 
-def _complain(words: tuple[str, ...], code: int, text: str) -> int:
-    history.append(Ran(words, text))
-    print(text, file=sys.stderr)
+def _complain(words: Sequence[str], code: int, error: LabError) -> int:
+    reason = error.reason if isinstance(error, Refused) else Refusal.OTHER
+    history.append(Ran(tuple(words), str(error), reason, _topic_in(words)))
+    print(error, file=sys.stderr)
     return code
+
+
+def _topic_in(words: Sequence[str]) -> str:
+    """Return the topic that a command names, '' if it names none."""
+    try:
+        chosen = command(words[0])
+        _, rest = _options_before_verb(chosen, list(words[1:]))
+        verb = chosen.verb(rest[0])
+    except (LabError, IndexError):
+        return ''
+    known, _ = verb.parser(chosen.name).guess(rest[1:])
+    name = str(getattr(known, 'topic_name', ''))
+    return name if name.startswith('/') or not name else f'/{name}'
 
 
 def command(name: str) -> Command:
@@ -152,12 +181,14 @@ def command(name: str) -> Command:
         raise Usage(
             f'ros2 {name} is part of a full installation of ROS 2, but not of this course.',
             todo=f'Here: {", ".join(sorted(COMMANDS))}.',
+            reason=Refusal.UNKNOWN_COMMAND,
         )
     near = nearest(name, COMMANDS)
     hint = f' Did you mean {near!r}?' if near else ''
     raise Usage(
         f'ros2 has no command {name!r}.{hint}',
         todo=f'usage: ros2 <command>   with one of: {", ".join(sorted(COMMANDS))}',
+        reason=Refusal.UNKNOWN_COMMAND,
     )
 
 
@@ -201,7 +232,10 @@ def _options_before_verb(chosen: Command, words: list[str]) -> tuple[list[str], 
         if words[count] not in known:
             near = nearest(words[count], known)
             hint = f' Did you mean {near!r}?' if near else ''
-            raise Usage(f'ros2 {chosen.name} has no option {words[count]!r}.{hint}')
+            raise Usage(
+                f'ros2 {chosen.name} has no option {words[count]!r}.{hint}',
+                reason=Refusal.UNKNOWN_OPTION,
+            )
         count += 1
     return words[:count], words[count:]
 

@@ -20,10 +20,8 @@ from rclpy.qos import QoSProfile, qos_policy_name_from_kind
 from labkit import settings
 from labkit.background.compat import RCLError
 from labkit.errors import LabError
-from labkit.ros2.asking import unknown
+from labkit.ros2.asking import other_type, unknown
 from labkit.ros2.parser import Parser, Usage, positive_float, positive_int
-from labkit.rosgraph.interfaces import type_name
-from labkit.rosgraph.matching import other_type_here
 from labkit.rosgraph.names import is_hidden
 
 __all__ = [
@@ -231,10 +229,7 @@ def subscribed(
         except UnsupportedEventTypeError:
             subscription = node.create_subscription(msg_type, topic, callback, profile, raw=raw)
     except (RCLError, LabError) as error:
-        why = other_type_here(node, topic, msg_type)
-        raise LabError(
-            f'{topic} can not be used with messages of {type_name(msg_type)}. {why or error}'
-        ) from error
+        raise other_type(node, topic, msg_type, error) from error
     try:
         yield
     finally:

@@ -13,7 +13,7 @@ from rclpy.node import Node
 from labkit import settings
 from labkit.background.discovery import soon
 from labkit.errors import LabError, nearest
-from labkit.ros2.asking import add_discovery_options, asking_node
+from labkit.ros2.asking import add_discovery_options, asking_node, full_name
 from labkit.ros2.graph_words import topic_names, topic_types
 from labkit.ros2.parser import (
     Parser,
@@ -29,7 +29,6 @@ from labkit.rosgraph import interfaces
 from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.matching import why_silent
 from labkit.rosgraph.message_yaml import field_paths, to_csv, to_yaml
-from labkit.rosgraph.names import full_topic_name
 
 __all__ = ['ECHO']
 
@@ -45,7 +44,7 @@ def echo(args: Namespace) -> str | None:
         )
     stop = Stop(1 if args.once else args.count, args.timeout)
     node = asking_node(args)
-    topic = full_topic_name(args.topic_name, node)
+    topic = full_name(args.topic_name, node)
     msg_type = _type_of(node, topic, args, stop)
     if msg_type is None:
         return f'No message came: {topic} has not appeared.'

@@ -23,16 +23,15 @@ from labkit.background.discovery import soon
 from labkit.background.nodes import destroy_node
 from labkit.background.runtime import runtime
 from labkit.errors import LabError, nearest
-from labkit.ros2.asking import add_discovery_options, asking_node
+from labkit.ros2.asking import add_discovery_options, asking_node, full_name, other_type
 from labkit.ros2.graph_words import topic_names, topic_types
 from labkit.ros2.parser import Parser, Usage, Verb, positive_float, unsigned_int
 from labkit.ros2.qos_options import add_qos_options, profile_from
 from labkit.ros2.streams import MAX_SHOWN, Stop, tell
 from labkit.rosgraph import interfaces
 from labkit.rosgraph.interfaces import type_name
-from labkit.rosgraph.matching import other_type_here
 from labkit.rosgraph.message_yaml import fill, prototype, read_yaml
-from labkit.rosgraph.names import full_topic_name, is_hidden
+from labkit.rosgraph.names import is_hidden
 
 __all__ = ['PUB']
 
@@ -57,7 +56,7 @@ def pub(args: Namespace) -> str | None:
     message = msg_type()
     setters = fill(message, read_yaml(_values(args)))
     asking = asking_node(args)
-    topic = full_topic_name(args.topic_name, asking)
+    topic = full_name(args.topic_name, asking)
     node = _node(args.node_name, asking)
     try:
         publisher = _publisher(node, topic, msg_type, args)
@@ -188,10 +187,7 @@ def _publisher(node: Node, topic: str, msg_type: Any, args: Namespace) -> Publis
     try:
         return node.create_publisher(msg_type, topic, profile_from(args))
     except (RCLError, LabError) as error:
-        why = other_type_here(node, topic, msg_type)
-        raise LabError(
-            f'{topic} can not be used with messages of {type_name(msg_type)}. {why or error}'
-        ) from error
+        raise other_type(node, topic, msg_type, error) from error
 
 
 def _values(args: Namespace) -> str:

@@ -15,7 +15,7 @@ from rclpy.time import Time
 
 from labkit.background.discovery import soon
 from labkit.errors import LabError
-from labkit.ros2.asking import add_discovery_options, asking_node
+from labkit.ros2.asking import add_discovery_options, asking_node, full_name
 from labkit.ros2.graph_words import topic_names
 from labkit.ros2.parser import Parser, Usage, Verb, positive_int
 from labkit.ros2.streams import (
@@ -28,7 +28,6 @@ from labkit.ros2.streams import (
 from labkit.rosgraph import interfaces
 from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.matching import why_silent
-from labkit.rosgraph.names import full_topic_name
 
 __all__ = ['BW', 'DELAY', 'HZ']
 
@@ -152,7 +151,7 @@ def _measure(
     """Listen to a topic, and print a report each second in which something came."""
     stop = Stop(args.count, args.timeout)
     node = asking_node(args)
-    topic = full_topic_name(topic, node)
+    topic = full_name(topic, node)
     soon(lambda: dict(node.get_topic_names_and_types()).get(topic))
     name = wait_for_type(node, topic, stop)
     if name is None:

@@ -12,6 +12,7 @@ from typing import Any
 from ament_index_python import get_resource, get_resources, has_resource
 
 from labkit.errors import LabError, nearest
+from labkit.rosgraph.refusals import Refusal, Refused
 
 __all__ = [
     'KINDS',
@@ -88,7 +89,7 @@ def check_exists(name: str, kind: str = '') -> str:
         kind: `'msg'` or `'srv'`; any of them if empty.
 
     Raises:
-        LabError: There is none of that name. It says which one is near.
+        Refused: There is none of that name. It says which one is near.
     """
     parts = name.split('/')
     if kind and len(parts) == 2:
@@ -105,14 +106,18 @@ def check_exists(name: str, kind: str = '') -> str:
         todo = f'Such a name has three parts: std_msgs/{kind or "msg"}/String'
     else:
         todo = f'Did you mean {near!r}?' if near else 'ros2 interface list shows all of them.'
-    raise LabError(f'The passed {what} is invalid: {name!r} is not known.', todo=todo)
+    raise Refused(
+        f'The passed {what} is invalid: {name!r} is not known.',
+        todo=todo,
+        reason=Refusal.UNKNOWN_TYPE,
+    )
 
 
 def message_class(name: str) -> Any:
     """Return the class of a message type, such as `std_msgs/msg/String` or `std_msgs/String`.
 
     Raises:
-        LabError: There is none of that name.
+        Refused: There is none of that name.
     """
     return _class(check_exists(name, 'msg'))
 
@@ -121,7 +126,7 @@ def service_class(name: str) -> Any:
     """Return the class of a service type, such as `std_srvs/srv/Trigger`.
 
     Raises:
-        LabError: There is none of that name.
+        Refused: There is none of that name.
     """
     return _class(check_exists(name, 'srv'))
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import array
 import math
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from typing import Any
 
 import numpy
@@ -23,8 +23,9 @@ from rosidl_parser.definition import (  # type: ignore[import-untyped]
     NamespacedType,
 )
 
-from labkit.errors import LabError, nearest
+from labkit.errors import nearest
 from labkit.rosgraph.interfaces import message_class, type_name
+from labkit.rosgraph.refusals import Refusal, Refused
 
 __all__ = ['field_paths', 'fill', 'prototype', 'read_yaml', 'to_csv', 'to_yaml']
 
@@ -73,23 +74,25 @@ def read_yaml(text: str) -> dict[str, Any]:
     """Return what a text in YAML says: names of fields and their values.
 
     Raises:
-        LabError: It is not YAML, or not a dictionary.
+        Refused: It is not YAML, or not a dictionary.
     """
     try:
         values = yaml.safe_load(text)
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         problem = getattr(error, 'problem', None) or str(error).splitlines()[0]
-        raise LabError(
+        raise Refused(
             f'The values can not be read as YAML: {problem}: {text!r}',
             todo='Write the name of the field, a colon, a space and the value: "{data: 1}"',
+            reason=Refusal.NOT_YAML,
         ) from error
     if values is None:
         return {}
     if not isinstance(values, dict):
         hint = ' A space is missing after the colon.' if ':' in text else ''
-        raise LabError(
+        raise Refused(
             f'The passed value needs to be a dictionary in YAML format, but it is {text!r}.{hint}',
             todo='Write the name of the field, a colon, a space and the value: "{data: 1}"',
+            reason=Refusal.SPACE_AFTER_COLON if hint else Refusal.NO_FIELDS,
         )
     return values
 
@@ -105,13 +108,15 @@ def fill(message: Any, values: dict[str, Any]) -> list[Setter]:
         Functions that set the time fields that are to hold the present time, given that time.
 
     Raises:
-        LabError: A field does not exist, or can't hold its value.
+        Refused: A field does not exist, or can't hold its value.
     """
     setters: list[Setter] = []
     try:
         _fill(message, values, setters, '')
-    except LabError as error:
-        raise LabError(f'Failed to populate field: {error.message}', todo=error.todo) from None
+    except Refused as error:
+        raise Refused(
+            f'Failed to populate field: {error.message}', todo=error.todo, reason=error.reason
+        ) from None
     return setters
 
 
@@ -194,21 +199,29 @@ def _fill(message: Any, values: Any, setters: list[Setter], start: str) -> None:
     fields = dict(zip(message.get_fields_and_field_types(), message.SLOT_TYPES, strict=True))
     msg_type = type_name(type(message))
     if not isinstance(values, dict):
-        raise LabError(
+        raise Refused(
             f'{_field(start)}a {msg_type} needs a value for each field, but got {values!r}.',
             todo=f'Its fields: {", ".join(fields)}. Write {{{next(iter(fields), "data")}: ...}}',
+            reason=Refusal.FIELDS_WANTED,
         )
     for name, value in values.items():
         if name not in fields:
-            near = nearest(str(name), fields)
-            hint = f'Did you mean {near!r}?' if near else f'Its fields: {", ".join(fields)}.'
-            if str(name).partition(':')[0] in fields:
-                spaced = str(name).replace(':', ': ')
-                hint = f'A space is missing after the colon. Write {spaced!r}.'
-            raise LabError(f'{_field(start)}{msg_type} has no field {str(name)!r}.', todo=hint)
+            raise _no_field(f'{_field(start)}{msg_type}', str(name), fields)
         path = f'{start}{name}'
         if not _fill_time(message, name, value, setters):
             setattr(message, name, _value(fields[name], value, setters, path))
+
+
+def _no_field(owner: str, name: str, fields: Collection[str]) -> Refused:
+    message, reason = f'{owner} has no field {name!r}.', Refusal.NO_SUCH_FIELD
+    if name.partition(':')[0] in fields:
+        spaced = name.replace(':', ': ')
+        hint = f'A space is missing after the colon. Write {spaced!r}.'
+        reason = Refusal.SPACE_AFTER_COLON
+    else:
+        near = nearest(name, fields)
+        hint = f'Did you mean {near!r}?' if near else f'Its fields: {", ".join(fields)}.'
+    return Refused(message, todo=hint, reason=reason)
 
 
 def _fill_time(message: Any, name: str, value: Any, setters: list[Setter]) -> bool:
@@ -239,13 +252,13 @@ def _value(slot: Any, value: Any, setters: list[Setter], path: str) -> Any:
 
 def _sequence(slot: AbstractNestedType, value: Any, setters: list[Setter], path: str) -> Any:
     if not isinstance(value, list):
-        raise _refused(path, 'a list in square brackets', value)
+        raise _refused(path, 'a list in square brackets', value, Refusal.LIST_WANTED)
     size = getattr(slot, 'size', None)
     if size is not None and len(value) != size:
-        raise _refused(path, f'a list of {size} values', value)
+        raise _refused(path, f'a list of {size} values', value, Refusal.LIST_WANTED)
     most = getattr(slot, 'maximum_size', None)
     if most is not None and len(value) > most:
-        raise _refused(path, f'a list of at most {most} values', value)
+        raise _refused(path, f'a list of at most {most} values', value, Refusal.LIST_WANTED)
     return [
         _value(slot.value_type, item, setters, f'{path}[{index}]')
         for index, item in enumerate(value)
@@ -254,19 +267,19 @@ def _sequence(slot: AbstractNestedType, value: Any, setters: list[Setter], path:
 
 def _string(slot: AbstractGenericString, value: Any, path: str) -> str:
     if isinstance(value, (dict, list)) or value is None:
-        raise _refused(path, 'a text', value)
+        raise _refused(path, 'a text', value, Refusal.NOT_A_TEXT)
     # YAML reads 5 as a number and yes as a truth value; in a text field they are what was typed.
     text = str(value)
     most = getattr(slot, 'maximum_size', None)
     if most is not None and len(text) > most:
-        raise _refused(path, f'a text of at most {most} characters', value)
+        raise _refused(path, f'a text of at most {most} characters', value, Refusal.NOT_A_TEXT)
     return text
 
 
 def _basic(typename: str, value: Any, path: str) -> Any:
     if typename == 'boolean':
         if not isinstance(value, bool):
-            raise _refused(path, 'true or false', value)
+            raise _refused(path, 'true or false', value, Refusal.NOT_TRUE_OR_FALSE)
         return value
     if typename in ('float', 'double'):
         return _real(typename, value, path)
@@ -275,16 +288,18 @@ def _basic(typename: str, value: Any, path: str) -> Any:
     least, most = _range(typename)
     number = _number(value, int)
     if number is None or not least <= number <= most:
-        raise _refused(path, f'a whole number from {least} to {most}', value)
+        reason = Refusal.NOT_A_WHOLE_NUMBER if number is None else Refusal.OUT_OF_RANGE
+        raise _refused(path, f'a whole number from {least} to {most}', value, reason)
     return bytes([number]) if typename == 'octet' else number
 
 
 def _real(typename: str, value: Any, path: str) -> float:
     number = _number(value, float)
     if number is None:
-        raise _refused(path, 'a number', value)
+        raise _refused(path, 'a number', value, Refusal.NOT_A_NUMBER)
     if typename == 'float' and math.isfinite(number) and abs(number) > _MAX_FLOAT:
-        raise _refused(path, f'a number of at most {_MAX_FLOAT:.3g} in size', value)
+        wanted = f'a number of at most {_MAX_FLOAT:.3g} in size'
+        raise _refused(path, wanted, value, Refusal.OUT_OF_RANGE)
     return float(number)
 
 
@@ -318,8 +333,10 @@ def _range(typename: str) -> tuple[int, int]:
     return -(2 ** (bits - 1)), 2 ** (bits - 1) - 1
 
 
-def _refused(path: str, wanted: str, value: Any) -> LabError:
-    return LabError(f'The {path!r} field must be {wanted}, but got {value!r}.')
+def _refused(path: str, wanted: str, value: Any, reason: Refusal) -> Refused:
+    if isinstance(value, list) and reason in (Refusal.NOT_A_NUMBER, Refusal.NOT_A_WHOLE_NUMBER):
+        reason = Refusal.LIST_FOR_NUMBER
+    return Refused(f'The {path!r} field must be {wanted}, but got {value!r}.', reason=reason)
 
 
 def _field(start: str) -> str:
