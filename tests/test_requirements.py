@@ -1,0 +1,151 @@
+"""What is imported is asked for by name, and what is asked for is used."""
+
+from __future__ import annotations
+
+import ast
+import importlib.metadata
+import json
+import re
+import sys
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+from test_layers import imports
+
+from labkit.setup.requirements import applicable
+
+ROOT = Path(__file__).resolve().parent.parent
+ENVIRONMENT, TESTS = 'environment.txt', 'tests/requirements.txt'
+# Packages that need not be imported to be used, and what uses them.
+USED_BY_NAME = {
+    'coverage': '`labkit test --coverage` runs it',
+    'flit-core': 'pyproject.toml names it: it builds labkit',
+    'ipykernel': 'the kernelspec of the lessons starts it',
+    'ipywidgets': 'anywidget builds on it; the doctor compares its version',
+    'jsonschema': 'a later one would overwrite files of lark-parser',
+    'jupyterlab': '`labkit lab` starts it',
+    'mypy': '`labkit test` runs it',
+    'pip': '`%pip` runs it',
+    'pytest-timeout': 'the option --timeout of pytest',
+    'pytest-xdist': 'the option -n of pytest',
+    'ros-jazzy-common-interfaces': 'a set: its packages are imported',
+    'ros-jazzy-rclpy': 'a set: its packages are imported',
+    'ruff': '`labkit test` runs it',
+    'types-pyyaml': 'mypy reads it',
+    'uv': '`labkit lab` runs it where it is there',
+}
+
+
+def normal(name: str) -> str:
+    """Return the name of a package in the one form that all tools agree on."""
+    return re.sub(r'[-_.]+', '-', name).lower()
+
+
+@cache
+def asked_for(file: str) -> tuple[str, ...]:
+    """Return the packages in the first part of a file, which gives a reason for each."""
+    text, found, _ = (ROOT / file).read_text().partition('\n# What those need\n')
+    assert found, f'{file} has no second part'
+    lines = applicable(text.splitlines(), tuple(sys.version_info[:3]))
+    return tuple(normal(re.split(r'[\[=]', line)[0]) for line in lines if line != '-e .')
+
+
+@cache
+def packages_of(module: str) -> frozenset[str]:
+    """Return the packages that a module may come from."""
+    found = importlib.metadata.packages_distributions().get(module, ())
+    return frozenset(map(normal, found))
+
+
+@cache
+def ros() -> frozenset[str]:
+    """Return the packages that the sets of ROS packages consist of."""
+    found: set[str] = set()
+    left = [name for name in asked_for(ENVIRONMENT) if name.startswith('ros-jazzy-')]
+    while left:
+        name = left.pop()
+        if name.startswith('ros-') and name not in found:
+            found.add(name)
+            needed = importlib.metadata.requires(name) or []
+            left += [normal(re.split(r'[\[<>=!~; ]', line)[0]) for line in needed]
+    return frozenset(found)
+
+
+def code_of(path: Path) -> Iterator[ast.Module]:
+    """Return the code of a module, or of each cell of a notebook without its magics."""
+    if path.suffix == '.py':
+        yield ast.parse(path.read_text())
+        return
+    for cell in json.loads(path.read_text())['cells']:
+        if cell['cell_type'] == 'code':
+            source = re.sub(r'(?m)^(\s*)[%!].*', r'\1pass', ''.join(cell['source']))
+            yield ast.parse(source, str(path))
+
+
+def third_party(folder: str) -> dict[str, str]:
+    """Return the modules that a folder imports and that come with packages: name -> a place."""
+    here = {path.stem for path in (ROOT / 'tests').rglob('*.py')}
+    known = {*sys.stdlib_module_names, *here, 'labkit', 'labkit?', 'tests', 'demo', '?'}
+    found = {}
+    for path in sorted((ROOT / folder).rglob('*')):
+        if path.suffix in ('.py', '.ipynb') and '.ipynb_checkpoints' not in path.parts:
+            for tree in code_of(path):
+                for one in imports(tree):
+                    module = one.target.partition('.')[0]
+                    if module.isidentifier() and module not in known:
+                        found[module] = f'{path.relative_to(ROOT)}, line {one.line}'
+    return found
+
+
+@pytest.mark.parametrize(
+    ('folder', 'files'),
+    [
+        ('labkit', [ENVIRONMENT]),
+        ('notebooks', [ENVIRONMENT]),
+        ('tests', [ENVIRONMENT, TESTS]),
+    ],
+)
+def test_what_is_imported_is_asked_for(folder: str, files: list[str]) -> None:
+    modules = third_party(folder)
+    assert modules, 'no import found'
+    known = {*ros(), *(name for file in files for name in asked_for(file))}
+    lost = [
+        f'{place}: {module} comes with {" or ".join(packages_of(module)) or "nothing"}'
+        for module, place in modules.items()
+        if not packages_of(module) & known
+    ]
+    assert not lost, '\n'.join([f'Name these in the first part of {files[-1]}:', *lost])
+
+
+def test_what_is_asked_for_is_used() -> None:
+    used = {
+        name
+        for folder in ('labkit', 'notebooks', 'tests')
+        for module in third_party(folder)
+        for name in packages_of(module)
+    }
+    asked = {*asked_for(ENVIRONMENT), *asked_for(TESTS)}
+    assert asked - used - set(USED_BY_NAME) == set(), 'nothing uses these'
+    assert set(USED_BY_NAME) - asked == set(), 'these are not asked for any more'
+
+
+@pytest.mark.parametrize('file', [ENVIRONMENT, TESTS])
+def test_each_package_that_is_asked_for_has_a_reason(file: str) -> None:
+    first = (ROOT / file).read_text().partition('\n# What those need\n')[0]
+    reasons: dict[str, str] = {}
+    for line in first.splitlines():
+        if line and not line.startswith(('#', ' ')):
+            name, _, reason = line.partition('#')
+            name = normal(re.split(r'[\[= ]', name)[0])
+            reasons[name] = reasons.get(name, '') + reason.strip()
+    assert [name for name, reason in reasons.items() if not reason] == []
+
+
+def test_no_package_is_in_both_files() -> None:
+    found = []
+    for file in (ENVIRONMENT, TESTS):
+        lines = applicable((ROOT / file).read_text().splitlines(), tuple(sys.version_info[:3]))
+        found.append({normal(re.split(r'[\[=]', line)[0]) for line in lines})
+    assert found[0] & found[1] == set()
