@@ -185,9 +185,25 @@ class Kernel:
         """What the kernel's process wrote past the notebook (C code, its last words)."""
         return (self.folder / 'kernel.log').read_text(errors='replace')
 
-    def start(self, code: str) -> str:
-        """Start a cell and return its request id at once; see `finish`."""
-        return self._client.execute(code, allow_stdin=False, stop_on_error=False)
+    def start(self, code: str, cell_id: str = '') -> str:
+        """Start a cell and return its request id at once; see `finish`.
+
+        Args:
+            code: The cell's code.
+            cell_id: Its id in the notebook, as JupyterLab sends it along.
+        """
+        content = {
+            'code': code,
+            'silent': False,
+            'store_history': True,
+            'user_expressions': {},
+            'allow_stdin': False,
+            'stop_on_error': False,
+        }
+        metadata = {'cellId': cell_id} if cell_id else None
+        request = self._client.session.msg('execute_request', content, metadata=metadata)
+        self._client.shell_channel.send(request)
+        return str(request['header']['msg_id'])
 
     def finish(self, msg_id: str, timeout: float = TIMEOUT_SEC) -> Result:
         """Wait for the end of a started cell."""
@@ -210,9 +226,9 @@ class Kernel:
         traceback = re.sub(r'\x1b\[[\d;]*m', '', '\n'.join(errors[0]['traceback']))
         return Result(msg_id, outputs, f'{errors[0]["ename"]}: {errors[0]["evalue"]}', traceback)
 
-    def run(self, code: str, timeout: float = TIMEOUT_SEC) -> Result:
+    def run(self, code: str, timeout: float = TIMEOUT_SEC, *, cell_id: str = '') -> Result:
         """Run a cell to its end."""
-        return self.finish(self.start(code), timeout)
+        return self.finish(self.start(code, cell_id), timeout)
 
     def outputs_of(self, msg_id: str) -> list[dict[str, Any]]:
         """Return what a cell shows up to now, late output included."""

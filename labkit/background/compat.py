@@ -1,11 +1,139 @@
 """Every private name of rclpy and ipykernel that labkit touches, and nothing else.
 
-Each has a contract test in tests/background/test_compat.py: with a new rclpy or ipykernel, those
-tests say in a minute whether it still fits.
+Each function has a contract test in tests/background/test_compat.py: with a new rclpy or
+ipykernel, those tests say in a minute whether it still fits.
 """
 
 from __future__ import annotations
 
-from rclpy._rclpy_pybind11 import RCLError
+import sys
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
 
-__all__ = ['RCLError']
+from rclpy._rclpy_pybind11 import RCLError
+from rclpy.impl.implementation_singleton import rclpy_implementation
+
+if TYPE_CHECKING:
+    from rclpy.executors import Executor
+    from rclpy.task import Task
+
+__all__ = [
+    'RCLError',
+    'add_task',
+    'call_in_kernel',
+    'handler_of',
+    'has_tasks',
+    'is_kernel_stream',
+    'is_queued',
+    'is_shut_down',
+    'ready_callbacks',
+    'running_request',
+    'set_thread_request',
+    'take_logs',
+]
+
+# --- rclpy ---------------------------------------------------------------------------------------
+
+
+def ready_callbacks(
+    executor: Executor, timeout_sec: float | None, stop: Callable[[], bool]
+) -> Iterator[tuple[Any, Any, Any]]:
+    """Wait, and yield task, entity and node of what is ready. See `Executor.spin_once`.
+
+    Args:
+        executor: The executor, which asks its `get_nodes` at the start of each round.
+        timeout_sec: Seconds to wait, None for no end.
+        stop: Looked at whenever the executor was woken.
+    """
+    yield from executor._wait_for_ready_callbacks(timeout_sec, None, stop)
+
+
+def has_tasks(executor: Executor) -> bool:
+    """Tell whether a callback is under way or waits its turn, such as a coroutine."""
+    return bool(executor._tasks)
+
+
+def add_task(executor: Executor, task: Task) -> None:
+    """Let an executor run a task that belongs to no entity."""
+    with executor._tasks_lock:
+        executor._tasks.append((task, None, None))
+
+
+def is_queued(entity: Any) -> bool:
+    """Tell whether a callback of a timer, subscription and so on waits its turn already."""
+    return bool(entity._executor_event)
+
+
+def handler_of(task: Task) -> Any:
+    """Return what a task runs, a function or a coroutine; None once it is done."""
+    return task._handler
+
+
+def is_shut_down(executor: Executor) -> bool:
+    """Tell whether `shutdown()` of an executor has been called."""
+    return bool(executor._is_shutdown)
+
+
+def take_logs(show: Callable[[int, str, str], None]) -> Callable[[], None]:
+    """Let each log message of rclpy's be shown by a function, besides what rclpy does with it.
+
+    Args:
+        show: Called with severity, name of the logger and message, in the thread that logs.
+
+    Returns:
+        A function that takes it back.
+    """
+    original = rclpy_implementation.rclpy_logging_rcutils_log
+
+    def log(severity: int, name: str, message: str, *place: object) -> None:
+        original(severity, name, message, *place)
+        show(int(severity), name, message)
+
+    def give_back() -> None:
+        rclpy_implementation.rclpy_logging_rcutils_log = original
+
+    rclpy_implementation.rclpy_logging_rcutils_log = log
+    return give_back
+
+
+# --- ipykernel -----------------------------------------------------------------------------------
+
+
+def running_request() -> dict[str, Any]:
+    """Return the kernel's request that runs the current cell."""
+    request: dict[str, Any] = _shell().get_parent()
+    return request
+
+
+def set_thread_request(request: dict[str, Any]) -> None:
+    """Let what the calling thread writes belong to a request of the kernel."""
+    shell = _shell()
+    if hasattr(shell, 'set_thread_parent'):
+        shell.set_thread_parent(request)
+        return
+    # Python 3.10 has an older ipykernel, which does the same for streams, but has no name for it.
+    for name in ('stdout', 'stderr'):
+        stream: Any = getattr(sys, name)
+        getattr(stream, 'target', stream)._parent_header.set(request['header'])
+
+
+def is_kernel_stream(stream: object) -> bool:
+    """Tell whether a stream is the kernel's own, which sends what is written to the notebook."""
+    from ipykernel.iostream import OutStream
+
+    return isinstance(stream, OutStream)
+
+
+def call_in_kernel(function: Callable[[], None], *, delay_sec: float = 0.0) -> None:
+    """Call a function in the kernel's main thread, as soon as no cell is running.
+
+    Args:
+        function: What to call.
+        delay_sec: How long after that, in seconds.
+    """
+    loop = _shell().kernel.io_loop
+    loop.add_callback(lambda: loop.call_later(delay_sec, function))
+
+
+def _shell() -> Any:
+    return sys.modules['IPython'].get_ipython()

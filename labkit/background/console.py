@@ -21,10 +21,8 @@ from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Any, TextIO
 
-from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-
 from labkit import settings
-from labkit.background import tracebacks
+from labkit.background import compat, tracebacks
 from labkit.background.tracebacks import short_traceback
 
 __all__ = ['MAX_LINES', 'CallbackError', 'Cell', 'Console']
@@ -70,7 +68,7 @@ class CallbackError:
         error: The exception, as it was raised the first time.
         text: What is shown of it: the learner's lines and the message.
         count: How many times it was raised.
-        cell: The execution that started the node which raised it last.
+        cell: The execution that started the node.
     """
 
     node_name: str
@@ -91,39 +89,60 @@ class Console:
 
     def __init__(self) -> None:
         self.errors: list[CallbackError] = []
+        # Called when a cell ends, as long as what is printed still belongs to it.
+        self.after_cell: Callable[[Cell], None] = lambda cell: None
         # Nodes started by one execution share its Cell, and with it the bound on its output.
         self._running: Cell | None = None
         self._cell: Cell | None = None
         self._thread = 0
         self._waiting = 0
-        self._streams: list[_CellStream] = []
-        self._log: Callable[..., Any] | None = None
+        self._streams: dict[str, _CellStream] = {}
+        self._give_logs_back: Callable[[], None] | None = None
 
     def open(self) -> None:
         """Take over the streams and the ROS logs of a kernel. Elsewhere nothing is touched."""
-        if not settings.in_kernel() or self._streams:
+        if not settings.in_kernel() or self._give_logs_back is not None:
             return
-        for name in ('stdout', 'stderr'):
-            stream = _CellStream(self, getattr(sys, name))
-            setattr(sys, name, stream)
-            self._streams.append(stream)
-        self._log = _rclpy.rclpy_logging_rcutils_log
-        _rclpy.rclpy_logging_rcutils_log = self._show_log
+        self._take_streams()
+        self._give_logs_back = compat.take_logs(_show_log)
         _shell().events.register('pre_run_cell', self._end_cell)
+        _shell().events.register('post_run_cell', self._finish_cell)
         tracebacks.install(_shell())
 
     def close(self) -> None:
         """Give everything back as it was."""
-        if not self._streams:
+        if self._give_logs_back is None:
             return
-        for name, stream in zip(('stdout', 'stderr'), self._streams, strict=True):
+        for name, stream in self._streams.items():
             if getattr(sys, name) is stream:
                 setattr(sys, name, stream.target)
-        self._streams = []
+        self._streams.clear()
         self._running = self._cell = None
         self._thread = 0
-        _rclpy.rclpy_logging_rcutils_log = self._log
+        self._give_logs_back()
+        self._give_logs_back = None
         _shell().events.unregister('pre_run_cell', self._end_cell)
+        _shell().events.unregister('post_run_cell', self._finish_cell)
+
+    def _take_streams(self) -> bool:
+        """Put our streams before those of the kernel, and leave alone what stands there else.
+
+        A cell that captures its output (`%%capture`) puts a stream of its own there for a while,
+        and then what was there before. So this is looked after again and again.
+
+        Returns:
+            Whether there was something to do.
+        """
+        taken = False
+        for name in ('stdout', 'stderr'):
+            stream = getattr(sys, name)
+            if compat.is_kernel_stream(stream):
+                taken = True
+                known = self._streams.get(name)
+                if known is None or known.target is not stream:
+                    known = self._streams[name] = _CellStream(self, stream)
+                setattr(sys, name, known)
+        return taken
 
     def current_cell(self) -> Cell:
         """Return the execution that the calling thread works for."""
@@ -132,17 +151,18 @@ class Console:
         if self._cell is not None and self.speaks_in(threading.get_ident()):
             return self._cell
         if self._running is None:
-            self._running = Cell(_shell().get_parent())
+            self._running = Cell(compat.running_request())
         return self._running
 
     def speak_for(self, cell: Cell) -> None:
         """Let what the calling thread writes from now on appear under `cell`."""
-        if cell is self._cell:
+        again = self._give_logs_back is not None and self._take_streams()
+        if cell is self._cell and not again:
             return
         self._cell = cell
         self._thread = threading.get_ident()
         if cell.parent:
-            _set_thread_parent(cell.parent)
+            compat.set_thread_request(cell.parent)
 
     @contextmanager
     def waiting(self) -> Iterator[Callable[[], None]]:
@@ -190,26 +210,31 @@ class Console:
         if settings.audience().same_each_time:
             return
         if cell.parent and threading.current_thread() is not threading.main_thread():
-            _set_thread_parent(cell.parent)
-        self._write_bounded(cell, self._streams[0].target if self._streams else sys.stdout, text)
+            compat.set_thread_request(cell.parent)
+        known = self._streams.get('stdout')
+        self._write_bounded(cell, known.target if known is not None else sys.stdout, text)
 
     def speaks_in(self, thread_id: int) -> bool:
         """Tell whether a thread is the one whose output is routed."""
         return thread_id == self._thread
 
     def show_error(self, node_name: str, callback: str, error: BaseException) -> None:
-        """Show an exception of a callback: in full the first time, then as a count."""
+        """Show an exception of a callback: in full once a run of its cell, then as a count."""
         place = _place(error)
         for known in self.errors:
             same = known.node_name == node_name and type(known.error) is type(error)
-            if same and _place(known.error) == place:
-                known.count += 1
-                known.cell = self._cell
-                if known.count in (10, 100, 1000, 10000):
-                    name = type(error).__name__
-                    text = f'{name} in {callback} of {node_name}: {known.count} times by now.\n'
-                    print(text, end='', file=sys.stderr)
-                return
+            if not (same and _place(known.error) == place):
+                continue
+            if known.cell is not self._cell:
+                # The cell was run again, and Jupyter has cleared what it showed before.
+                self.errors.remove(known)
+                break
+            known.count += 1
+            if known.count in (10, 100, 1000, 10000):
+                name = type(error).__name__
+                text = f'{name} in {callback} of {node_name}: {known.count} times by now.\n'
+                print(text, end='', file=sys.stderr)
+            return
         text = (
             f'The callback {callback} of {node_name} failed. The node goes on; '
             f'if this happens again it is counted, not shown.\n{short_traceback(error)}\n'
@@ -237,10 +262,13 @@ class Console:
             self._running.held.clear()
         self._running = None
 
-    def _show_log(self, severity: int, name: str, message: str, *place: object) -> None:
-        assert self._log is not None
-        self._log(severity, name, message, *place)
-        print(f'[{_SEVERITIES.get(int(severity), severity)}] [{name}]: {message}')
+    def _finish_cell(self, *_: object) -> None:
+        if self._running is not None:
+            self.after_cell(self._running)
+
+
+def _show_log(severity: int, name: str, message: str) -> None:
+    print(f'[{_SEVERITIES.get(severity, severity)}] [{name}]: {message}')
 
 
 class _CellStream(io.TextIOBase):
@@ -289,15 +317,3 @@ def _place(error: BaseException) -> list[tuple[str, int]]:
 
 def _shell() -> Any:
     return sys.modules['IPython'].get_ipython()
-
-
-def _set_thread_parent(parent: dict[str, Any]) -> None:
-    """Let what the calling thread writes belong to a request of the kernel."""
-    shell = _shell()
-    if hasattr(shell, 'set_thread_parent'):
-        shell.set_thread_parent(parent)
-        return
-    # Python 3.10 has an older ipykernel, which does the same for streams, but has no name for it.
-    for name in ('stdout', 'stderr'):
-        stream: Any = getattr(sys, name)
-        getattr(stream, 'target', stream)._parent_header.set(parent['header'])

@@ -15,7 +15,6 @@ from __future__ import annotations
 import inspect
 import threading
 import time
-import traceback
 from collections.abc import Callable, Coroutine
 from contextlib import suppress
 from dataclasses import replace
@@ -34,6 +33,7 @@ from rclpy.node import Node
 from rclpy.task import Task
 from rclpy.timer import Timer
 
+from labkit.background import compat
 from labkit.background.console import Console
 from labkit.background.nodes import NodeEntry
 from labkit.errors import LabError
@@ -68,20 +68,21 @@ class BackgroundExecutor(SingleThreadedExecutor):
         self._running: tuple[NodeEntry, Any] | None = None
         self._owners: WeakKeyDictionary[Task, NodeEntry] = WeakKeyDictionary()
         self._conditions: list[Callable[[], None]] = []
-        self._open = False
         self._closing = False
+        self._gathering = False
+        # The thread that is looking at a condition of `wait` just now.
+        self._looking: int | None = None
         self._ready: list[tuple[Any, Any, Any]] = []
         self._thread = threading.Thread(target=self._spin, name='labkit', daemon=True)
 
     def start(self) -> None:
         """Start the background thread."""
         self._thread.start()
-        self._open = True
 
     @property
     def is_open(self) -> bool:
         """Tell whether the background thread was started, and not ended since."""
-        return self._open and not self._closing
+        return self._thread.is_alive() and not self._closing
 
     def close(self, timeout_sec: float) -> bool:
         """End the background thread, and wait for a callback that is still running.
@@ -114,7 +115,9 @@ class BackgroundExecutor(SingleThreadedExecutor):
         self._entries.pop(node, None)
         seen = self._rounds
         super().remove_node(node)
-        if self.is_open and not self.in_callback():
+        # Who looks at a condition keeps the thread from its next round.
+        waits_in_vain = self.in_callback() or self._looking == threading.get_ident()
+        if self.is_open and not waits_in_vain:
             with self._round_begun:
                 self._round_awaited += 1
                 try:
@@ -128,7 +131,7 @@ class BackgroundExecutor(SingleThreadedExecutor):
 
     def get_nodes(self) -> list[Node]:
         """Return the nodes on this executor, in the order in which they were added."""
-        if self.in_callback():  # the background thread asks at the start of each round
+        if self._gathering and self.in_callback():  # at the start of each round
             self._rounds += 1
             if self._round_awaited:
                 with self._round_begun:
@@ -140,8 +143,8 @@ class BackgroundExecutor(SingleThreadedExecutor):
         # Asked for every entity in every round. rclpy looks into the callback group each time,
         # which costs a tenth of a message's way; but between rounds no callback is under way,
         # unless it is a coroutine.
-        if not self._tasks:
-            return not entity._executor_event
+        if not compat.has_tasks(self):
+            return not compat.is_queued(entity)
         return bool(super().can_execute(entity))
 
     def create_task(
@@ -158,9 +161,8 @@ class BackgroundExecutor(SingleThreadedExecutor):
             first = next(iter(self._entries.values()))
             owner = replace(first, cell=self._console.current_cell(), counts={}, budget=None)
         task = Task(callback, args, kwargs, executor=self)  # type: ignore[no-untyped-call]
-        with self._tasks_lock:
-            self._owners[task] = owner
-            self._tasks.append((task, None, None))
+        self._owners[task] = owner
+        compat.add_task(self, task)
         self.wake()
         return task
 
@@ -184,11 +186,14 @@ class BackgroundExecutor(SingleThreadedExecutor):
         with self._console.waiting() as end:
 
             def look() -> None:
+                self._looking = threading.get_ident()
                 try:
                     if done.is_set() or not condition():
                         return
                 except BaseException as error:  # it belongs to the caller, not to this thread
                     failed.append(error)
+                finally:
+                    self._looking = None
                 end()
                 done.set()
 
@@ -225,7 +230,14 @@ class BackgroundExecutor(SingleThreadedExecutor):
         return threading.current_thread() is self._thread
 
     def refuse_in_callback(self, what: str) -> None:
-        """Raise a LabError when called by a callback: it would wait for itself for ever."""
+        """Raise a LabError when a callback or a condition calls: it would wait for itself."""
+        if self._looking == threading.get_ident():
+            raise LabError(
+                f'{what} inside the condition of a wait can not work: a condition is looked at '
+                'between callbacks, and no message comes until it has answered.',
+                todo='Let the condition only look: lab.wait_until(lambda: node.count >= 3). To '
+                'wait for a message, call lab.wait_for_message(...) on its own.',
+            )
         if self.in_callback():
             raise LabError(
                 f'{what} inside a callback would wait for ever: the answer can come only when '
@@ -250,15 +262,20 @@ class BackgroundExecutor(SingleThreadedExecutor):
             except InvalidHandle:
                 # A node was destroyed between waiting and taking: there is nothing to run.
                 continue
-            except Exception:  # a fault of labkit's own must not silence every node
-                traceback.print_exc()
+            except BaseException as error:  # a fault of labkit's own must not silence every node
+                self._console.show_error('labkit itself', 'spin_once', error)
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Wait for one callback and run it. Called by the background thread only."""
         if not self._ready:
-            with suppress(TimeoutException, ShutdownException, ConditionReachedException):
+            self._gathering = True
+            try:
                 # When woken without work it goes on waiting, unless it is to end.
-                self._ready.extend(self._wait_for_ready_callbacks(timeout_sec, None, self._closed))
+                self._ready.extend(compat.ready_callbacks(self, timeout_sec, self._closed))
+            except (TimeoutException, ShutdownException, ConditionReachedException):
+                pass
+            finally:
+                self._gathering = False
             self._ready.sort(key=_is_timer)
             if not self._ready:
                 return
@@ -275,9 +292,12 @@ class BackgroundExecutor(SingleThreadedExecutor):
     def _run(self, task: Any, entity: Any, entry: NodeEntry) -> None:
         self._console.speak_for(entry.cell)
         with self._callback_lock:
-            what = entity or task._handler  # a task forgets its function when it is done
+            what = entity or compat.handler_of(task)  # a task forgets its function when it is done
             self._running = (entry, what)
-            task()
+            try:
+                task()
+            except BaseException as let_through:  # by rclpy, such as that of sys.exit()
+                task.set_exception(let_through)
             self._running = None
             error = task.exception()
             # Not when the node was removed meanwhile: then the error is that it was.
@@ -294,7 +314,7 @@ class BackgroundExecutor(SingleThreadedExecutor):
 
 def _drop(task: Any) -> None:
     """Give up a callback that is not to be run; Python warns of a coroutine that is forgotten."""
-    handler = task._handler
+    handler = compat.handler_of(task)
     task.cancel()
     if inspect.iscoroutine(handler):
         handler.close()

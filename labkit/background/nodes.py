@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import gc
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
+from weakref import WeakSet
 
 from rclpy.context import Context
 from rclpy.exceptions import InvalidHandle
@@ -22,6 +24,7 @@ __all__ = [
     'destroy_node',
     'existing_nodes',
     'helper_node',
+    'made',
     'node_exists',
 ]
 
@@ -70,11 +73,50 @@ def node_exists(node: Node) -> bool:
         return False
 
 
+class _Made:
+    """The nodes that were made since `follow`, as long as something holds them."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._nodes: WeakSet[Node] | None = None
+
+    def follow(self) -> None:
+        """Keep track from now on; those that are there are looked for once."""
+        with self._lock:
+            if self._nodes is None:
+                self._nodes = WeakSet(_on_the_heap())
+
+    def forget(self) -> None:
+        """Keep track no more."""
+        with self._lock:
+            self._nodes = None
+
+    def add(self, node: Node) -> None:
+        """Note a node that is about to be made."""
+        with self._lock:
+            if self._nodes is not None:
+                self._nodes.add(node)
+
+    def all(self) -> list[Node]:
+        with self._lock:
+            if self._nodes is not None:
+                return list(self._nodes)
+        return _on_the_heap()
+
+
+made = _Made()
+"""In a notebook each new node is noted here. In a script, where rclpy is untouched, none is."""
+
+
 def existing_nodes() -> list[Node]:
     """Return all nodes of this process that exist, whether they are spun or not."""
+    return [node for node in made.all() if node_exists(node)]
+
+
+def _on_the_heap() -> list[Node]:
+    """Look through all objects of Python, which takes tenths of a second if there are many."""
     # type() and not isinstance(): some objects answer to __class__ with surprises.
-    nodes = [thing for thing in gc.get_objects() if issubclass(type(thing), Node)]
-    return [node for node in nodes if node_exists(node)]
+    return [thing for thing in gc.get_objects() if issubclass(type(thing), Node)]
 
 
 def check_node(node: object) -> None:

@@ -12,7 +12,7 @@ import functools
 import threading
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import rclpy
 import rclpy.client
@@ -21,155 +21,146 @@ import rclpy.node
 from rclpy.utilities import get_default_context
 from rclpy.validate_node_name import validate_node_name
 
+from labkit.background import compat
+from labkit.background.nodes import made
 from labkit.errors import LabError
 from labkit.rosgraph.matching import other_type_here
-from labkit.rosgraph.names import full_topic_name
+from labkit.rosgraph.names import full_node_name, full_topic_name
 
 if TYPE_CHECKING:
+    from rclpy.context import Context
     from rclpy.executors import Executor
     from rclpy.node import Node
+    from rclpy.signals import SignalHandlerOptions
     from rclpy.task import Future
 
     from labkit.background.nodes import NodeEntry
-    from labkit.background.runtime import Runtime
 
-__all__ = ['install', 'originals']
+__all__ = ['ORIGINALS', 'Background', 'install', 'uninstall']
 
 # Python runs the handler of the stop button only between two waits in C.
 SLICE_SEC = 0.1
 # How long a topic that was given up may still be seen.
 GONE_SEC = 0.2
 
+# What is replaced: owner and name. A method of `_NotebookSafe` stands in for each.
+REPLACED: tuple[tuple[Any, str, str], ...] = (
+    (rclpy, 'init', 'init'),
+    (rclpy, 'shutdown', 'shutdown'),
+    (rclpy, 'spin', 'spin'),
+    (rclpy, 'spin_once', 'spin_once'),
+    (rclpy, 'spin_until_future_complete', 'spin_until_future_complete'),
+    (rclpy.client.Client, 'call', 'call'),
+    (rclpy.executors.Executor, 'spin', 'spin_executor'),
+    (rclpy.node.Node, '__init__', 'make_node'),
+    (rclpy.node.Node, 'create_publisher', 'create_publisher'),
+    (rclpy.node.Node, 'create_subscription', 'create_subscription'),
+)
+ORIGINALS: dict[str, Callable[..., Any]] = {
+    safe: getattr(owner, name) for owner, name, safe in REPLACED
+}
+"""The functions of rclpy as they are in a script, by the name of what stands in for each."""
 
-class originals:
-    """The functions of rclpy as they are in a script."""
 
-    init = staticmethod(rclpy.init)
-    shutdown = staticmethod(rclpy.shutdown)
-    spin = staticmethod(rclpy.spin)
-    spin_once = staticmethod(rclpy.spin_once)
-    spin_until_future_complete = staticmethod(rclpy.spin_until_future_complete)
-    call = rclpy.client.Client.call
-    executor_spin = rclpy.executors.Executor.spin
-    node_init = rclpy.node.Node.__init__
-    create_publisher = rclpy.node.Node.create_publisher
-    create_subscription = rclpy.node.Node.create_subscription
+class Background(Protocol):
+    """What the functions here need of the runtime, which installs them."""
+
+    helper: Node | None
+    foreign_threads: set[threading.Thread]
+
+    @property
+    def started(self) -> bool:
+        """Tell whether ROS is up."""
+
+    def start(self, *, domain_id: int | None = None, args: list[str] | None = None) -> None:
+        """Start ROS in the background; without effect when it is up."""
+
+    def stop(self) -> None:
+        """Destroy all nodes, and shut ROS down."""
+
+    def add(self, node: Node, *, budget: int | None = None) -> NodeEntry:
+        """Run a node in the background."""
+
+    def release(self, entry: NodeEntry) -> None:
+        """Run a node no more, and leave it alive."""
+
+    def entry_of(self, node: Node) -> NodeEntry | None:
+        """Return the entry of a node, None if it does not run in the background."""
+
+    def make_room(self, name: str) -> None:
+        """Destroy the node of a name before another one of that name is made."""
+
+    def wait(self, condition: Callable[[], object], timeout_sec: float | None) -> bool:
+        """Wait until a condition is true."""
+
+    def refuse_in_callback(self, what: str) -> None:
+        """Raise a LabError when called by a callback."""
 
 
-def install(runtime: Runtime) -> None:
+def install(background: Background) -> None:
     """Put the notebook-safe functions in place. Calling it again changes nothing.
 
     Args:
-        runtime: The runtime whose background executor they use.
+        background: Runs the nodes that they are called with.
     """
-    if rclpy.init is not originals.init:
+    if rclpy.init is not ORIGINALS['init']:
         return
-    safe = _NotebookSafe(runtime)
-    for name in ('init', 'shutdown', 'spin', 'spin_once', 'spin_until_future_complete'):
-        setattr(rclpy, name, _with_documentation(getattr(originals, name), getattr(safe, name)))
-    client_call, executor_spin = originals.call, originals.executor_spin
-    node_init = originals.node_init
-
-    @functools.wraps(client_call)
-    def call(client: Any, *args: Any, **kwargs: Any) -> Any:
-        runtime.refuse_in_callback(f'Calling the service {client.srv_name!r} with call()')
-        return client_call(client, *args, **kwargs)
-
-    @functools.wraps(executor_spin)
-    def spin(executor: Executor) -> None:
-        safe.spin_executor(executor)
-
-    @functools.wraps(node_init)
-    def make_node(node: Node, node_name: str, *args: Any, **kwargs: Any) -> None:
-        if isinstance(node_name, str):
-            # rcl looks at the name too, but then adds a warning about its own clean-up.
-            validate_node_name(node_name)
-        if kwargs.get('context') is None:
-            runtime.start()
-        namespace = (kwargs.get('namespace') or '').strip('/')
-        runtime.make_room(f'/{namespace}/{node_name}' if namespace else f'/{node_name}')
-        node_init(node, node_name, *args, **kwargs)
-
-    for name in ('create_publisher', 'create_subscription'):
-        safe_create = _with_readable_error(getattr(originals, name), runtime)
-        setattr(rclpy.node.Node, name, safe_create)
-    rclpy.node.Node.__init__ = make_node  # type: ignore[method-assign,assignment]
-    rclpy.client.Client.call = call  # type: ignore[method-assign,assignment]
-    rclpy.executors.Executor.spin = spin  # type: ignore[method-assign,assignment]
+    made.follow()
+    safe = _NotebookSafe(background)
+    for owner, name, stand_in in REPLACED:
+        setattr(owner, name, _replacement(ORIGINALS[stand_in], getattr(safe, stand_in)))
 
 
-def _with_documentation(original: Callable[..., Any], safe: Callable[..., Any]) -> Any:
+def uninstall() -> None:
+    """Put the functions of rclpy back. What somebody else has put there since stays."""
+    for owner, name, stand_in in REPLACED:
+        if getattr(getattr(owner, name), '_labkit', False):
+            setattr(owner, name, ORIGINALS[stand_in])
+    made.forget()
+
+
+def _replacement(original: Callable[..., Any], safe: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a plain function with the documentation of the original."""
+
     @functools.wraps(original)
     def function(*args: Any, **kwargs: Any) -> Any:
         return safe(*args, **kwargs)
 
+    function._labkit = True  # type: ignore[attr-defined]
     return function
-
-
-def _with_readable_error(create: Callable[..., Any], runtime: Runtime) -> Callable[..., Any]:
-    """Refuse a second type on a topic in words; rcl says "allocator", at great length."""
-
-    @functools.wraps(create)
-    def function(node: Node, msg_type: Any, topic: str, *args: Any, **kwargs: Any) -> Any:
-        why = _second_type(runtime, node, topic, msg_type)
-        if why:
-            raise LabError(
-                f'{why} In one notebook, a topic has one type.',
-                todo=f'Use the same type on both sides, or another topic than {topic!r}. (Between '
-                'two processes the same mistake is silent: nothing arrives.)',
-            )
-        return create(node, msg_type, topic, *args, **kwargs)
-
-    return function
-
-
-def _second_type(runtime: Runtime, node: Node, topic: str, msg_type: Any) -> str:
-    """Say who uses a topic with another type in this process; '' if nobody does."""
-    helper = runtime.helper
-    if helper is None or not hasattr(msg_type, 'get_fields_and_field_types'):
-        return ''
-    try:
-        name = full_topic_name(topic, node)
-    except LabError:
-        return ''  # rclpy says what is wrong with the name
-    end = time.monotonic() + GONE_SEC
-    # What was destroyed a moment ago may still be in the graph.
-    while why := other_type_here(helper, name, msg_type):
-        if time.monotonic() > end:
-            return why
-        time.sleep(GONE_SEC / 20)
-    return ''
 
 
 class _NotebookSafe:
-    """The functions that stand in for those of rclpy, by the same names."""
+    """The functions that stand in for those of rclpy, with the same parameters."""
 
-    def __init__(self, runtime: Runtime) -> None:
-        self._runtime = runtime
+    def __init__(self, background: Background) -> None:
+        self._background = background
 
     def init(
         self,
         *,
         args: list[str] | None = None,
-        context: Any = None,
+        context: Context | None = None,
         domain_id: int | None = None,
-        signal_handler_options: Any = None,
+        signal_handler_options: SignalHandlerOptions | None = None,
     ) -> None:
         if context is not None and context is not get_default_context():
             none = rclpy.signals.SignalHandlerOptions.NO
-            originals.init(
+            ORIGINALS['init'](
                 args=args, context=context, domain_id=domain_id, signal_handler_options=none
             )
         else:
-            self._runtime.start(domain_id=domain_id, args=args)
+            self._background.start(domain_id=domain_id, args=args)
 
-    def shutdown(self, *, context: Any = None, uninstall_handlers: bool | None = None) -> None:
+    def shutdown(
+        self, *, context: Context | None = None, uninstall_handlers: bool | None = None
+    ) -> None:
         if context is not None and context is not get_default_context():
-            originals.shutdown(context=context, uninstall_handlers=uninstall_handlers)
-        elif self._runtime.started:
-            self._runtime.stop()
+            ORIGINALS['shutdown'](context=context, uninstall_handlers=uninstall_handlers)
+        elif self._background.started:
+            self._background.stop()
         else:
-            originals.shutdown()
+            ORIGINALS['shutdown']()
 
     def spin(self, node: Node, executor: Executor | None = None) -> None:
         if executor is not None:
@@ -181,18 +172,18 @@ class _NotebookSafe:
             return
         entry, borrowed = self._borrow('rclpy.spin()', node)
         try:
-            self._runtime.wait(lambda: not entry.alive, None)
+            self._background.wait(lambda: not entry.alive, None)
         except KeyboardInterrupt:
             pass  # the stop button: the rest of the cell goes on, as a script does after Ctrl-C
         finally:
             if borrowed:
-                self._runtime.release(entry)
+                self._background.release(entry)
 
     def spin_once(
         self, node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None
     ) -> None:
         if executor is not None:
-            originals.spin_once(node, executor=executor, timeout_sec=timeout_sec)
+            ORIGINALS['spin_once'](node, executor=executor, timeout_sec=timeout_sec)
             return
         entry, borrowed = self._borrow('rclpy.spin_once()', node, budget=1)
         before = entry.callbacks
@@ -200,10 +191,10 @@ class _NotebookSafe:
             # "Don't wait" still means: run what is ready. The background needs a moment for it.
             timeout_sec = SLICE_SEC / 5
         try:
-            self._runtime.wait(lambda: entry.callbacks > before, timeout_sec)
+            self._background.wait(lambda: entry.callbacks > before, timeout_sec)
         finally:
             if borrowed:
-                self._runtime.release(entry)
+                self._background.release(entry)
 
     def spin_until_future_complete(
         self,
@@ -213,36 +204,89 @@ class _NotebookSafe:
         timeout_sec: float | None = None,
     ) -> None:
         if executor is not None:
-            originals.spin_until_future_complete(node, future, executor, timeout_sec)
+            ORIGINALS['spin_until_future_complete'](node, future, executor, timeout_sec)
             return
         entry, borrowed = self._borrow('rclpy.spin_until_future_complete()', node)
         try:
-            self._runtime.wait(lambda: _is_over(future), timeout_sec)
+            self._background.wait(lambda: _is_over(future), timeout_sec)
         finally:
             if borrowed:
-                self._runtime.release(entry)
+                self._background.release(entry)
 
     def spin_executor(self, executor: Executor) -> None:
         """Spin an executor of the learner's own so that the stop button is heard."""
-        self._runtime.refuse_in_callback('Executor.spin()')
-        self._runtime.foreign_threads.add(threading.current_thread())
+        self._background.refuse_in_callback('Executor.spin()')
+        self._background.foreign_threads.add(threading.current_thread())
         try:
-            while executor.context.ok() and not executor._is_shutdown:
+            while executor.context.ok() and not compat.is_shut_down(executor):
                 executor.spin_once(timeout_sec=SLICE_SEC)
         except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
             pass
         finally:
-            self._runtime.foreign_threads.discard(threading.current_thread())
+            self._background.foreign_threads.discard(threading.current_thread())
+
+    def call(self, client: Any, *args: Any, **kwargs: Any) -> Any:
+        self._background.refuse_in_callback(f'Calling the service {client.srv_name!r} with call()')
+        return ORIGINALS['call'](client, *args, **kwargs)
+
+    def make_node(self, node: Node, node_name: str, *args: Any, **kwargs: Any) -> None:
+        if isinstance(node_name, str):
+            # rcl looks at the name too, but then adds a warning about its own clean-up.
+            validate_node_name(node_name)
+        if kwargs.get('context') is None:
+            self._background.start()
+        self._background.make_room(full_node_name(node_name, kwargs.get('namespace') or ''))
+        made.add(node)
+        ORIGINALS['make_node'](node, node_name, *args, **kwargs)
+
+    def create_publisher(
+        self, node: Node, msg_type: Any, topic: str, *args: Any, **kwargs: Any
+    ) -> Any:
+        self._refuse_second_type(node, msg_type, topic)
+        return ORIGINALS['create_publisher'](node, msg_type, topic, *args, **kwargs)
+
+    def create_subscription(
+        self, node: Node, msg_type: Any, topic: str, *args: Any, **kwargs: Any
+    ) -> Any:
+        self._refuse_second_type(node, msg_type, topic)
+        return ORIGINALS['create_subscription'](node, msg_type, topic, *args, **kwargs)
+
+    def _refuse_second_type(self, node: Node, msg_type: Any, topic: str) -> None:
+        """Refuse a second type on a topic in words; rcl says "allocator", at great length."""
+        why = self._second_type(node, topic, msg_type)
+        if why:
+            raise LabError(
+                f'{why} In one notebook, a topic has one type.',
+                todo=f'Use the same type on both sides, or another topic than {topic!r}. (Between '
+                'two processes the same mistake is silent: nothing arrives.)',
+            )
+
+    def _second_type(self, node: Node, topic: str, msg_type: Any) -> str:
+        """Say who uses a topic with another type in this process; '' if nobody does."""
+        helper = self._background.helper
+        if helper is None or not hasattr(msg_type, 'get_fields_and_field_types'):
+            return ''
+        try:
+            name = full_topic_name(topic, node)
+        except LabError:
+            return ''  # rclpy says what is wrong with the name
+        end = time.monotonic() + GONE_SEC
+        # What was destroyed a moment ago may still be in the graph.
+        while why := other_type_here(helper, name, msg_type):
+            if time.monotonic() > end:
+                return why
+            time.sleep(GONE_SEC / 20)
+        return ''
 
     def _borrow(
         self, what: str, node: Node, *, budget: int | None = None
     ) -> tuple[NodeEntry, bool]:
         """Return the node's entry, and whether it came to the background only for this call."""
-        self._runtime.refuse_in_callback(what)
-        entry = self._runtime.entry_of(node)
+        self._background.refuse_in_callback(what)
+        entry = self._background.entry_of(node)
         if entry is not None:
             return entry, False
-        return self._runtime.add(node, budget=budget), True
+        return self._background.add(node, budget=budget), True
 
 
 def _is_over(future: Any) -> bool:

@@ -19,7 +19,7 @@ from rclpy.utilities import get_default_context, ok, try_shutdown
 
 from labkit import settings
 from labkit.background import domains
-from labkit.background.console import CallbackError, Console
+from labkit.background.console import Cell, Console
 from labkit.background.executor import BackgroundExecutor
 from labkit.background.nodes import (
     NodeEntry,
@@ -28,13 +28,13 @@ from labkit.background.nodes import (
     existing_nodes,
     helper_node,
 )
-from labkit.background.notebook_rclpy import install, originals
+from labkit.background.notebook_rclpy import ORIGINALS, install
+from labkit.background.registry import Registry
 from labkit.errors import LabError, nearest
 from labkit.rosgraph.whose import foreign_nodes
 
 __all__ = [
     'Runtime',
-    'callback_errors',
     'remove',
     'runtime',
     'spin',
@@ -66,11 +66,14 @@ class Runtime:
         self.started_at = 0.0
         self.helper: Node | None = None
         self.foreign_threads: set[threading.Thread] = set()
-        self._lock = threading.RLock()
-        self._entries: dict[str, NodeEntry] = {}
+        # Held for as long as a start takes. No callback asks for it, see `start`.
+        self._starting = threading.RLock()
+        self._ending = threading.Lock()
+        self._registry = Registry(self.console)
         self._reported: set[str] = set()
         self._executor: BackgroundExecutor | None = None
         self._claim: domains.DomainClaim | None = None
+        self.console.after_cell = self._tell_left_over
 
     @property
     def started(self) -> bool:
@@ -100,10 +103,12 @@ class Runtime:
             args: Command line arguments for ROS, as `rclpy.init` takes them.
         """
         settings.check_domain_id(domain_id)
-        with self._lock:
+        if self._is_called_by_a_callback() or self._is_up_in(domain_id):
+            return
+        with self._starting:
+            if self._is_up_in(domain_id):
+                return
             if self.started:
-                if domain_id in (None, self.domain_id):
-                    return
                 self._refuse_move_with_nodes(domain_id)
             self.stop()
             self._end_foreign_start()
@@ -113,7 +118,7 @@ class Runtime:
             ros_args = [*(args or ()), '--ros-args', '--disable-external-lib-logs']
             if settings.in_kernel():
                 ros_args.append('--disable-stdout-logs')
-            originals.init(args=ros_args, signal_handler_options=SignalHandlerOptions.NO)
+            ORIGINALS['init'](args=ros_args, signal_handler_options=SignalHandlerOptions.NO)
             self.domain_id = get_default_context().get_domain_id()
             self.started_at = time.monotonic()
             self.console.open()
@@ -128,23 +133,24 @@ class Runtime:
         executor = self._executor
         if executor is None:
             return
-        # Without the lock: a callback may be waiting for it, and the thread for the callback.
+        # A callback that is running may make nodes meanwhile: they end with the others.
         executor.close(JOIN_SEC)
-        with self._lock:
+        nodes = [*executor.get_nodes(), *self.unspun_nodes()]
+        with self._ending:
             if self._executor is not executor:
                 return
-            for node in [*executor.get_nodes(), *self.unspun_nodes()]:
-                destroy_node(node)
             self._executor = self.helper = self.domain_id = None
-            self._entries.clear()
-            self._reported.clear()
-            context = executor.context
-            executor.shutdown(timeout_sec=0)
-            if context is get_default_context():
-                try_shutdown()
-            for thread in self.foreign_threads - {threading.current_thread()}:
-                thread.join(JOIN_SEC)
-            self.console.close()
+        for node in nodes:
+            destroy_node(node)
+        self._registry.clear()
+        self._reported.clear()
+        context = executor.context
+        executor.shutdown(timeout_sec=0)
+        if context is get_default_context():
+            try_shutdown()
+        for thread in self.foreign_threads - {threading.current_thread()}:
+            thread.join(JOIN_SEC)
+        self.console.close()
 
     # -- nodes ----------------------------------------------------------------------------------
 
@@ -159,40 +165,23 @@ class Runtime:
             LabError: It is not a node, or it exists no more.
         """
         check_node(node)
-        with self._lock:
-            name = node.get_fully_qualified_name()
-            entry = self._entries.get(name)
-            if entry is not None and entry.node is not node:
-                self.discard(entry)
-                entry = None
-            if entry is None:
-                self._note_rename()
-                entry = NodeEntry(node, name, self.console.current_cell())
-                self._entries[name] = entry
-            entry.budget = budget
-            self.executor.add_entry(entry)
-            return entry
+        return self._registry.add(self.executor, node, budget=budget)
 
     def discard(self, entry: NodeEntry) -> None:
         """Take a node from the executor and destroy it."""
-        self.release(entry)
-        destroy_node(entry.node)
+        self._registry.discard(self._executor, entry)
 
     def release(self, entry: NodeEntry) -> None:
         """Take a node from the executor and leave it alive."""
-        with self._lock:
-            if self._entries.get(entry.name) is entry:
-                del self._entries[entry.name]
-            if self._executor is not None:
-                self._executor.remove_node(entry.node)
+        self._registry.release(self._executor, entry)
 
     def nodes(self) -> list[NodeEntry]:
         """Return the nodes that run in the background, in the order they were started."""
-        with self._lock:
-            for entry in list(self._entries.values()):
-                if not entry.alive:
-                    self.release(entry)
-            return list(self._entries.values())
+        entries = self._registry.entries()
+        for entry in entries:
+            if not entry.alive:
+                self.release(entry)
+        return [entry for entry in entries if entry.alive]
 
     def entry_of(self, node: Node) -> NodeEntry | None:
         """Return the entry of a node, None if it does not run in the background."""
@@ -207,27 +196,12 @@ class Runtime:
         ]
 
     def make_room(self, name: str) -> None:
-        """Destroy the node of a name before another one of that name is made.
-
-        Two nodes of one name in one process share rcl's publisher on /rosout, and the first that
-        goes takes it away. A node whose `__init__` failed half way is found here too.
-
-        Args:
-            name: The full name of the node that is about to be made.
-        """
-        entry = self._entries.get(name)
-        if entry is not None:
-            self.discard(entry)
-            return
-        for node in self.unspun_nodes():
-            if node.get_fully_qualified_name() == name and node.executor is None:
-                destroy_node(node)
+        """Destroy the node of a name before another one of that name is made."""
+        self._registry.make_room(self._executor, name)
 
     def foreign_nodes(self) -> set[str]:
         """Return the full names of the nodes that other processes have in this domain."""
-        if self.helper is None:
-            return set()
-        return foreign_nodes(self.helper)
+        return foreign_nodes(self.helper) if self.helper is not None else set()
 
     # -- waiting --------------------------------------------------------------------------------
 
@@ -246,6 +220,18 @@ class Runtime:
             self._executor.refuse_in_callback(what)
 
     # -- details --------------------------------------------------------------------------------
+
+    def _is_called_by_a_callback(self) -> bool:
+        """Tell whether a callback runs this: its ROS is up, or about to end and not to be begun.
+
+        Whoever starts or stops ROS waits for callbacks, so they can't wait for that.
+        """
+        if threading.current_thread() in self.foreign_threads:
+            return self._executor is not None
+        return self._executor is not None and self._executor.in_callback()
+
+    def _is_up_in(self, domain_id: int | None) -> bool:
+        return self.started and domain_id in (None, self.domain_id)
 
     def _choose_domain(self, domain_id: int | None) -> None:
         if domain_id is None:
@@ -277,7 +263,7 @@ class Runtime:
                 'was made since.',
                 todo='Restart the kernel and run the setup cell first.',
             )
-        originals.shutdown()
+        ORIGINALS['shutdown']()
 
     def _add_helper(self, executor: BackgroundExecutor) -> None:
         self.helper = helper_node(f'_labkit_{os.getpid()}', context=executor.context)
@@ -285,15 +271,13 @@ class Runtime:
         name = self.helper.get_fully_qualified_name()
         executor.add_entry(NodeEntry(self.helper, name, self.console.current_cell()))
 
-    def _note_rename(self) -> None:
-        """Say so when a cell that was edited leaves the node of its earlier run behind."""
-        cell = self.console.current_cell()
-        for entry in self.nodes():
-            if cell.cell_id and entry.cell.cell_id == cell.cell_id and entry.cell is not cell:
-                print(
-                    f'{entry.name}, which this cell started before, still runs. '
-                    f'lab.remove({entry.name!r}) ends it.'
-                )
+    def _tell_left_over(self, cell: Cell) -> None:
+        """Say so when a cell that was edited has left the node of its earlier run behind."""
+        for entry in self._registry.left_over(cell):
+            print(
+                f'{entry.name}, which this cell started before, still runs. '
+                f'lab.remove({entry.name!r}) ends it.'
+            )
 
     def _report_duplicates(self) -> None:
         """Say so, once, when another process has a node of the same name as one of ours."""
@@ -374,11 +358,6 @@ def stop() -> None:
     `lab.start()`, `lab.spin()` and the rest work again afterwards.
     """
     runtime.stop()
-
-
-def callback_errors() -> list[CallbackError]:
-    """Return the exceptions that callbacks have raised in this notebook, oldest first."""
-    return list(runtime.console.errors)
 
 
 def _find(name: str) -> NodeEntry:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import linecache
 import os
+import re
 import sysconfig
 import traceback
 from types import TracebackType
@@ -22,6 +23,12 @@ __all__ = ['install', 'is_learners', 'short_traceback', 'without_ros']
 _LABKIT = os.path.dirname(os.path.dirname(os.path.abspath(__file__))) + os.sep
 _RCLPY = os.path.dirname(os.path.abspath(rclpy.__file__)) + os.sep
 _LIBRARIES = (sysconfig.get_path('stdlib'), sysconfig.get_path('purelib'))
+_WITH_INIT = """
+This is written for a newer release of ROS 2. On Jazzy, rclpy.init() returns nothing, so it can not
+stand after `with`. Write instead:
+    rclpy.init(args=args)
+    ...
+    rclpy.shutdown()"""
 # What is generated from the files of messages and services: std_msgs/msg/_int16.py
 _INTERFACES = tuple(f'{os.sep}{kind}{os.sep}_' for kind in ('msg', 'srv', 'action'))
 
@@ -80,11 +87,27 @@ def install(shell: Any) -> None:
     def structured_traceback(
         kind: Any, error: Any = None, tb: Any = None, *args: Any, **options: Any
     ) -> Any:
+        hint = _hint(error, tb)
         if formatter.mode != 'Verbose' and isinstance(tb, TracebackType):
             tb = without_ros(tb)
-        return original(kind, error, tb, *args, **options)
+        return [*original(kind, error, tb, *args, **options), *hint]
 
     formatter.structured_traceback = structured_traceback
+
+
+def _hint(error: object, tb: object) -> list[str]:
+    """Return what to write instead of code that is for a newer release of ROS 2."""
+    if not isinstance(error, (AttributeError, TypeError)) or not isinstance(tb, TracebackType):
+        return []
+    lines = [
+        linecache.getline(frame.f_code.co_filename, number)
+        for frame, number in traceback.walk_tb(tb)
+    ]
+    # Python 3.10 raises an AttributeError (__enter__), later ones a TypeError.
+    about_with = re.search('__enter__|context manager', str(error))
+    if about_with and any(re.search(r'\bwith\b.*\binit\(', line) for line in lines):
+        return [_WITH_INIT]
+    return []
 
 
 def _is_ros(filename: str) -> bool:

@@ -1,0 +1,108 @@
+"""Which nodes run in the background, by name, so that a cell can be run again.
+
+A callback may make a node at any moment, and asks here for room for it. So the lock is held for a
+look into the table only, and never while somebody waits.
+"""
+
+from __future__ import annotations
+
+import threading
+
+from rclpy.node import Node
+
+from labkit.background.console import Cell, Console
+from labkit.background.executor import BackgroundExecutor
+from labkit.background.nodes import NodeEntry, destroy_node, existing_nodes
+
+__all__ = ['Registry']
+
+
+class Registry:
+    """The nodes that run in the background, each name once.
+
+    Args:
+        console: Knows the cell that is running.
+    """
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self._lock = threading.Lock()
+        self._entries: dict[str, NodeEntry] = {}
+
+    def add(
+        self, executor: BackgroundExecutor, node: Node, *, budget: int | None = None
+    ) -> NodeEntry:
+        """Put a node on an executor; one of the same name is destroyed.
+
+        Args:
+            executor: The background executor.
+            node: The node.
+            budget: How many callbacks to run before it leaves the executor; None for no end.
+        """
+        name = node.get_fully_qualified_name()
+        entry = NodeEntry(node, name, self._console.current_cell(), budget=budget)
+        while True:
+            with self._lock:
+                earlier = self._entries.setdefault(name, entry)
+            if earlier is entry:
+                break
+            if earlier.node is node:
+                entry, earlier.budget = earlier, budget
+                break
+            self.discard(executor, earlier)
+        executor.add_entry(entry)
+        return entry
+
+    def discard(self, executor: BackgroundExecutor | None, entry: NodeEntry) -> None:
+        """Take a node from its executor and destroy it."""
+        self.release(executor, entry)
+        destroy_node(entry.node)
+
+    def release(self, executor: BackgroundExecutor | None, entry: NodeEntry) -> None:
+        """Take a node from its executor and leave it alive."""
+        with self._lock:
+            if self._entries.get(entry.name) is entry:
+                del self._entries[entry.name]
+        if executor is not None:
+            executor.remove_node(entry.node)
+
+    def entries(self) -> list[NodeEntry]:
+        """Return the nodes in the order in which they were started."""
+        with self._lock:
+            return list(self._entries.values())
+
+    def get(self, name: str) -> NodeEntry | None:
+        """Return the node of a full name, None if none runs."""
+        return self._entries.get(name)
+
+    def clear(self) -> None:
+        """Forget all nodes."""
+        with self._lock:
+            self._entries.clear()
+
+    def make_room(self, executor: BackgroundExecutor | None, name: str) -> None:
+        """Destroy the node of a name before another one of that name is made.
+
+        Two nodes of one name in one process share rcl's publisher on /rosout, and the first that
+        goes takes it away. A node whose `__init__` failed half way is found here too.
+
+        Args:
+            executor: The background executor, None if ROS is not up.
+            name: The full name of the node that is about to be made.
+        """
+        entry = self.get(name)
+        if entry is not None:
+            self.discard(executor, entry)
+            return
+        for node in existing_nodes():
+            if node.executor is None and node.get_fully_qualified_name() == name:
+                destroy_node(node)
+
+    def left_over(self, cell: Cell) -> list[NodeEntry]:
+        """Return the nodes that an earlier run of a cell has started, and this one has not.
+
+        None if this run has started no node: then it is about something else.
+        """
+        own = [e for e in self.entries() if cell.cell_id and e.cell.cell_id == cell.cell_id]
+        earlier = [entry for entry in own if entry.cell is not cell]
+        return earlier if len(own) > len(earlier) else []

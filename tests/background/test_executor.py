@@ -1,0 +1,159 @@
+"""The background thread: nothing ends it, nobody waits for it in vain."""
+
+from __future__ import annotations
+
+import pytest
+
+SETUP = """
+import sys, threading
+import labkit as lab
+from labkit.background.runtime import runtime
+from rclpy.node import Node
+from std_msgs.msg import String
+
+class Ticker(Node):
+    def __init__(self, act, name='ticker', period=0.01):
+        super().__init__(name)
+        self.count, self.act = 0, act
+        self.create_timer(period, self.on_timer)
+
+    def on_timer(self):
+        self.count += 1
+        self.act(self)
+"""
+
+
+@pytest.mark.parametrize(
+    ('leave', 'shown'),
+    [
+        ('sys.exit(3)', 'SystemExit: 3'),
+        ('exit_now()', 'KeyboardInterrupt: enough'),
+        ('throw(GeneratorExit())', 'GeneratorExit'),
+    ],
+)
+def test_whatever_a_callback_raises_is_shown_and_spinning_goes_on(kernel, leave, shown):
+    kernel.run(SETUP + 'def throw(error):\n    raise error\n')
+    kernel.run('def exit_now():\n    raise KeyboardInterrupt("enough")')
+    cell = kernel.run(f'ticker = lab.spin(Ticker(lambda node: {leave}))')
+    assert not kernel.run('lab.wait_until(lambda: ticker.count >= 3)').error
+    said = kernel.wait_for_output(cell.msg_id, shown)
+    assert said.count('The callback on_timer of /ticker failed') == 1
+    assert not kernel.run(
+        'other = lab.spin(Ticker(lambda node: None, "other"))\n'
+        'lab.wait_until(lambda: other.count >= 3)'
+    ).error
+
+
+def test_a_program_that_ends_in_a_callback_is_not_ended_by_it(script):
+    result = script(
+        SETUP
+        + 'ticker = lab.spin(Ticker(lambda node: sys.exit(3)))\n'
+        + 'lab.wait_until(lambda: ticker.count >= 3)\nprint("goes on")\nsys.exit(4)\n'
+    )
+    assert (result.exit_code, result.stdout) == (4, 'goes on\n')
+    assert result.stderr.count('The callback on_timer of /ticker failed') == 1
+
+
+def test_a_thread_that_has_ended_is_made_up_for_by_the_next_start(kernel):
+    kernel.run(SETUP + 'lab.start()')
+    # Nothing that is known ends it; should something do so, the next cell works again.
+    ended = kernel.run(
+        'executor = runtime._executor; executor._closing = True; executor.wake()\n'
+        'executor._thread.join(); executor._closing = False\nprint(runtime.started)'
+    )
+    assert (ended.error, ended.text) == ('', 'False\n')
+    again = 'ticker = lab.spin(Ticker(lambda node: None))\nlab.wait_until(lambda: ticker.count)'
+    assert not kernel.run(again).error
+
+
+def test_only_the_thread_itself_begins_a_round(script):
+    result = script(
+        SETUP
+        + """
+lab.start()
+executor = runtime.executor
+faked = []
+def ask(node):
+    before = executor._rounds
+    for _ in range(100):
+        node.executor.get_nodes()
+    faked.append(executor._rounds - before)
+ticker = lab.spin(Ticker(ask))
+lab.wait_until(lambda: ticker.count >= 5)
+print(set(faked), executor._rounds > 0)
+"""
+    )
+    assert result.stdout == '{0} True\n', result.stderr
+
+
+# A callback that makes a node when a cell is about to replace its own node, or to move ROS.
+MAKES_A_NODE = (
+    SETUP
+    + """
+in_callback, go_on = threading.Event(), threading.Event()
+def make(node):
+    in_callback.set()
+    go_on.wait(60)
+    made.append(Node(f'made_{len(made)}'))
+made = []
+waited = []
+from labkit.background import executor as module
+class Watched(threading.Condition):
+    def wait_for(self, predicate, timeout=None):
+        done = super().wait_for(predicate, timeout)
+        waited.append(done)
+        return done
+"""
+)
+
+
+def test_a_cell_run_again_does_not_wait_for_a_callback_that_makes_a_node(script):
+    result = script(
+        MAKES_A_NODE
+        + """
+ticker = lab.spin(Ticker(make))
+runtime.executor._round_begun = Watched()
+in_callback.wait(60)
+threading.Timer(0.2, go_on.set).start()
+lab.spin(Ticker(lambda node: None))
+print(waited, len(made))
+"""
+    )
+    # The round came: nobody gave up waiting for it.
+    assert result.stdout == '[True] 1\n', result.stderr
+
+
+def test_a_move_to_another_domain_does_not_wait_for_a_callback_that_makes_a_node(script):
+    result = script(
+        MAKES_A_NODE
+        + """
+lab.start(domain_id=31)
+executor = runtime.executor
+close, closed = executor.close, []
+executor.close = lambda timeout_sec: closed.append(close(timeout_sec))
+timer = runtime.helper.create_timer(0.01, lambda: make(None))
+in_callback.wait(60)
+threading.Timer(0.2, go_on.set).start()
+lab.start(domain_id=32)
+print(closed, runtime.domain_id, len(made))
+"""
+    )
+    assert result.stdout == '[True] 32 1\n', result.stderr
+
+
+@pytest.mark.parametrize(
+    'waiting',
+    [
+        'lab.wait_for_message("/ticks", String)',
+        'lab.listen("/ticks", String, count=1)',
+        'lab.wait_until(lambda: True)',
+        '__import__("rclpy").spin_once(ticker)',
+    ],
+)
+def test_a_condition_that_waits_itself_is_refused(kernel, waiting):
+    kernel.run(SETUP + 'ticker = lab.spin(Ticker(lambda node: None))')
+    result = kernel.run(f'lab.wait_until(lambda: {waiting})')
+    assert result.error.startswith('LabError')
+    assert 'inside the condition of a wait can not work' in result.traceback
+    assert 'call lab.wait_for_message(...) on its own' in result.traceback
+    assert not kernel.run('lab.wait_until(lambda: ticker.count > 2)').error
