@@ -18,7 +18,7 @@ That is all: lessons are found by name. Types of messages are given by name
 
 
     def judge_ones(probe: Probe) -> str:
-        source = expect.publisher(probe, '/ones', INT16)
+        source = expect.publisher(probe, '/ones')
         ones = expect.messages(probe, source, count=3, hz=10.0)
         expect.equal(ones, 'data', 1, todo='Set msg.data = 1 before you publish.')
         return f'{source.node} publishes 1 at {expect.describe_rate(ones)}.'
@@ -46,7 +46,7 @@ That is all: lessons are found by name. Types of messages are given by name
             Exercise(
                 name='ones',
                 task='Publish the Int16 1 on /ones, ten times a second.',
-                topics=['/ones'],
+                publishes={'/ones': INT16},
                 judge=judge_ones,
                 hints=['What calls a function again and again?', 'create_timer(0.1, ...)'],
                 answer=Solution(NODE + 'lab.spin(Ones())', 'A timer leaves the node free.'),
@@ -83,22 +83,27 @@ The judge
 It gets a `Probe` (the graph, and messages as they come) and uses the matchers of `expect`, each of
 which returns what it found or raises the outcome. Rules of thumb:
 
-- Begin with the endpoint that only this exercise has: as long as no matcher has found anything of
-  the learner's, a missing endpoint is NOT ATTEMPTED; afterwards it is a FAIL. Nodes without any
-  publisher or subscription are no attempt.
-- `topics` names all topics of the exercise; `Lesson(topics=...)` those that the lesson's own cells
-  use. On every other topic, a publisher of the right type counts as a wrong name. `given` names
-  nodes (`'/talker'`) that the lesson's own cells leave running: they are never the learner's.
-- `expect.publisher` looks for names that are nearly right, for the type, and for a second
-  publisher. `expect.messages` waits for messages and judges their rate by their own stamps; when
-  none come it says why: not spun, no timer, timer calls in vain, a callback that does not return.
+- The exercise says what it asks for: `publishes` and `subscribes` (topics, with their types) and
+  `nodes` (full names). The matchers take the types from there. Ask in any order.
+- Whether something missing is a FAIL or NOT ATTEMPTED is read off the graph, see `Scope`: an
+  attempt is a node of the learner's that does what this exercise asks for and no earlier one
+  does, or what may mean that, under another name. Nodes without any publisher or subscription
+  are no attempt, unless only a node is asked for.
+- `Lesson(topics=...)` names the topics that the lesson's own cells use besides. On every topic
+  that the lesson does not know, a publisher of the right type counts as a wrong name. `given`
+  names nodes (`'/talker'`) that these cells leave running: they are never the learner's.
+- A second publisher on a topic in `publishes` is a FAIL, whenever it comes, unless the topic is
+  in `shared`, too.
+- `expect.publisher` looks for names that are nearly right, and for the type. `expect.messages`
+  waits for messages and judges their rate by their own stamps; when none come it says why: not
+  spun, no timer, timer calls in vain, a callback that does not return.
 - `expect.steps`, `first`, `each`, `equal`, `increasing` look at values. `first` knows the first
   value even when the check comes late, because messages are numbered.
 - `expect.replies` sends test messages to a subscription and looks for the answers; `explain` gives
   the misconception behind an answer of this exercise. `expect.logs` looks for a log line.
 - `expect.node` looks for the node's name, `expect.qos` at the profile, `expect.ends_with_node`
   ends the node (then `once=True`). For what is done once, before the check (`ros2 topic pub
-  --once`), `records={'/odds': INT16}` records from the setup cell on: `probe.recorded['/odds']`.
+  --once`), `records=['/odds']` records from the setup cell on: `probe.recorded['/odds']`.
   A recorder is a subscription, so it is counted by `ros2 topic info` and by publishers that wait.
 - What another process makes comes into the graph piece by piece. Matchers wait for what they look
   for; before counting (`len(probe.publishers('/names'))`), use `probe.wait_to_appear(condition)`.

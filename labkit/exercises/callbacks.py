@@ -5,10 +5,10 @@ from __future__ import annotations
 import sys
 import threading
 import time
-from collections.abc import Collection
-from typing import Any, Protocol
+from typing import Any
 
 from labkit.exercises.learner_errors import where_it_hangs
+from labkit.exercises.scope import PUBLISHER, SUBSCRIPTION, Scope
 from labkit.exercises.verdict import LearnerError
 
 __all__ = ['Callbacks', 'find_node']
@@ -16,22 +16,6 @@ __all__ = ['Callbacks', 'find_node']
 # A callback that runs longer than this keeps the others waiting.
 HANG_SEC = 0.4
 POLL_SEC = 0.004
-
-
-class Scope(Protocol):
-    """Which nodes a check is about; see `Probe`."""
-
-    @property
-    def given(self) -> Collection[str]:
-        """Names of nodes that are not the learner's."""
-
-    @property
-    def known(self) -> Collection[str]:
-        """Topics of the lesson."""
-
-    @property
-    def touched(self) -> Collection[str]:
-        """Topics that this check has asked about."""
 
 
 class Callbacks:
@@ -99,9 +83,10 @@ def _is_under_test(error: Any, scope: Scope) -> bool:
     node = find_node(error.node_name)
     if node is None or error.node_name in scope.given:
         return False
-    names = {endpoint.topic_name for endpoint in (*node.publishers, *node.subscriptions)}
+    roles = {(PUBLISHER, publisher.topic_name) for publisher in node.publishers}
+    roles |= {(SUBSCRIPTION, subscription.topic_name) for subscription in node.subscriptions}
     # A node that has none of the lesson's topics may be a first try with wrong names.
-    return bool(names & set(scope.touched)) or not names & set(scope.known)
+    return bool(roles & scope.own.keys()) or not any(topic in scope.known for _, topic in roles)
 
 
 def _is_of_running_node(error: Any) -> bool:

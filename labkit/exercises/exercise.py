@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from labkit.errors import LabError
 from labkit.exercises.attempts import progress_store
@@ -11,6 +11,7 @@ from labkit.exercises.expect.endpoints import alone
 from labkit.exercises.learner_errors import explain_error, last_cell
 from labkit.exercises.probe import Probe
 from labkit.exercises.recorder import Recorder
+from labkit.exercises.scope import Scope
 from labkit.exercises.verdict import Fail, LearnerError, NotAttempted, Outcome, Verdict
 from labkit.views.card import Card
 
@@ -97,15 +98,19 @@ class Exercise:
     Attributes:
         name: Its name as a Python name: `lesson.count_up`.
         task: The task in a sentence or two.
-        topics: Full names of the topics that the learner's code works with.
         judge: Looks at the graph and at messages, with a probe and the matchers of `expect`.
             It raises what is wrong, and returns a sentence on what was seen, or None.
+        publishes: Topics on which the learner's nodes publish, by full name, with their types.
+        subscribes: Topics to which they subscribe, with their types.
+        nodes: Full names of nodes that the task asks for.
+        shared: Topics on which others may publish too. On all others in `publishes` a second
+            publisher is a fault, whenever it comes.
         hints: From a nudge to nearly the answer.
         answer: The solution that is shown.
         styles: The solution in other styles, for the tests.
         wrong: Typical wrong answers, for the tests.
         given: Full names of nodes that the lesson itself leaves running for this exercise.
-        records: Topics, with their types, that are recorded from the setup cell on: for what
+        records: Those topics in `publishes` that are recorded from the setup cell on: for what
             happens once, and before the check. The judge finds them in `probe.recorded`.
         once: Whether the check uses up what it checks, as a node that is removed. The same
             nodes then get the same verdict again.
@@ -115,24 +120,35 @@ class Exercise:
 
     name: str
     task: str
-    topics: Sequence[str]
     judge: Callable[[Probe], str | None]
     hints: Sequence[str]
     answer: Solution
+    publishes: Mapping[str, str] = field(default_factory=dict)
+    subscribes: Mapping[str, str] = field(default_factory=dict)
+    nodes: Sequence[str] = ()
+    shared: Sequence[str] = ()
     styles: Sequence[Style] = ()
     wrong: Sequence[Wrong] = ()
     given: Sequence[str] = ()
-    records: Mapping[str, str] = field(default_factory=dict)
+    records: Sequence[str] = ()
     once: bool = False
     starter_id: str = ''
     check_id: str = ''
 
     def __post_init__(self) -> None:
         self.lesson = ''
-        self.known: frozenset[str] = frozenset(self.topics)
+        self.scope = Scope(
+            publishes=self.publishes,
+            subscribes=self.subscribes,
+            nodes=tuple(self.nodes),
+            shared=frozenset(self.shared),
+            given=frozenset(self.given),
+        )
+        self.scope = replace(self.scope, known=frozenset(self.scope.topics))
         self.starter_id = self.starter_id or f'{self.name.replace("_", "-")}-starter'
         self.check_id = self.check_id or f'{self.name.replace("_", "-")}-check'
-        self._recorder = Recorder(self.records) if self.records else None
+        recorded = {topic: self.publishes[topic] for topic in self.records}
+        self._recorder = Recorder(recorded) if recorded else None
         self._hints_shown = 0
         self._before: tuple[frozenset[bytes], Verdict] | None = None
 
@@ -202,7 +218,7 @@ class Exercise:
     def _examine(self) -> Verdict:
         recorded = self._recorder.watches() if self._recorder is not None else {}
         try:
-            with Probe(self.name, given=self.given, known=self.known, recorded=recorded) as probe:
+            with Probe(self.name, self.scope, recorded=recorded) as probe:
                 new = any(map(len, recorded.values()))
                 if self._before is not None and not new:
                     # If the same nodes run, it is the same attempt.
@@ -238,7 +254,7 @@ class Exercise:
             except (Fail, NotAttempted):
                 # Consequences look like another mistake, so their cause is the better answer.
                 _look_again(probe)
-                probe.callbacks.raise_old_error(probe)
+                probe.callbacks.raise_old_error(probe.scope)
                 error = last_cell.learner_error()
                 if error is not None:
                     raise error from None
@@ -283,6 +299,6 @@ class Exercise:
 
 
 def _look_again(probe: Probe) -> None:
-    """Raise Fail if a second publisher has come since it was looked for."""
-    for topic in probe.sole:
+    """Raise Fail if a second publisher has come meanwhile."""
+    for topic in sorted(probe.scope.sole):
         alone(probe, topic)

@@ -7,11 +7,13 @@ import importlib
 import pkgutil
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 
 from labkit.errors import LabError
 from labkit.exercises.exercise import Exercise
 from labkit.exercises.learner_errors import last_cell
 from labkit.exercises.quiz import Quiz
+from labkit.exercises.scope import Role
 from labkit.views.card import Card
 
 __all__ = ['Lesson', 'NoSuchNameError', 'all_lessons', 'lesson', 'lesson_names']
@@ -50,11 +52,15 @@ class Lesson:
         self.notebook = notebook
         self._exercises = {exercise.name: exercise for exercise in exercises}
         self._quizzes = {quiz.name: quiz for quiz in quizzes}
-        known = frozenset(topics).union(*(exercise.topics for exercise in exercises))
+        known = frozenset(topics).union(*(exercise.scope.topics for exercise in exercises))
+        earlier: frozenset[Role] = frozenset()
         for exercise in exercises:
+            scope = exercise.scope
             exercise.lesson = name
-            exercise.known = known
-            exercise.given = (*given, *exercise.given)
+            exercise.scope = replace(
+                scope, known=known, given=scope.given.union(given), earlier=earlier
+            )
+            earlier |= scope.roles.keys()
         for quiz in quizzes:
             quiz.lesson = name
 

@@ -9,10 +9,11 @@ from __future__ import annotations
 import contextlib
 import os
 import time
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from labkit.exercises.callbacks import Callbacks, find_node
+from labkit.exercises.scope import Scope
 from labkit.exercises.verdict import Fail
 from labkit.exercises.watch import Watch, build, message_class
 from labkit.rosgraph.names import EVERY_NODE_HAS, is_hidden
@@ -38,16 +39,12 @@ class Probe:
 
     Args:
         name: Name of the exercise.
-        given: Full names of nodes that the lesson itself leaves running: not the learner's.
-        known: Topics that the lesson is about. What the learner does on others is a wrong name.
+        scope: What the exercise asks for.
         recorded: What was recorded before the check, by topic.
         timeout_sec: Seconds after which every wait ends.
 
     Attributes:
         node: The hidden node.
-        evidence: Endpoints of the learner's that a matcher has found to be as they should be.
-        sole: Topics that may have one publisher only; see `expect.alone`.
-        touched: Topics that were asked about.
         callbacks: What the learner's callbacks do meanwhile.
         logs: The log messages of all nodes, from the start of the check.
     """
@@ -55,19 +52,14 @@ class Probe:
     def __init__(
         self,
         name: str,
+        scope: Scope | None = None,
         *,
-        given: Collection[str] = (),
-        known: Collection[str] = (),
         recorded: Mapping[str, Watch] | None = None,
         timeout_sec: float = TIMEOUT_SEC,
     ) -> None:
         self.name = name
-        self.given = frozenset(given)
-        self.known = frozenset(known)
+        self.scope = scope or Scope()
         self.recorded = dict(recorded or {})
-        self.evidence: list[Endpoint] = []
-        self.sole: set[str] = set()
-        self.touched: set[str] = set()
         self._watches: list[Watch] = []
         self._publishers: list[Any] = []
         self._end = time.monotonic() + timeout_sec
@@ -116,7 +108,7 @@ class Probe:
                 watch.pump()
             if condition():
                 return True
-            self.callbacks.raise_new_error(self)
+            self.callbacks.raise_new_error(self.scope)
             if time.monotonic() >= end:
                 return False
             time.sleep(POLL_SEC)
@@ -148,14 +140,12 @@ class Probe:
         """Return the learner's publishers on a topic."""
         from labkit.rosgraph import endpoints
 
-        self.touched.add(topic)
         return self._learners(endpoints.publishers(self.node, topic))
 
     def subscriptions(self, topic: str) -> list[Endpoint]:
         """Return the learner's subscriptions to a topic."""
         from labkit.rosgraph import endpoints
 
-        self.touched.add(topic)
         return self._learners(endpoints.subscriptions(self.node, topic))
 
     def all_publishers(self) -> list[Endpoint]:
@@ -185,11 +175,17 @@ class Probe:
         from labkit.rosgraph.snapshot import node_names
 
         names = node_names(self.node)
-        return [name for name in names if not is_hidden(name) and name not in self.given]
+        return [name for name in names if not is_hidden(name) and name not in self.scope.given]
 
     def node_object(self, name: str) -> Any:
         """Return the node of that name as an object, None if it runs in another process."""
         return find_node(name)
+
+    def attempt(self) -> frozenset[str]:
+        """Return the learner's nodes that show an attempt at this exercise, see `Scope`."""
+        return self.scope.attempt(
+            self.all_publishers(), self.all_subscriptions(), self.node_names()
+        )
 
     def fingerprint(self) -> frozenset[bytes]:
         """Return the ids of all of the learner's endpoints: they tell one run from another."""
@@ -209,7 +205,7 @@ class Probe:
         return whose.place(endpoint.gid, self.node)
 
     def _learners(self, found: Iterable[Endpoint]) -> list[Endpoint]:
-        return [e for e in found if not is_hidden(e.node) and e.node not in self.given]
+        return [e for e in found if not is_hidden(e.node) and e.node not in self.scope.given]
 
     # -- messages -------------------------------------------------------------------------------
 

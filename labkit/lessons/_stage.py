@@ -17,7 +17,7 @@ FIRST_ANSWER_SEC = 0.6
 
 
 def find_stage(
-    probe: Probe, inner: str, outer: str, msg_type: str, test: Mapping[str, Any]
+    probe: Probe, inner: str, outer: str, test: Mapping[str, Any]
 ) -> tuple[Endpoint, Endpoint]:
     """Expect a node of the learner's that subscribes to one topic and publishes on another one.
 
@@ -25,7 +25,6 @@ def find_stage(
         probe: The probe of the check.
         inner: Full name of the topic that it hears.
         outer: Full name of the topic that it publishes on.
-        msg_type: Name of the type of both.
         test: Fields of a message to send, should the node not have a publisher yet.
 
     Returns:
@@ -36,10 +35,10 @@ def find_stage(
         Fail: One of the two is missing, misnamed, of another type, or not the only one.
     """
     found = probe.publishers(outer)
-    by = expect.publisher(probe, outer, msg_type).node if found else ''
-    hears = expect.subscription(probe, inner, msg_type, by=by)
+    by = expect.publisher(probe, outer).node if found else ''
+    hears = expect.subscription(probe, inner, by=by)
     echoes = {endpoint.node for endpoint in probe.publishers(inner)}
     if not found and hears.node not in echoes:
-        probe.sender(inner, msg_type)(test)
+        probe.sender(inner, hears.msg_type)(test)
         probe.wait(lambda: probe.publishers(outer), FIRST_ANSWER_SEC)
-    return hears, expect.publisher(probe, outer, msg_type, by=hears.node)
+    return hears, expect.publisher(probe, outer, by=hears.node)

@@ -34,7 +34,7 @@ def _judge_first_node(probe: Probe) -> str:
 first_node = Exercise(
     name='first_node',
     task='Start a node called `hello_robot`.',
-    topics=[],
+    nodes=['/hello_robot'],
     judge=_judge_first_node,
     hints=[
         'The cell `first-node` further up starts a node called first_node. Which line does it?',

@@ -13,14 +13,16 @@ import rclpy
 from rclpy.node import Node
 from std_msgs.msg import Int16, String
 
-from labkit.exercises import Exercise, Fail, NotAttempted, Outcome, Probe, Solution, expect
+from labkit.exercises import Exercise, Fail, Lesson, NotAttempted, Outcome, Probe, Solution, expect
 
 INT16 = 'std_msgs/msg/Int16'
 STRING = 'std_msgs/msg/String'
+# What is said there once, and before the check, is recorded.
+NEWS = {'publishes': {'/news': STRING}, 'shared': ['/news'], 'records': ['/news']}
 
 
 def exercise(judge: Callable[[Probe], str | None], **options: Any) -> Exercise:
-    options = {'topics': ['/odds'], **options}
+    options = {'publishes': {'/odds': INT16}, **options}
     return Exercise(
         name='count_up',
         task='A task.',
@@ -46,7 +48,7 @@ class Counter(Node):
 
 
 def counts(probe: Probe) -> str:
-    source = expect.publisher(probe, '/odds', INT16)
+    source = expect.publisher(probe, '/odds')
     messages = expect.messages(probe, source, count=4)
     expect.steps(messages, 'data', 1)
     return expect.show(messages.values('data'))
@@ -101,8 +103,9 @@ def test_nothing_there_is_no_attempt(lab: ModuleType) -> None:
 def test_nodes_and_topics_of_the_lesson_are_no_attempt(lab: ModuleType) -> None:
     lab.spin(Counter('background'))
     lab.spin(Counter('demo', topic='demo'))
-    assert exercise(counts, given=['/background']).check().outcome is Outcome.FAIL
-    asked = exercise(counts, given=['/background'], topics=['/odds', '/demo'])
+    asked = exercise(counts, given=['/background'])
+    assert asked.check().outcome is Outcome.FAIL
+    Lesson('odds', '04_odds.ipynb', exercises=[asked], topics=['/demo'])
     assert asked.check().outcome is Outcome.NOT_ATTEMPTED
 
 
@@ -206,7 +209,7 @@ def test_best_effort_publisher_is_heard_and_its_qos_seen(lab: ModuleType) -> Non
             self.publisher = self.create_publisher(Int16, 'odds', qos_profile_sensor_data)
 
     def judge(probe: Probe) -> str:
-        source = expect.publisher(probe, '/odds', INT16)
+        source = expect.publisher(probe, '/odds')
         expect.messages(probe, source, count=2)
         expect.qos(source, reliability='best_effort')
         expect.qos(source, reliability='reliable')
@@ -219,7 +222,7 @@ def test_best_effort_publisher_is_heard_and_its_qos_seen(lab: ModuleType) -> Non
 
 def test_verdict_of_a_check_that_uses_up_what_it_checks_is_repeated(lab: ModuleType) -> None:
     def judge(probe: Probe) -> str:
-        source = expect.publisher(probe, '/odds', INT16)
+        source = expect.publisher(probe, '/odds')
         return f'{expect.ends_with_node(probe, source)[-1].data}'
 
     asked = exercise(judge, once=True)
@@ -240,7 +243,9 @@ def test_what_was_said_before_the_check_is_recorded(lab: ModuleType) -> None:
             raise Fail("'once'", repr(said))
         return ''
 
-    asked = exercise(judge, topics=['/news'], records={'/news': STRING})
+    asked = exercise(
+        judge, publishes={'/news': STRING}, shared=['/news'], records={'/news': STRING}
+    )
     asked.begin()
     assert asked.check().outcome is Outcome.NOT_ATTEMPTED
     for said, outcome in ((['once', 'once'], Outcome.FAIL), (['once'], Outcome.PASS)):
@@ -259,7 +264,9 @@ def test_recording_goes_on_after_ros_was_stopped(lab: ModuleType) -> None:
     def judge(probe: Probe) -> None:
         heard.append(probe.recorded['/news'].values('data'))
 
-    asked = exercise(judge, topics=['/news'], records={'/news': STRING})
+    asked = exercise(
+        judge, publishes={'/news': STRING}, shared=['/news'], records={'/news': STRING}
+    )
     asked.begin()
     for text in ('before', 'after'):
         node = rclpy.create_node('teller')
@@ -274,7 +281,12 @@ def test_recording_goes_on_after_ros_was_stopped(lab: ModuleType) -> None:
 
 def test_other_type_on_a_recorded_topic_harms_nobody(lab: ModuleType) -> None:
     node = lab.spin(Counter(topic='news'))
-    asked = exercise(lambda probe: None, topics=['/news'], records={'/news': STRING})
+    asked = exercise(
+        lambda probe: None,
+        publishes={'/news': STRING},
+        shared=['/news'],
+        records={'/news': STRING},
+    )
     asked.begin()
     assert asked.check().passed
     lab.remove(node)
@@ -291,7 +303,7 @@ def test_slow_topic_is_judged_within_the_limit(lab: ModuleType) -> None:
             self.create_timer(period, self.on_timer)
 
     def judge(probe: Probe) -> str:
-        source = expect.publisher(probe, '/odds', INT16)
+        source = expect.publisher(probe, '/odds')
         return str(len(expect.messages(probe, source, count=9, hz=0.5)))
 
     lab.spin(Slow(2.0))
@@ -304,7 +316,7 @@ def test_slow_topic_is_judged_within_the_limit(lab: ModuleType) -> None:
 
 def test_check_that_has_no_time_left_does_not_condemn(lab: ModuleType) -> None:
     def judge(probe: Probe) -> None:
-        source = expect.publisher(probe, '/odds', INT16)
+        source = expect.publisher(probe, '/odds')
         probe._end = time.monotonic() + 0.1
         expect.messages(probe, source, hz=0.001)
 
@@ -320,14 +332,14 @@ def test_rate_is_that_of_each_publisher(lab: ModuleType) -> None:
         lab.spin(Counter(name))
 
     def judge(probe: Probe) -> str:
-        source = expect.publisher(probe, '/odds', INT16, only=False)
+        source = expect.publisher(probe, '/odds')
         messages = expect.messages(probe, source, count=20, hz=50.0)
         for stream in messages.streams():
             values = [sample.message.data for sample in stream]
             assert values == [sample.number for sample in stream]
         return str(len(messages.streams()))
 
-    verdict = exercise(judge).check()
+    verdict = exercise(judge, shared=['/odds']).check()
     assert verdict.passed and verdict.text == '3', verdict
 
 
@@ -336,7 +348,7 @@ def test_stamps_give_the_rate_and_numbers_the_first_value(lab: ModuleType) -> No
     lab.wait_until(lambda: node.number > 20, timeout_sec=30)
 
     def judge(probe: Probe) -> str:
-        source = expect.publisher(probe, '/odds', INT16)
+        source = expect.publisher(probe, '/odds')
         messages = expect.messages(probe, source, count=3)
         expect.first(messages, 'data', 1, 1)
         return str(messages.samples[0].number)

@@ -14,7 +14,7 @@ def lesson() -> Lesson:
         Exercise(
             name=name,
             task=f'The task of {name}.',
-            topics=[f'/{name}'],
+            publishes={f'/{name}': 'std_msgs/msg/Int16'},
             judge=lambda probe: None,
             hints=['A hint.'],
             answer=Solution('pass', 'So.'),
@@ -50,7 +50,7 @@ def test_quiz_is_found_by_name(lesson: Lesson) -> None:
 
 
 def test_exercises_know_all_topics_of_the_lesson(lesson: Lesson) -> None:
-    assert lesson.count_up.known == {'/count_up', '/evens', '/x'}
+    assert lesson.count_up.scope.known == {'/count_up', '/evens', '/x'}
 
 
 def test_unknown_lesson_is_said() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from labkit.settings import claim_domain
+from labkit.background.domains import claim_domain
 
 COUNTER = """
 import rclpy
@@ -22,9 +22,9 @@ import labkit as lab
 from labkit.exercises import Exercise, Lesson, Solution
 from labkit.exercises import expect
 def judge(probe):
-    expect.publisher(probe, '/odds', 'std_msgs/msg/Int16')
-exercise = Exercise(name='ones', task='', topics=['/odds'], judge=judge, hints=['.'],
-                    answer=Solution('', ''))
+    expect.publisher(probe, '/odds')
+exercise = Exercise(name='ones', task='', publishes={'/odds': 'std_msgs/msg/Int16'}, judge=judge,
+                    hints=['.'], answer=Solution('', ''))
 Lesson('odds', '04_odds.ipynb', exercises=[exercise]).begin()
 lab.start()
 """

@@ -19,7 +19,7 @@ def exercise(name: str) -> Exercise:
     return Exercise(
         name=name,
         task='A task.',
-        topics=['/odds'],
+        publishes={'/odds': 'std_msgs/msg/Int16'},
         judge=lambda probe: None,
         hints=['First.', 'Second.'],
         answer=Solution('pass', 'So.'),

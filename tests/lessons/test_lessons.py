@@ -62,8 +62,8 @@ def test_exercise_is_complete(lesson: Lesson, exercise: Exercise) -> None:
     assert exercise.name.isidentifier()
     assert exercise.task and exercise.answer.reason
     assert len(exercise.hints) >= 2
-    assert all(topic.startswith('/') for topic in exercise.topics)
-    assert all(node.startswith('/') for node in exercise.given)
+    assert all(topic.startswith('/') for topic in exercise.scope.topics)
+    assert all(node.startswith('/') for node in (*exercise.scope.given, *exercise.nodes))
     names = [state.name for state in (*exercise.wrong, *exercise.styles)]
     assert len(names) == len(set(names))
     for wrong in exercise.wrong:

@@ -6,11 +6,11 @@ from no attempt at all.
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from labkit.exercises.probe import Probe
+from labkit.exercises.scope import PUBLISHER, SUBSCRIPTION, near, plain
 from labkit.exercises.verdict import Fail, NotAttempted
 
 if TYPE_CHECKING:
@@ -19,39 +19,35 @@ if TYPE_CHECKING:
 __all__ = ['alone', 'node', 'publisher', 'qos', 'subscription']
 
 _KINDS = {
-    'publisher': ('publisher on', 'publishes'),
-    'subscription': ('subscription to', 'subscribes'),
+    PUBLISHER: ('publisher on', 'publishes'),
+    SUBSCRIPTION: ('subscription to', 'subscribes'),
 }
 
 
-def publisher(
-    probe: Probe, topic: str, msg_type: str, *, only: bool = True, by: str = ''
-) -> Endpoint:
-    """Expect a publisher of the learner's on a topic.
+def publisher(probe: Probe, topic: str, *, by: str = '') -> Endpoint:
+    """Expect a publisher of the learner's on a topic, of the type that the exercise asks for.
 
     Args:
         probe: The probe of the check.
         topic: Full name of the topic, such as `'/odds'`.
-        msg_type: Name of its type, such as `'std_msgs/msg/Int16'`.
-        only: Whether nobody else may publish there, see `alone`.
         by: Full name of the node it must belong to; any node if empty.
 
     Returns:
         The publisher.
 
     Raises:
-        NotAttempted: Nothing of the learner's is there.
+        NotAttempted: Nothing of the learner's shows an attempt, see `Scope`.
         Fail: It is missing, misnamed, of another type, or not the only one.
     """
-    found = _find(probe, 'publisher', topic, msg_type, by)
-    if only:
+    found = _find(probe, PUBLISHER, topic, by)
+    if topic in probe.scope.sole:
         alone(probe, topic)
     return found
 
 
-def subscription(probe: Probe, topic: str, msg_type: str, *, by: str = '') -> Endpoint:
+def subscription(probe: Probe, topic: str, *, by: str = '') -> Endpoint:
     """Expect a subscription of the learner's to a topic. Arguments as for `publisher`."""
-    return _find(probe, 'subscription', topic, msg_type, by)
+    return _find(probe, SUBSCRIPTION, topic, by)
 
 
 def node(probe: Probe, name: str) -> str:
@@ -59,24 +55,26 @@ def node(probe: Probe, name: str) -> str:
 
     Args:
         probe: The probe of the check.
-        name: Full name of the node, such as `'/odd_publisher'`.
+        name: Full name of the node, such as `'/odd_publisher'`; the exercise has it in `nodes`.
 
     Returns:
         The name.
 
     Raises:
-        NotAttempted: None of the learner's nodes is there.
+        NotAttempted: Nothing of the learner's shows an attempt, see `Scope`.
         Fail: There is none of that name, or more than one.
     """
+    if name not in probe.scope.nodes:
+        raise LookupError(f'This exercise asks for no node {name}.')
     if not probe.wait_to_appear(lambda: name in probe.node_names()):
-        names = probe.node_names()
-        near = _near(name, names)
-        if not near and not probe.evidence:
+        if not probe.attempt():
             raise NotAttempted
+        names = probe.node_names()
+        other = near(name, names)
         raise Fail(
             f'a node called {name}',
             f'{_list(names) or "no node"}',
-            why=_name_trouble(name, near) if near else '',
+            why=_name_trouble(name, other) if other else '',
             todo=f'The name is what super().__init__() gets: {name.rsplit("/", 1)[-1]!r}.',
         )
     copies = probe.node_names().count(name)
@@ -94,12 +92,11 @@ def node(probe: Probe, name: str) -> str:
 def alone(probe: Probe, topic: str) -> None:
     """Expect one publisher on a topic at most, and name who else publishes there.
 
-    It is looked at again when the check ends: a second one may come late.
+    When the check ends, all topics are looked at that are not shared: a second one may be late.
 
     Raises:
         Fail: There are several.
     """
-    probe.sole.add(topic)
     found = probe.publishers(topic)
     if len(found) < 2:
         return
@@ -108,6 +105,7 @@ def alone(probe: Probe, topic: str) -> None:
     listed = [f'{e.node} {place}' for e, place in zip(found, places, strict=True)]
     seen = f'{len(found)} publishers on {topic}: {_list(listed)}'
     expected = f'one publisher on {topic}'
+    _explain_echo(probe, expected, found)
     if len(nodes) == 1 and len(set(places)) == 1 and probe.node_names().count(found[0].node) == 1:
         raise Fail(
             expected,
@@ -159,20 +157,20 @@ def qos(endpoint: Endpoint, *, reliability: str = '', durability: str = '') -> N
             )
 
 
-def _find(probe: Probe, kind: str, topic: str, msg_type: str, by: str) -> Endpoint:
-    ask = probe.publishers if kind == 'publisher' else probe.subscriptions
+def _find(probe: Probe, kind: str, topic: str, by: str) -> Endpoint:
+    ask = probe.publishers if kind == PUBLISHER else probe.subscriptions
+    msg_type = probe.scope.msg_type((kind, topic))
 
     def matching() -> list[Endpoint]:
         return [endpoint for endpoint in ask(topic) if by in ('', endpoint.node)]
 
-    if not probe.wait_to_appear(matching):
+    # A node of an earlier exercise may be there already, and this one's still on its way.
+    if not probe.wait_to_appear(lambda: matching() and probe.attempt()):
         _explain_missing(probe, kind, topic, msg_type, by)
     for endpoint in matching():
         if endpoint.msg_type != msg_type:
             _refuse_type(endpoint, kind, msg_type)
-    found = matching()[0]
-    probe.evidence.append(found)
-    return found
+    return matching()[0]
 
 
 def _refuse_type(endpoint: Endpoint, kind: str, msg_type: str) -> None:
@@ -188,22 +186,28 @@ def _refuse_type(endpoint: Endpoint, kind: str, msg_type: str) -> None:
 
 def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str) -> None:
     """Raise Fail with the likeliest reason why an endpoint is missing, or NotAttempted."""
+    nodes = probe.attempt()
+    if not nodes:
+        raise NotAttempted
     expected = f'{by or "a node"} with a {_KINDS[kind][0]} {topic} ({msg_type})'
-    others = _others(probe, kind)
-    near = _near(topic, [other.topic for other in others if other.topic not in probe.known])
-    if near:
-        other = next(other for other in others if other.topic == near)
+    others = probe.all_publishers() if kind == PUBLISHER else probe.all_subscriptions()
+    unknown = [other for other in others if other.topic not in probe.scope.known]
+    meant = near(topic, [other.topic for other in unknown])
+    if meant:
+        other = next(other for other in unknown if other.topic == meant)
         raise Fail(
             expected,
-            f'{other.node} {_KINDS[kind][1]} on {near}'
-            if kind == 'publisher'
-            else f'{other.node} {_KINDS[kind][1]} to {near}',
-            why=_name_trouble(topic, near),
+            f'{other.node} {_KINDS[kind][1]} on {meant}'
+            if kind == PUBLISHER
+            else f'{other.node} {_KINDS[kind][1]} to {meant}',
+            why=_name_trouble(topic, meant),
             todo=f'Write the topic as {topic!r}.',
         )
-    _explain_echo(probe, kind, expected, others)
-    strange = [o for o in others if o.topic not in probe.known and o.msg_type == msg_type]
-    if strange and not probe.evidence:
+    mine = [other for other in others if other.node in nodes]
+    if kind == PUBLISHER:
+        _explain_echo(probe, expected, mine)
+    strange = [other for other in unknown if other.node in nodes and other.msg_type == msg_type]
+    if strange:
         raise Fail(
             expected,
             f'{strange[0].node} {_KINDS[kind][1]} on {strange[0].topic}',
@@ -211,50 +215,27 @@ def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str
             f'{topic} finds it.',
             todo=f'Write the topic as {topic!r}.',
         )
-    if not probe.evidence:
-        raise NotAttempted
-    names = sorted({endpoint.node for endpoint in probe.evidence})
-    mine = [f'{o.node} {_KINDS[kind][1]} {o.topic}' for o in others if o.node in names]
-    call = f'create_{kind}()'
+    seen = _list([f'{other.node} {_KINDS[kind][1]} {other.topic}' for other in mine])
     raise Fail(
         expected,
-        _list(mine) or f'{_list(names)} without any {kind}',
-        why=f'{call} for this topic has not been called, or not yet.',
+        seen or f'{_list(sorted(nodes))} without any {kind}',
+        why=f'create_{kind}() for this topic has not been called, or not yet.',
         todo=f'Call it in __init__ with {msg_type.rsplit("/", 1)[-1]} and {topic!r}.',
     )
 
 
-def _explain_echo(probe: Probe, kind: str, expected: str, others: Sequence[Endpoint]) -> None:
-    """Raise Fail if a node publishes on the topic that it subscribes to."""
-    heard = {(endpoint.node, endpoint.topic) for endpoint in probe.evidence}
-    for other in others:
-        if kind == 'publisher' and (other.node, other.topic) in heard:
+def _explain_echo(probe: Probe, expected: str, publishers: Sequence[Endpoint]) -> None:
+    """Raise Fail if a node publishes on a topic that it has to subscribe to."""
+    for other in publishers:
+        if other.topic not in probe.scope.subscribes:
+            continue
+        if other.node in {end.node for end in probe.subscriptions(other.topic)}:
             raise Fail(
                 expected,
                 f'{other.node} publishes on {other.topic}, the topic that it subscribes to',
                 why='The node hears what it says itself, answers that too, and so on for ever.',
                 todo='Publish on a topic of its own.',
             )
-
-
-def _others(probe: Probe, kind: str) -> list[Endpoint]:
-    """Return the learner's endpoints of one kind, on all topics."""
-    ask = probe.all_publishers if kind == 'publisher' else probe.all_subscriptions
-    return ask()
-
-
-def _near(name: str, names: Sequence[str]) -> str:
-    """Return the name that was probably meant to be `name`, '' if none looks like it."""
-    last = _plain(name.rsplit('/', 1)[-1])
-    for other in names:
-        if _plain(other.rsplit('/', 1)[-1]) == last:
-            return other
-    near = difflib.get_close_matches(name, names, n=1, cutoff=0.7)
-    return near[0] if near else ''
-
-
-def _plain(name: str) -> str:
-    return name.lower().replace('_', '')
 
 
 def _name_trouble(wanted: str, seen: str) -> str:
@@ -265,7 +246,7 @@ def _name_trouble(wanted: str, seen: str) -> str:
             'The last part is right, but it lies in another namespace: names must be equal from '
             'the first slash to the last letter. A "~" puts the name of the node before it. '
         ).strip()
-    if _plain(wanted) == _plain(seen):
+    if plain(wanted) == plain(seen):
         return 'The names differ in an underscore; names must be equal to the last character.'
     return f'{seen} is not {wanted}: names must be equal to the last letter. A slip of the pen?'
 

@@ -241,7 +241,7 @@ def _next_message(
 
 
 def _crowded(probe: Probe, topic: str) -> bool:
-    return topic in probe.sole and len(probe.publishers(topic)) > 1
+    return topic in probe.scope.sole and len(probe.publishers(topic)) > 1
 
 
 def _timers(node: Any) -> list[Any]:

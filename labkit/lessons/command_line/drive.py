@@ -123,7 +123,8 @@ drive = Exercise(
     name='drive',
     task=f'Publish {COUNT} messages on {TOPIC} as `{TWIST}`, ten a second: {FORWARD} m/s '
     f'forwards and {LEFT} rad/s to the left.',
-    topics=[TOPIC],
+    publishes={TOPIC: TWIST},
+    shared=[TOPIC],
     judge=_judge_drive,
     hints=[
         'interface show lists the fields of a Twist, and interface proto a message to copy.',
@@ -187,5 +188,5 @@ for _ in range(5):
         Wrong('too slow', changed(_LINE, ('--rate 10', '--rate 5')), 'Without it, it is 1.'),
         Wrong('other topic', changed(_ONCE, ('/cmd_vel', '/cmdvel -w 0')), 'is not /cmd_vel'),
     ],
-    records={TOPIC: TWIST},
+    records=[TOPIC],
 )

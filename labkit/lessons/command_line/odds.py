@@ -89,7 +89,8 @@ odds = Exercise(
     name='odds',
     task=f'Publish the numbers 1, 3 and 5 on {TOPIC} from the command line, as `{INT16}`, one '
     'message each.',
-    topics=[TOPIC],
+    publishes={TOPIC: INT16},
+    shared=[TOPIC],
     judge=_judge_odds,
     hints=[
         'One command publishes one message. Which option makes a command end after it?',
@@ -153,5 +154,5 @@ odds = Exercise(
         Wrong('two slashes', changed(_ONE, ('/odds', '//odds')), 'One slash at the beginning'),
         Wrong('only two', changed(_COMMANDS, (_ONE, '')), 'Still missing: 1.'),
     ],
-    records={TOPIC: INT16},
+    records=[TOPIC],
 )

@@ -54,7 +54,7 @@ print(lab.wait_for_message('/incomplete', String, timeout_sec=20))
 
 def _judge_own_process(probe: Probe) -> str:
     try:
-        one = expect.publisher(probe, '/incomplete', STRING)
+        one = expect.publisher(probe, '/incomplete')
     except NotAttempted:
         _refuse_ended_process()
         raise
@@ -96,7 +96,7 @@ def _refuse_ended_process() -> None:
 own_process = Exercise(
     name='own_process',
     task=f'Publish {OPENING!r} on /incomplete, twice a second, from a process of its own.',
-    topics=['/incomplete'],
+    publishes={'/incomplete': STRING},
     judge=_judge_own_process,
     hints=[
         'The class of stage one stays as it is. What does a program need besides the class?',

@@ -37,7 +37,7 @@ _SUM = "msg.data + '. Nice to meet you.'"
 
 def _judge_third_stage(probe: Probe) -> str:
     _refuse_shortcut(probe)
-    hears, says = find_stage(probe, '/complete', '/greeting', STRING, {'data': TESTS[0]})
+    hears, says = find_stage(probe, '/complete', '/greeting', {'data': TESTS[0]})
     expect.replies(
         probe,
         hears,
@@ -83,7 +83,8 @@ third_stage = Exercise(
     name='third_stage',
     task=f'A node that appends {ENDING!r} to each text of /complete, and publishes it on '
     '/greeting.',
-    topics=['/complete', '/greeting'],
+    subscribes={'/complete': STRING},
+    publishes={'/greeting': STRING},
     judge=_judge_third_stage,
     hints=[
         'Stage three is like stage two: it hears one topic and publishes on another one.',

@@ -50,11 +50,11 @@ _START = _NAMES[_NAMES.index('ada = ') :].strip()
 
 
 def _judge_two_names(probe: Probe) -> str:
-    first = expect.publisher(probe, '/names', STRING, only=False)
+    first = expect.publisher(probe, '/names')
     # Nodes of a process of their own come into the graph one after the other.
     probe.wait_to_appear(lambda: len({end.node for end in probe.publishers('/names')}) > 1)
     _expect_two_nodes(probe, probe.publishers('/names'))
-    expect.subscription(probe, '/incomplete', STRING, by=first.node)
+    expect.subscription(probe, '/incomplete', by=first.node)
     watch = probe.watch('/names', STRING)
     probe.sender('/incomplete', STRING)({'data': TEST})
 
@@ -127,7 +127,9 @@ two_names = Exercise(
     name='two_names',
     task='Two nodes of one class hear /incomplete. Each appends a first name of its own, and '
     'publishes on /names.',
-    topics=['/incomplete', '/names'],
+    subscribes={'/incomplete': STRING},
+    publishes={'/names': STRING},
+    shared=['/names'],
     judge=_judge_two_names,
     hints=[
         'A class is a plan: two objects of it are two nodes. In what do the two differ?',

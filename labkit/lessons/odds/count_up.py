@@ -36,7 +36,7 @@ _MAIN = 'import rclpy\n\nrclpy.init()\nrclpy.spin(Odds())'
 
 
 def _judge_count_up(probe: Probe) -> str:
-    source = expect.publisher(probe, '/odds', INT16)
+    source = expect.publisher(probe, '/odds')
     watch = expect.messages(probe, source, count=4, hz=5.0)
     expect.each(
         watch,
@@ -77,7 +77,7 @@ def _why_even(watch: Watch) -> str:
 count_up = Exercise(
     name='count_up',
     task='Publish the odd numbers 1, 3, 5, ... on /odds as `Int16`, five a second.',
-    topics=['/odds'],
+    publishes={'/odds': INT16},
     judge=_judge_count_up,
     hints=[
         'The callback runs again and again. What must outlive one run, so that the next one can '

@@ -37,7 +37,7 @@ _START = 'evens = lab.spin(Evens())'
 
 
 def _judge_evens(probe: Probe) -> str:
-    hears, says = find_stage(probe, '/odds', '/evens', INT16, {'data': TESTS[0]})
+    hears, says = find_stage(probe, '/odds', '/evens', {'data': TESTS[0]})
     found = expect.replies(
         probe,
         hears,
@@ -73,7 +73,8 @@ def _explain(sent: Mapping[str, Any], came: list[Any]) -> tuple[str, str]:
 evens = Exercise(
     name='evens',
     task='Subscribe to /odds, add 1 to each number and publish the result on /evens (`Int16`).',
-    topics=['/odds', '/evens'],
+    subscribes={'/odds': INT16},
+    publishes={'/evens': INT16},
     judge=_judge_evens,
     hints=[
         'One node may have a publisher and a subscription. Make both in __init__.',

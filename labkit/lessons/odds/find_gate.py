@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from labkit.exercises import (
     Exercise,
     NotAttempted,
@@ -15,9 +13,6 @@ from labkit.exercises import (
     expect,
 )
 from labkit.lessons.odds.stadium import GATES, VISITORS, wrong_gates
-
-if TYPE_CHECKING:
-    from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['find_gate']
 
@@ -58,12 +53,12 @@ def _judge_find_gate(probe: Probe) -> str:
         raise NotAttempted('The stadium is closed. Run the cell with open_stadium() first.')
     # The stadium is a young process itself, so a matcher would wait long for a publisher.
     elsewhere = any(probe.node_object(name) is None for name in probe.node_names())
-    if not probe.wait(lambda: _attempts(probe), PROCESS_SEC if elsewhere else THREAD_SEC):
+    if not probe.wait(probe.attempt, PROCESS_SEC if elsewhere else THREAD_SEC):
         raise NotAttempted(
             f'Not attempted yet. Nobody publishes on {TOPIC}. Write your code in the cell above, '
             'run that cell, then run this one again.'
         )
-    source = expect.publisher(probe, TOPIC, STRING)
+    source = expect.publisher(probe, TOPIC)
     watch = expect.messages(probe, source, count=2)
     probe.wait(lambda: False, 0.3)  # what else is said
     # What rmw says of a node that the inspector's own process has only half discovered.
@@ -79,10 +74,6 @@ def _judge_find_gate(probe: Probe) -> str:
             todo=todo,
         )
     return f'{gates[0]} publishes another type on {VISITORS}, and you found it.'
-
-
-def _attempts(probe: Probe) -> list[Endpoint]:
-    return [e for e in probe.all_publishers() if e.topic == TOPIC or e.topic not in probe.known]
 
 
 def _explain(probe: Probe, name: str, count: int) -> tuple[str, str]:
@@ -104,7 +95,7 @@ find_gate = Exercise(
     name='find_gate',
     task=f'One gate publishes another type on {VISITORS}. Find it, and publish its name as a '
     f'`String` on {TOPIC}, at least once a second.',
-    topics=[TOPIC],
+    publishes={TOPIC: STRING},
     judge=_judge_find_gate,
     hints=[
         f'Ask the graph who publishes on {VISITORS}, as the lesson did for /goals.',

@@ -33,7 +33,7 @@ _START = 'ones = lab.spin(Ones())'
 
 
 def _judge_ones(probe: Probe) -> str:
-    source = expect.publisher(probe, '/ones', INT16)
+    source = expect.publisher(probe, '/ones')
     watch = expect.messages(probe, source, count=4, hz=10.0)
     values = watch.values('data')
     why, todo = _explain(values)
@@ -64,7 +64,7 @@ def _explain(values: Sequence[int]) -> tuple[str, str]:
 ones = Exercise(
     name='ones',
     task='Publish the `Int16` 1 on /ones ten times a second, without end.',
-    topics=['/ones'],
+    publishes={'/ones': INT16},
     judge=_judge_ones,
     hints=[
         'The talker of the lesson "Talker and listener" does nearly the same. Its type is String, '

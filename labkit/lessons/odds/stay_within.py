@@ -60,10 +60,8 @@ _GUARD = '        if self.number > 32767:\n            self.number = 1\n'
 
 def _judge_stay_within(probe: Probe) -> str:
     recorded = probe.recorded[TOPIC]
-    # From now on the check is about the nodes of this topic, and about what their callbacks raise.
-    probe.publishers(TOPIC)
     if not recorded:
-        source = expect.publisher(probe, TOPIC, INT16)
+        source = expect.publisher(probe, TOPIC)
         expect.messages(probe, source, count=1)
     run = _wait_for_end(probe, recorded)
     expect.alone(probe, TOPIC)
@@ -166,7 +164,7 @@ stay_within = Exercise(
     name='stay_within',
     task=f'Publish odd numbers on {TOPIC}, ten a second, from {FIRST} on. After {LARGEST} stop, '
     'or start over with 1.',
-    topics=[TOPIC],
+    publishes={TOPIC: INT16},
     judge=_judge_stay_within,
     hints=[
         f'Which number comes after {LARGEST} when you add 2? Does it fit into an Int16?',
@@ -262,5 +260,5 @@ lab.spin(node)
             'The count goes on with 0, which is even',
         ),
     ],
-    records={TOPIC: INT16},
+    records=[TOPIC],
 )

@@ -32,7 +32,7 @@ _TEXT = 'The door is open'
 
 
 def _judge_say_once(probe: Probe) -> str:
-    source = expect.publisher(probe, '/door', STRING)
+    source = expect.publisher(probe, '/door')
     # Who does not look whether somebody is there has spoken by then.
     probe.wait(lambda: False, 0.5)
     watch = probe.watch('/door', STRING)
@@ -67,7 +67,7 @@ def _judge_say_once(probe: Probe) -> str:
 say_once = Exercise(
     name='say_once',
     task=f'Write a node that says "{_TEXT}" on /door once, when somebody subscribes.',
-    topics=['/door'],
+    publishes={'/door': STRING},
     judge=_judge_say_once,
     hints=[
         'The node must look again and again whether somebody is there. What calls a callback '

@@ -33,7 +33,7 @@ _START = 'if period is not ...:\n    beacon = lab.spin(Beacon())'
 
 
 def _judge_four_a_second(probe: Probe) -> str:
-    source = expect.publisher(probe, '/beacon', STRING)
+    source = expect.publisher(probe, '/beacon')
     watch = expect.messages(probe, source, count=4, hz=4.0, tolerance=0.25)
     return f'{source.node} publishes {expect.describe_rate(watch)}: 40 messages in 10 s.'
 
@@ -41,7 +41,7 @@ def _judge_four_a_second(probe: Probe) -> str:
 four_a_second = Exercise(
     name='four_a_second',
     task='Set the period so that `Beacon` publishes on /beacon four times a second.',
-    topics=['/beacon'],
+    publishes={'/beacon': STRING},
     judge=_judge_four_a_second,
     hints=[
         'create_timer() takes a period: the seconds from one call to the next. It is no rate.',

@@ -44,7 +44,7 @@ def _judge_every_two_seconds(probe: Probe) -> str:
     # A publisher that is made in the callback is there only after the first tick.
     if set(probe.node_names()) - {endpoint.node for endpoint in probe.all_publishers()}:
         probe.wait(lambda: probe.publishers('/chatter'), 2.2)
-    source = expect.publisher(probe, '/chatter', STRING)
+    source = expect.publisher(probe, '/chatter')
     watch = expect.messages(probe, source, count=2, hz=0.5, tolerance=0.2)
     expect.each(
         watch,
@@ -60,7 +60,7 @@ def _judge_every_two_seconds(probe: Probe) -> str:
 every_two_seconds = Exercise(
     name='every_two_seconds',
     task='Write a node that publishes a `String` on /chatter every 2 seconds.',
-    topics=['/chatter'],
+    publishes={'/chatter': STRING},
     judge=_judge_every_two_seconds,
     hints=[
         'The class Talker is nearly what you need. Which number in it is the period?',

@@ -43,7 +43,7 @@ ear = lab.spin(Ear())
 
 
 def _judge_hear_chatter(probe: Probe) -> str:
-    source = expect.subscription(probe, '/chatter', STRING)
+    source = expect.subscription(probe, '/chatter')
     _expect_spun(probe, source)
     line = expect.logs(probe, source.node, source, {'data': 'red boat 17'}, 'red boat 17')
     return f'{source.node} logged: {line}'
@@ -64,7 +64,7 @@ def _expect_spun(probe: Probe, source: Endpoint) -> None:
 hear_chatter = Exercise(
     name='hear_chatter',
     task='Write a node that subscribes to /chatter and logs the text of each `String`.',
-    topics=['/chatter'],
+    subscribes={'/chatter': STRING},
     judge=_judge_hear_chatter,
     hints=[
         'The class Listener is nearly what you need.',

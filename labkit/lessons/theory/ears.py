@@ -12,7 +12,7 @@ def judge_ears(probe: Probe) -> str:
     """Two publishers on one topic, by two nodes."""
     heard = []
     for name in EARS:
-        source = expect.publisher(probe, '/sound', STRING, only=False, by=name)
+        source = expect.publisher(probe, '/sound', by=name)
         sounds = expect.messages(probe, source, count=3, hz=5.0)
         expect.each(
             sounds,
@@ -47,7 +47,9 @@ right_ear = lab.spin(Ear('right_ear', 'a bell'))
 ears = Exercise(
     name='ears',
     task='Two nodes, left_ear and right_ear, publish text on /sound five times a second each.',
-    topics=['/sound'],
+    publishes={'/sound': STRING},
+    shared=['/sound'],
+    nodes=EARS,
     judge=judge_ears,
     hints=[
         'The class Eye of this lesson is nearly an Ear. What differs: the topic.',

@@ -20,8 +20,8 @@ def explain_mouth(sent: Any, came: list[Any]) -> tuple[str, str]:
 
 def judge_mouth(probe: Probe) -> str:
     """Send thoughts, and look at what is said."""
-    hears = expect.subscription(probe, '/thought', STRING)
-    says = expect.publisher(probe, '/speech', STRING, by=hears.node)
+    hears = expect.subscription(probe, '/thought')
+    says = expect.publisher(probe, '/speech', by=hears.node)
     found = expect.replies(
         probe,
         hears,
@@ -53,7 +53,9 @@ mouth = lab.spin(Mouth())
 mouth = Exercise(
     name='mouth',
     task='A node mouth repeats each text of /thought on /speech, in capital letters.',
-    topics=['/thought', '/speech'],
+    subscribes={'/thought': STRING},
+    publishes={'/speech': STRING},
+    nodes=['/mouth'],
     judge=judge_mouth,
     hints=[
         'The class Brain of this lesson subscribes and publishes. So does a mouth.',

@@ -19,6 +19,7 @@ from labkit.lessons.turtlebot.drawing import observed
 from labkit.lessons.turtlebot.drive import (
     EMPTY,
     ODOMETRY,
+    TWIST,
     Drive,
     drive,
     driver,
@@ -79,7 +80,7 @@ homing_bot = lab.spin(HomingBot())
 
 
 def _judge_bot(probe: Probe) -> str:
-    source = driver(probe, '/go_home', EMPTY)
+    source = driver(probe, '/go_home')
     _expect_odometry(probe, source)
     go = probe.sender('/go_home', EMPTY)
     with observed() as drives:
@@ -111,7 +112,7 @@ def _expect_odometry(probe: Probe, source: Endpoint) -> None:
             'on /odom tells.',
             todo="self.create_subscription(Odometry, 'odom', self.on_odometry, 10)",
         )
-    expect.subscription(probe, '/odom', ODOMETRY, by=source.node)
+    expect.subscription(probe, '/odom', by=source.node)
 
 
 def _judge_drive(found: Drive, x: float) -> None:
@@ -200,7 +201,9 @@ threading.Thread(target=run, daemon=True).start()
 bot = Exercise(
     name='bot',
     task='On /go_home a node drives v = -x for 20 steps at 10 Hz, by its odometry, and stops.',
-    topics=['/cmd_vel', '/odom', '/go_home'],
+    subscribes={'/odom': ODOMETRY, '/go_home': EMPTY},
+    publishes={'/cmd_vel': TWIST},
+    shared=['/cmd_vel'],
     judge=_judge_bot,
     hints=[
         'Three callbacks: the odometry keeps x, the message on /go_home sets a counter, the timer '

@@ -136,14 +136,14 @@ def is_zero(twist: Twist2) -> bool:
     return abs(twist.v) < ZERO and abs(twist.w) < ZERO
 
 
-def driver(probe: Probe, topic: str, msg_type: str) -> Endpoint:
+def driver(probe: Probe, topic: str) -> Endpoint:
     """Expect a node that subscribes to `topic` and publishes on /cmd_vel.
 
     Returns:
         Its publisher.
     """
-    trigger = expect.subscription(probe, topic, msg_type)
-    return expect.publisher(probe, '/cmd_vel', TWIST, only=False, by=trigger.node)
+    trigger = expect.subscription(probe, topic)
+    return expect.publisher(probe, '/cmd_vel', by=trigger.node)
 
 
 def drive(

@@ -18,6 +18,7 @@ from labkit.exercises import (
 from labkit.lessons.turtlebot.drawing import observed
 from labkit.lessons.turtlebot.drive import (
     ODOMETRY,
+    TWIST,
     Drive,
     drive,
     driver,
@@ -88,8 +89,8 @@ go_to = lab.spin(GoTo())
 
 
 def _judge_go_to(probe: Probe) -> str:
-    source = driver(probe, '/goal', POSE2D)
-    expect.subscription(probe, '/odom', ODOMETRY, by=source.node)
+    source = driver(probe, '/goal')
+    expect.subscription(probe, '/odom', by=source.node)
     send = probe.sender('/goal', POSE2D)
     # The second goal lies where the angle jumps from pi to -pi.
     trials = (((0.0, 0.0, 0.0), (0.5, 0.3)), ((0.3, 0.2, 2.6), (-0.2, -0.05)))
@@ -181,7 +182,9 @@ def _degrees(found: Drive) -> str:
 go_to = Exercise(
     name='go_to',
     task='For each Pose2D on /goal a node drives the robot to that x and y, and stops there.',
-    topics=['/cmd_vel', '/odom', '/goal'],
+    subscribes={'/odom': ODOMETRY, '/goal': POSE2D},
+    publishes={'/cmd_vel': TWIST},
+    shared=['/cmd_vel'],
     judge=_judge_go_to,
     hints=[
         'dx and dy lead from the robot to the goal. math.hypot(dx, dy) is how far it is, '

@@ -8,6 +8,7 @@ from labkit.exercises import Exercise, Fail, Outcome, Probe, Solution, Style, Wr
 from labkit.lessons.turtlebot.drawing import observed
 from labkit.lessons.turtlebot.drive import (
     EMPTY,
+    TWIST,
     Drive,
     describe,
     drive,
@@ -118,7 +119,7 @@ lab.spin(node)
 
 
 def _judge_square(probe: Probe) -> str:
-    source = driver(probe, '/go_square', EMPTY)
+    source = driver(probe, '/go_square')
     go = probe.sender('/go_square', EMPTY)
     corners = [_on_floor(corner) for corner in CORNERS[1:]]
     at_rest = stands(1.2)
@@ -262,7 +263,9 @@ def _from_start(found: Drive) -> list[tuple[float, float]]:
 square = Exercise(
     name='square',
     task='On /go_square a node drives a square of 0.4 m to the left, and stops where it began.',
-    topics=['/cmd_vel', '/odom', '/go_square'],
+    subscribes={'/go_square': EMPTY},
+    publishes={'/cmd_vel': TWIST},
+    shared=['/cmd_vel'],
     judge=_judge_square,
     hints=[
         'A square is four times the same: a side, then a turn of 90 degrees to the left.',

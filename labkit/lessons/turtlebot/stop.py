@@ -65,7 +65,7 @@ finally:
 
 def _judge_stop(probe: Probe) -> str:
     name = expect.node(probe, '/cruiser')
-    source = expect.publisher(probe, '/cmd_vel', TWIST, only=False, by=name)
+    source = expect.publisher(probe, '/cmd_vel', by=name)
     commands = expect.messages(probe, source, count=3, hz=10.0)
     expect.each(
         commands,
@@ -95,7 +95,9 @@ def _judge_stop(probe: Probe) -> str:
 stop = Exercise(
     name='stop',
     task='A node `cruiser` drives at 0.1 m/s, and its last command says stop, whatever ends it.',
-    topics=['/cmd_vel'],
+    publishes={'/cmd_vel': TWIST},
+    shared=['/cmd_vel'],
+    nodes=['/cruiser'],
     judge=_judge_stop,
     hints=[
         'Which method of a node is called when it is removed? You can write your own version.',

@@ -18,6 +18,7 @@ from labkit.exercises import (
 from labkit.lessons.turtlebot.drawing import observed
 from labkit.lessons.turtlebot.drive import (
     EMPTY,
+    TWIST,
     Drive,
     drive,
     driver,
@@ -85,8 +86,8 @@ guard = lab.spin(Guard())
 
 
 def _judge_wall(probe: Probe) -> str:
-    source = driver(probe, '/go_wall', EMPTY)
-    scan = expect.subscription(probe, '/scan', SCAN, by=source.node)
+    source = driver(probe, '/go_wall')
+    scan = expect.subscription(probe, '/scan', by=source.node)
     _expect_sensor_qos(scan)
     go = probe.sender('/go_wall', EMPTY)
     ends = []
@@ -149,7 +150,9 @@ def _judge_drive(found: Drive, reached: float) -> float:
 wall = Exercise(
     name='wall',
     task='On /go_wall a node drives ahead and stops when the scan sees a wall nearer than 0.5 m.',
-    topics=['/cmd_vel', '/scan', '/go_wall'],
+    subscribes={'/scan': SCAN, '/go_wall': EMPTY},
+    publishes={'/cmd_vel': TWIST},
+    shared=['/cmd_vel'],
     judge=_judge_wall,
     hints=[
         'The scan has 360 distances. Number 0 looks ahead, number 90 to the left, 180 back.',

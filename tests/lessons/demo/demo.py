@@ -46,7 +46,7 @@ lab.spin(OddPublisher())
 
 
 def judge_count_up(probe: Probe) -> str:
-    source = expect.publisher(probe, '/demo_odds', INT16)
+    source = expect.publisher(probe, '/demo_odds')
     odds = expect.messages(probe, source, count=4, hz=10.0)
     expect.each(
         odds,
@@ -65,7 +65,8 @@ def judge_count_up(probe: Probe) -> str:
 count_up = Exercise(
     name='count_up',
     task='A node `odd_publisher` that publishes 1, 3, 5, ... on /demo_odds, ten a second.',
-    topics=['/demo_odds'],
+    publishes={'/demo_odds': INT16},
+    nodes=['/odd_publisher'],
     judge=judge_count_up,
     hints=['Which line runs again and again?', 'A timer of 0.1 s, and self.number += 2.'],
     answer=Solution(NODE, 'The number lives in the node, so it outlives the callback.'),
@@ -329,8 +330,8 @@ def explain(sent: Any, came: list[Any]) -> tuple[str, str]:
 
 
 def judge_greet(probe: Probe) -> str:
-    hears = expect.subscription(probe, '/demo_incomplete', STRING)
-    says = expect.publisher(probe, '/demo_complete', STRING, by=hears.node)
+    hears = expect.subscription(probe, '/demo_incomplete')
+    says = expect.publisher(probe, '/demo_complete', by=hears.node)
     found = expect.replies(
         probe,
         hears,
@@ -346,7 +347,8 @@ def judge_greet(probe: Probe) -> str:
 greet = Exercise(
     name='greet',
     task='A node that adds Ada to each text of /demo_incomplete and logs what it heard.',
-    topics=['/demo_incomplete', '/demo_complete'],
+    subscribes={'/demo_incomplete': STRING},
+    publishes={'/demo_complete': STRING},
     judge=judge_greet,
     hints=['The answer is sent in the callback.', 'reply.data = msg.data + "Ada"'],
     answer=Solution(GREETER, 'The callback is where the text is.'),
@@ -428,7 +430,7 @@ lab.spin(node)
 
 
 def judge_goodbye(probe: Probe) -> str:
-    source = expect.publisher(probe, '/demo_speed', 'std_msgs/msg/Float64')
+    source = expect.publisher(probe, '/demo_speed')
     speeds = expect.messages(probe, source, count=2)
     expect.each(speeds, 'data', lambda v: v == 1.0, expected='1.0 while it runs')
     last = expect.ends_with_node(probe, source)
@@ -461,7 +463,7 @@ lab.spin(Driver())
 goodbye = Exercise(
     name='goodbye',
     task='A node that publishes 1.0 on /demo_speed, and 0.0 as its last word.',
-    topics=['/demo_speed'],
+    publishes={'/demo_speed': 'std_msgs/msg/Float64'},
     judge=judge_goodbye,
     hints=['What is called when a node ends?', 'destroy_node()'],
     answer=Solution(SPEED, 'destroy_node() is called whatever ends the node.'),
@@ -502,7 +504,7 @@ finally:
 def judge_say_once(probe: Probe) -> str:
     heard = probe.recorded['/demo_news'].values('data')
     if not heard:
-        source = expect.publisher(probe, '/demo_news', STRING)
+        source = expect.publisher(probe, '/demo_news')
         expect.messages(probe, source, count=1)
     expect.that(
         heard[-1:] == ['late'],
@@ -530,7 +532,7 @@ pub.publish(String(data='late'))
 say_once = Exercise(
     name='say_once',
     task='Publish the text late on /demo_news, once.',
-    topics=['/demo_news'],
+    publishes={'/demo_news': STRING},
     judge=judge_say_once,
     hints=['publish() without a timer', 'pub.publish(String(data="late"))'],
     answer=Solution(SAY, 'Nothing more is needed: somebody listens already.'),
@@ -542,7 +544,7 @@ say_once = Exercise(
             'never', changed(SAY, ("pub.publish(String(data='late'))", '')), 'no loop publishes'
         ),
     ],
-    records={'/demo_news': STRING},
+    records=['/demo_news'],
 )
 
 LESSON = Lesson(

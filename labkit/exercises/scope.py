@@ -1,0 +1,120 @@
+"""What an exercise asks for on the graph, as data, and what of it shows an attempt."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from labkit.rosgraph.endpoints import Endpoint
+
+__all__ = ['PUBLISHER', 'SUBSCRIPTION', 'Role', 'Scope', 'near', 'plain']
+
+PUBLISHER, SUBSCRIPTION = 'publisher', 'subscription'
+# What a node does on a topic: one of the two words above, and the topic.
+Role = tuple[str, str]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scope:
+    """What an exercise asks for, and what its lesson has besides.
+
+    Attributes:
+        publishes: Topics on which the learner's nodes publish, with their types.
+        subscribes: Topics to which they subscribe, with their types.
+        nodes: Full names of nodes that the task asks for.
+        shared: Topics on which others may publish too.
+        given: Full names of nodes that the lesson itself leaves running.
+        known: All topics of the lesson. What the learner does on others has a wrong name.
+        earlier: Roles that earlier exercises of the lesson ask for: their nodes may still run.
+    """
+
+    publishes: Mapping[str, str] = field(default_factory=dict)
+    subscribes: Mapping[str, str] = field(default_factory=dict)
+    nodes: tuple[str, ...] = ()
+    shared: frozenset[str] = frozenset()
+    given: frozenset[str] = frozenset()
+    known: frozenset[str] = frozenset()
+    earlier: frozenset[Role] = frozenset()
+
+    @property
+    def roles(self) -> dict[Role, str]:
+        """What the learner's nodes do, with the type of the messages."""
+        kinds = ((PUBLISHER, self.publishes), (SUBSCRIPTION, self.subscribes))
+        return {(kind, topic): name for kind, asked in kinds for topic, name in asked.items()}
+
+    @property
+    def own(self) -> dict[Role, str]:
+        """The roles that no earlier exercise asks for; all of them if there are none."""
+        own = {role: name for role, name in self.roles.items() if role not in self.earlier}
+        return own or self.roles
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """The topics that the learner's nodes work with."""
+        return tuple(dict.fromkeys(topic for _, topic in self.roles))
+
+    @property
+    def sole(self) -> frozenset[str]:
+        """The topics that have one publisher at most."""
+        return frozenset(self.publishes) - self.shared
+
+    def msg_type(self, role: Role) -> str:
+        """Return the type of messages that a role is about.
+
+        Raises:
+            LookupError: The exercise does not ask for this role.
+        """
+        if role not in self.roles:
+            raise LookupError(f'This exercise asks for no {role[0]} on {role[1]}.')
+        return self.roles[role]
+
+    def attempt(
+        self,
+        publishers: Sequence[Endpoint],
+        subscriptions: Sequence[Endpoint],
+        nodes: Sequence[str],
+    ) -> frozenset[str]:
+        """Return which nodes show an attempt at the exercise.
+
+        Args:
+            publishers: All publishers of the learner's.
+            subscriptions: All subscriptions of the learner's.
+            nodes: Full names of all nodes of the learner's.
+
+        Returns:
+            The nodes with a role that is this exercise's own. If there are none, those that may
+            mean one, under another name. Names of nodes count where no role is asked for.
+        """
+        ends = [(PUBLISHER, end) for end in publishers]
+        ends += [(SUBSCRIPTION, end) for end in subscriptions]
+        if not self.roles:
+            return frozenset(
+                name for wanted in self.nodes for name in nodes if near(wanted, [name])
+            )
+        exact = frozenset(end.node for kind, end in ends if (kind, end.topic) in self.own)
+        return exact or frozenset(end.node for kind, end in ends if self._may_mean(kind, end))
+
+    def _may_mean(self, kind: str, end: Endpoint) -> bool:
+        """Tell whether an endpoint looks like one that is asked for, under another name."""
+        if end.topic in self.known:
+            return False
+        wanted = {topic: name for (other, topic), name in self.own.items() if other == kind}
+        return end.msg_type in wanted.values() or any(near(t, [end.topic]) for t in wanted)
+
+
+def near(name: str, names: Sequence[str]) -> str:
+    """Return the name that was probably meant to be `name`, '' if none looks like it."""
+    last = plain(name.rsplit('/', 1)[-1])
+    for other in names:
+        if plain(other.rsplit('/', 1)[-1]) == last:
+            return other
+    close = difflib.get_close_matches(name, names, n=1, cutoff=0.7)
+    return close[0] if close else ''
+
+
+def plain(name: str) -> str:
+    """Return a name without what is easily mixed up: capitals and underscores."""
+    return name.lower().replace('_', '')
