@@ -5,22 +5,32 @@ Their output appears under the cell that started them. They end with the kernel,
 
 from __future__ import annotations
 
+import contextlib
+import json
 import os
 import signal
 import subprocess
 import sys
 import threading
 import time
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Collection
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from labkit import settings
 from labkit.background.console import Cell
+from labkit.background.discovery import calm, has_all_services
+from labkit.background.program import READY
 from labkit.background.runtime import runtime
+from labkit.background.service_calls import wait_until_spun
 from labkit.errors import LabTimeout
-from labkit.rosgraph.snapshot import node_names
+from labkit.rosgraph.names import is_hidden
+from labkit.rosgraph.snapshot import ends_of, is_whole, node_names
 from labkit.rosgraph.whose import process_id
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
 __all__ = [
     'Process',
@@ -54,32 +64,49 @@ class Process:
         command: The program and its arguments.
         env: Its environment.
         cell: The execution of the cell that starts it.
+        announces: Whether it says what its nodes have, as `spin_until_interrupted` does.
 
     Attributes:
         nodes: Full names of the nodes that appeared when it was started.
+        announced: What its nodes have, as `ends_of` tells it, once it has said so.
     """
 
-    def __init__(self, name: str, command: list[str], env: dict[str, str], cell: Cell) -> None:
+    def __init__(
+        self,
+        name: str,
+        command: list[str],
+        env: dict[str, str],
+        cell: Cell,
+        *,
+        announces: bool = False,
+    ) -> None:
         self.name = name
         self.command = command
         self.cell = cell
         self.nodes: list[str] = []
         self._lines: deque[str] = deque(maxlen=MAX_LINES)
         self._shown = False
+        self._announces = announces
         self._lock = threading.Lock()
+        reading, writing = os.pipe()
         self._supervisor = subprocess.Popen(
             # Neither site-packages nor variables of Python's change what the supervisor is.
             [sys.executable, '-I', '-S', str(SUPERVISOR), *command],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
-            env=env,
+            env={**env, READY: str(writing)},
+            pass_fds=[writing],
             # The stop button interrupts all processes of the kernel's session.
             start_new_session=True,
             text=True,
             encoding='utf-8',
             errors='replace',
         )
+        os.close(writing)
+        self.announced: dict[str, dict[str, list[str]]] | None = None
+        self._herald = threading.Thread(target=self._hear, args=(reading,), daemon=True)
+        self._herald.start()
         self._reader = threading.Thread(target=self._read, name=f'labkit {name}', daemon=True)
         self._reader.start()
 
@@ -149,6 +176,50 @@ class Process:
 
         runtime.wait(lambda: not {*node_names(helper)} & {*self.nodes}, GONE_SEC)
 
+    def wait_for_nodes(self, node: Node, before: Collection[str], timeout_sec: float) -> None:
+        """Wait until its nodes are in the graph, with all that they have, or it has ended.
+
+        What a node has comes into the graph piece by piece. A program that announces what that is
+        is waited for until all of it is there. Any other is known to offer all services of a
+        node's parameters if it offers one, and to answer there once it spins; what else it has is
+        there when the graph is calm.
+
+        Args:
+            node: The node to ask the graph with.
+            before: Full names of the nodes that were there before it was started.
+            timeout_sec: Seconds to wait for what is known to come.
+        """
+        earlier = Counter(before)
+
+        def appeared() -> list[str]:
+            names = (Counter(node_names(node)) - earlier).keys()
+            return sorted(name for name in names if not is_hidden(name))
+
+        def is_complete() -> bool:
+            return is_whole(node) and all(
+                set(names) <= set(ends_of(node, name)[kind])
+                for name, ends in (self.announced or {}).items()
+                for kind, names in ends.items()
+            )
+
+        def is_there() -> bool:
+            if self._announces:
+                return self.announced is not None and is_complete()
+            return bool(appeared()) and has_all_services(node, appeared())
+
+        end = time.monotonic() + timeout_sec
+        while self.running and not is_there() and time.monotonic() < end:
+            time.sleep(POLL_SEC / 5)
+        self.nodes = appeared()
+        if self.nodes and not self._announces:
+            for name in self.nodes:
+                wait_until_spun(node, name)
+            calm(node)
+
+    def _hear(self, pipe: int) -> None:
+        with open(pipe, encoding='utf-8') as file, contextlib.suppress(ValueError):
+            self.announced = json.load(file)
+
     def _read(self) -> None:
         assert self._supervisor.stdout is not None
         with self._supervisor.stdout as lines:
@@ -190,16 +261,20 @@ def processes() -> Processes:
     return Processes(_started)
 
 
-def start_process(name: str, command: list[str], env: dict[str, str]) -> Process:
+def start_process(
+    name: str, command: list[str], env: dict[str, str], *, announces: bool = False
+) -> Process:
     """Start a process.
 
     Args:
         name: What it is called in lists.
         command: The program and its arguments.
         env: Its environment.
+        announces: Whether it says what its nodes have, as `spin_until_interrupted` does.
     """
     _started[:] = [process for process in _started if process.running]
-    _started.append(Process(name, command, env, runtime.console.current_cell()))
+    cell = runtime.console.current_cell()
+    _started.append(Process(name, command, env, cell, announces=announces))
     return _started[-1]
 
 

@@ -20,6 +20,7 @@ __all__ = [
     'alone',
     'asking_node',
     'calm',
+    'has_all_services',
     'soon',
 ]
 
@@ -37,6 +38,12 @@ MOST_SEC = 10.0
 # A new process has made all of its nodes when nothing was added for so long: it may have to load
 # the types of its messages in between.
 SETTLED_SEC = 0.3
+
+# A node that lets its parameters be set from outside offers these, rclpy 7.1 and rclcpp 28.
+PARAMETER_SERVICES = (
+    *('describe_parameters', 'get_parameter_types', 'get_parameters', 'list_parameters'),
+    *('set_parameters', 'set_parameters_atomically'),
+)
 
 # Ports of participants, DDSI-RTPS 2.5, 9.6.2.3: 7400 + 250 * domain + 10 + 2 * participant.
 _FIRST_PORT = 7400
@@ -71,6 +78,21 @@ def calm(node: Node) -> None:
         if graph != seen or not is_whole(node):
             seen, changed = graph, time.monotonic()
         time.sleep(POLL_SEC)
+
+
+def has_all_services(node: Node, names: list[str]) -> bool:
+    """Tell whether nodes have none of the services that come with parameters, or all of them.
+
+    Args:
+        node: The node to ask the graph with.
+        names: Full names of the nodes.
+    """
+    offered = {service for service, _types in node.get_service_names_and_types()}
+    for name in names:
+        found = [f'{name}/{service}' in offered for service in PARAMETER_SERVICES]
+        if any(found) and not all(found):
+            return False
+    return True
 
 
 def _count(node: Node, topic: str) -> tuple[int, int]:

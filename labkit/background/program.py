@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import contextlib
+import json
+import os
 
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.utilities import ok, try_shutdown
 
-__all__ = ['spin_until_interrupted']
+from labkit.rosgraph.snapshot import ends_of
+
+__all__ = ['READY', 'spin_until_interrupted']
+
+READY = 'LABKIT_READY'
+"""Variable with the number of a pipe: what is written to it is read by `Process.announced`."""
 
 
 def spin_until_interrupted(*nodes: Node) -> None:
@@ -24,6 +31,7 @@ def spin_until_interrupted(*nodes: Node) -> None:
     for node in nodes:
         executor.add_node(node)
     try:
+        _announce(nodes)
         executor.spin()
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
@@ -33,3 +41,16 @@ def spin_until_interrupted(*nodes: Node) -> None:
     finally:
         with contextlib.suppress(RuntimeError):
             try_shutdown()
+
+
+def _announce(nodes: tuple[Node, ...]) -> None:
+    """Say what the nodes have, if somebody waits for it; in the graph it comes piece by piece."""
+    pipe = os.environ.pop(READY, '')
+    if not pipe.isdecimal():
+        return
+    ends = {}
+    for node in nodes:
+        name = node.get_fully_qualified_name()
+        ends[name] = ends_of(node, name)
+    with contextlib.suppress(OSError), open(int(pipe), 'w', encoding='utf-8') as file:
+        json.dump(ends, file)

@@ -6,6 +6,7 @@ import threading
 import time
 from typing import Any
 
+from rcl_interfaces.srv import ListParameters
 from rclpy.node import Node
 
 from labkit.background.compat import RCLError
@@ -13,12 +14,14 @@ from labkit.background.discovery import soon
 from labkit.errors import LabError, LabTimeout
 from labkit.rosgraph.interfaces import type_name
 
-__all__ = ['ServiceCalls', 'call_node']
+__all__ = ['ServiceCalls', 'call_node', 'wait_until_spun']
 
 POLL_SEC = 0.05
 # As long as that, a service that the graph knows may take to be ready.
 READY_SEC = 5.0
 ANSWER_SEC = 5.0
+# As long as that, a node may take to be spun. Some programs never spin theirs.
+SPUN_SEC = 1.0
 
 
 class ServiceCalls:
@@ -117,3 +120,27 @@ def call_node(node: Node, srv_type: Any, node_name: str, service: str, request: 
         if not service_calls.wait_until_ready(READY_SEC):
             raise LabTimeout('Wait for service timed out')
         return service_calls.call(request, ANSWER_SEC)
+
+
+def wait_until_spun(node: Node, node_name: str, timeout_sec: float = SPUN_SEC) -> bool:
+    """Wait until another node answers: it was made to its end then, and its callbacks are called.
+
+    Args:
+        node: The node that asks.
+        node_name: Full name of the other one.
+        timeout_sec: Seconds to wait.
+
+    Returns:
+        Whether it has answered. One without parameter services can't.
+    """
+    name = f'{node_name}/list_parameters'
+    if name not in dict(node.get_service_names_and_types()):
+        return False
+    with ServiceCalls(node, ListParameters, name) as service:
+        if not service.wait_until_ready(timeout_sec):
+            return False
+        try:
+            service.call(ListParameters.Request(), timeout_sec)
+        except LabTimeout:
+            return False
+        return True

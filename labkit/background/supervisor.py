@@ -20,6 +20,8 @@ import threading
 # How long an interrupted command has to tidy up. A killed one stays in the ROS graph for 20 s.
 GRACE_SEC = 6.0
 PR_SET_PDEATHSIG = 1
+# See `labkit.background.program`.
+READY = 'LABKIT_READY'
 
 
 def main(command: list[str]) -> int:
@@ -35,16 +37,22 @@ def main(command: list[str]) -> int:
     # vain: it interrupts `child.wait()` below, which holds the lock that every wait needs.
     asked = threading.Event()
     signal.signal(signal.SIGTERM, lambda *_: asked.set())
+    # A pipe on which the command may say that it is ready. It ends with the command, so it must
+    # not stay open here.
+    pipes = [int(os.environ[READY])] if READY in os.environ else []
     try:
         child = subprocess.Popen(
             command,
             stdin=subprocess.DEVNULL,
             start_new_session=True,
             preexec_fn=_die_too,
+            pass_fds=pipes,
         )
     except OSError as error:
         print(f'{command[0]} can not be run: {error.strerror}', flush=True)
         return 127
+    for pipe in pipes:
+        os.close(pipe)
     threading.Thread(target=_watch, args=(asked,), daemon=True).start()
     threading.Thread(target=_stop, args=(child, asked), daemon=True).start()
     code = child.wait()

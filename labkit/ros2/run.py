@@ -10,19 +10,14 @@ import argparse
 import os
 import shlex
 import sys
-import time
 from argparse import Namespace
-from collections import Counter
 from collections.abc import Iterable
 
-from rclpy.node import Node
-
 from labkit import settings
-from labkit.background.child_processes import Process, end_earlier, environment, start_process
-from labkit.background.discovery import alone, calm
+from labkit.background.child_processes import end_earlier, environment, start_process
+from labkit.background.discovery import alone
 from labkit.ros2.asking import asking_node
 from labkit.ros2.parser import Command, Parser, Verb
-from labkit.rosgraph.names import is_hidden
 from labkit.rosgraph.packages import DEMO, Executable, executable, executables, package_names
 from labkit.rosgraph.snapshot import node_names
 
@@ -30,7 +25,6 @@ __all__ = ['COMMAND']
 
 # How long to wait for the node of a process. On a busy machine Python itself takes a while.
 APPEAR_SEC = 15.0
-POLL_SEC = 0.02
 
 
 def run(args: Namespace) -> int | None:
@@ -45,9 +39,9 @@ def run(args: Namespace) -> int | None:
     node = asking_node(args)
     name = f'{args.package_name} {args.executable_name}'
     end_earlier(command)
-    before = Counter(node_names(node))
-    process = start_process(name, command, environment())
-    _wait_for_node(node, process, before)
+    before = node_names(node)
+    process = start_process(name, command, environment(), announces=chosen.stand_in)
+    process.wait_for_nodes(node, before, 0.0 if alone() else APPEAR_SEC)
     if not process.running and process.exit_code:
         print('\n'.join(process.output[-10:]))
         print(f'{name} ended with exit code {process.exit_code}.')
@@ -58,21 +52,6 @@ def run(args: Namespace) -> int | None:
         print(_stand_in_note(chosen))
     process.show_output()
     return None
-
-
-def _wait_for_node(node: Node, process: Process, before: Counter[str]) -> None:
-    """Wait until a node of the process has appeared, or it has ended."""
-
-    def new() -> list[str]:
-        names = (Counter(node_names(node)) - before).keys()
-        return sorted(name for name in names if not is_hidden(name))
-
-    end = time.monotonic() + (0.0 if alone() else APPEAR_SEC)
-    while process.running and not new() and time.monotonic() < end:
-        time.sleep(POLL_SEC)
-    process.nodes = new()
-    if process.nodes:
-        calm(node)  # what a node has comes piece by piece
 
 
 def _stand_in_note(chosen: Executable) -> str:

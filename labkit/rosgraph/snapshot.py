@@ -29,6 +29,7 @@ __all__ = [
     'GraphService',
     'GraphTopic',
     'Mismatch',
+    'ends_of',
     'is_whole',
     'node_names',
     'read_graph',
@@ -179,20 +180,30 @@ def node_names(node: Node) -> list[str]:
     infos = node.get_publishers_info_by_topic('/parameter_events')
     living = Counter(full_node_name(info.node_name, info.node_namespace) for info in infos)
     for name in named.keys() - living.keys():
-        living[name] = named[name] * _has_ends(node, name)
+        living[name] = named[name] * any(ends_of(node, name).values())
     return sorted((named & living).elements())
 
 
-def _has_ends(node: Node, full_name: str) -> bool:
-    return any(
-        _asked(ask, *split_node_name(full_name))
-        for ask in (
-            node.get_publisher_names_and_types_by_node,
-            node.get_subscriber_names_and_types_by_node,
-            node.get_service_names_and_types_by_node,
-            node.get_client_names_and_types_by_node,
-        )
-    )
+def ends_of(node: Node, full_name: str) -> dict[str, list[str]]:
+    """Return the names of what a node has at its ends; all of it is empty if there is none.
+
+    Args:
+        node: The node to ask with. Of its own process it knows all, of others what has come.
+        full_name: Full name of the node that is asked about.
+
+    Returns:
+        Sorted names of `'publishers'`, `'subscriptions'`, `'services'` and `'clients'`.
+    """
+    asked = {
+        'publishers': node.get_publisher_names_and_types_by_node,
+        'subscriptions': node.get_subscriber_names_and_types_by_node,
+        'services': node.get_service_names_and_types_by_node,
+        'clients': node.get_client_names_and_types_by_node,
+    }
+    whose = split_node_name(full_name)
+    return {
+        kind: sorted(name for name, _types in _asked(ask, *whose)) for kind, ask in asked.items()
+    }
 
 
 def is_whole(node: Node) -> bool:
