@@ -9,47 +9,88 @@ from __future__ import annotations
 
 import importlib
 import sys
-from types import ModuleType
+from typing import TYPE_CHECKING
 
 from labkit.errors import LabError, LabTimeout, SetupError
 from labkit.settings import prepare_environment
 
+if TYPE_CHECKING:
+    # For editors and type checkers, which can't follow `__getattr__`.
+    from labkit.background.child_processes import processes
+    from labkit.background.runtime import remove, spin, start, stop
+    from labkit.background.waiting import (
+        listen,
+        wait_for_message,
+        wait_for_subscribers,
+        wait_until,
+    )
+    from labkit.checkup.report import doctor
+    from labkit.exercises.lesson import lesson
+    from labkit.exercises.progress import progress
+    from labkit.sim.turtlebot import Turtlebot
+    from labkit.views.arena import arena
+    from labkit.views.graph import graph
+    from labkit.views.monitor import monitor
+    from labkit.views.plot import plot
+    from labkit.views.teleop import teleop
+
 __version__ = '0.1.0'
 
+__all__ = [
+    'LabError',
+    'LabTimeout',
+    'Turtlebot',
+    'arena',
+    'doctor',
+    'graph',
+    'lesson',
+    'listen',
+    'monitor',
+    'plot',
+    'processes',
+    'progress',
+    'remove',
+    'spin',
+    'start',
+    'stop',
+    'teleop',
+    'wait_for_message',
+    'wait_for_subscribers',
+    'wait_until',
+]
+
 # Public name -> the module that defines it.
-_PUBLIC = {
-    'start': 'labkit.background.runtime',
-    'spin': 'labkit.background.runtime',
-    'remove': 'labkit.background.runtime',
-    'stop': 'labkit.background.runtime',
-    'wait_until': 'labkit.background.waiting',
-    'wait_for_message': 'labkit.background.waiting',
-    'wait_for_subscribers': 'labkit.background.waiting',
-    'listen': 'labkit.background.waiting',
+_HOMES = {
+    'Turtlebot': 'labkit.sim.turtlebot',
+    'arena': 'labkit.views.arena',
+    'doctor': 'labkit.checkup.report',
     'graph': 'labkit.views.graph',
+    'lesson': 'labkit.exercises.lesson',
+    'listen': 'labkit.background.waiting',
     'monitor': 'labkit.views.monitor',
     'plot': 'labkit.views.plot',
     'processes': 'labkit.background.child_processes',
-    'Turtlebot': 'labkit.sim.turtlebot',
-    'arena': 'labkit.views.arena',
-    'teleop': 'labkit.views.teleop',
-    'doctor': 'labkit.checkup.report',
-    'lesson': 'labkit.exercises.lesson',
     'progress': 'labkit.exercises.progress',
+    'remove': 'labkit.background.runtime',
+    'spin': 'labkit.background.runtime',
+    'start': 'labkit.background.runtime',
+    'stop': 'labkit.background.runtime',
+    'teleop': 'labkit.views.teleop',
+    'wait_for_message': 'labkit.background.waiting',
+    'wait_for_subscribers': 'labkit.background.waiting',
+    'wait_until': 'labkit.background.waiting',
 }
 
 # Reading one of these names starts ROS. In `lab.spin(Talker())` Python reads `lab.spin`, then
 # builds the talker, which needs ROS, then calls; and after `lab.lesson(...)` a lesson makes nodes.
 _START_ROS = ('lesson', 'spin')
 
-__all__ = ['LabError', 'LabTimeout', *_PUBLIC]
-
 
 def __getattr__(name: str) -> object:
-    if name not in _PUBLIC:
+    if name not in _HOMES:
         raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
     try:
-        function = getattr(importlib.import_module(_PUBLIC[name]), name)
+        function = getattr(importlib.import_module(_HOMES[name]), name)
         if name in _START_ROS:
             importlib.import_module('labkit.background.runtime').start()
     except ModuleNotFoundError as error:
@@ -65,19 +106,6 @@ def __dir__() -> list[str]:
     return sorted(__all__)
 
 
-class _Package(ModuleType):
-    """Keep public names apart from modules of the same name (`lab.doctor`, labkit/doctor.py).
-
-    Importing a module makes Python set it as an attribute of its package, which would hide the
-    public function.
-    """
-
-    def __setattr__(self, name: str, value: object) -> None:
-        if not (name in _PUBLIC and isinstance(value, ModuleType)):
-            super().__setattr__(name, value)
-
-
-sys.modules[__name__].__class__ = _Package
 prepare_environment()
 if 'IPython' in sys.modules:
     importlib.import_module('labkit.ros2.magic').register()

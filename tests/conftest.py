@@ -230,6 +230,11 @@ class Kernel:
         """Run a cell to its end."""
         return self.finish(self.start(code, cell_id), timeout)
 
+    def inspect(self, code: str) -> str:
+        """Return what Shift and Tab show at the end of a piece of code."""
+        answer = self._client.inspect(code, reply=True, timeout=TIMEOUT_SEC)
+        return re.sub(r'\x1b\[[\d;]*m', '', answer['content']['data'].get('text/plain', ''))
+
     def outputs_of(self, msg_id: str) -> list[dict[str, Any]]:
         """Return what a cell shows up to now, late output included."""
         outputs: list[dict[str, Any]] = []
