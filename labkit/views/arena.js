@@ -6,17 +6,10 @@ const LEAST = 1.0;
 const RADIUS = 0.105; // of a TurtleBot3 Burger, m
 const SCAN_X = -0.032; // place of its scanner on the heading, m
 const SAME_WALL = 8; // see arena_picture.py
-const QUIET_MS = 2500;
-
-function element(tag, properties = {}, ...children) {
-  const made = Object.assign(document.createElement(tag), properties);
-  made.append(...children);
-  return made;
-}
 
 function emptyScene() {
   return {
-    pose: null, trail: [], scan: null, goals: [], topic: '/odom',
+    pose: null, trail: [], scan: null, goals: [],
     shown: [-LEAST, -LEAST, LEAST, LEAST],
   };
 }
@@ -34,7 +27,6 @@ function include(shown, x, y) {
 
 function take(scene, news, scan) {
   if (news.lifted) scene.trail = [];
-  if (news.topic) scene.topic = news.topic;
   if (news.goals) {
     scene.goals = news.goals;
     for (const [x, y] of scene.goals) include(scene.shown, x, y);
@@ -80,7 +72,7 @@ class Map2d {
     this.x0 = width / 2 - (this.scale * (left + right)) / 2;
     this.y0 = height / 2 + (this.scale * (bottom + top)) / 2;
     const style = getComputedStyle(this.canvas);
-    this.colour = (name) => style.getPropertyValue(`--labkit-arena-${name}`).trim() || '#777';
+    this.colour = (name) => style.getPropertyValue(`--labkit-${name}`).trim() || '#777';
     this.font = `11px ${style.fontFamily}`;
   }
 
@@ -246,9 +238,7 @@ const ARROWS = {
 };
 
 function render({ model, el }) {
-  el.classList.add('labkit-arena');
-  el.setAttribute('data-lm-suppress-shortcuts', 'true');
-  el.addEventListener('keydown', (event) => event.stopPropagation());
+  el.classList.add('labkit-live', 'labkit-arena');
   const words = element('div', { className: 'labkit-arena-words' });
   words.setAttribute('aria-live', 'polite');
   const canvas = element('canvas', { tabIndex: 0 });
@@ -257,10 +247,9 @@ function render({ model, el }) {
     'aria-label',
     'Map around the robot, told in words below. Arrow keys move a cross, Escape removes it.',
   );
-  el.append(canvas, words);
   const map = new Map2d(canvas);
   const scene = emptyScene();
-  let [cursor, frame, last, quiet] = [null, 0, performance.now(), false];
+  let [cursor, frame] = [null, 0];
 
   const redraw = () => {
     frame ||= requestAnimationFrame(() => {
@@ -268,19 +257,15 @@ function render({ model, el }) {
       if (canvas.clientWidth) map.draw(scene, cursor);
     });
   };
-  const onMessage = (news, buffers) => {
-    last = performance.now();
-    quiet = false;
+  const { note, end } = follow(model, el, (news, buffers) => {
     take(scene, news, buffers?.[0]);
-    // Only what is new, or a screen reader speaks it again.
-    if (news.text && words.textContent !== news.text) words.textContent = news.text;
-    if (news.closed) words.textContent += ' (This map has ended. Run its cell to start a new one.)';
+    if (news.text) setText(words, news.text);
     // For those who look on from outside, such as tests.
     canvas.dataset.frames = Number(canvas.dataset.frames ?? 0) + 1;
     if (scene.pose) canvas.dataset.pose = scene.pose.map((value) => value.toFixed(3)).join(' ');
     redraw();
-  };
-  model.on('msg:custom', onMessage);
+  });
+  el.append(canvas, words, note);
   canvas.addEventListener('pointermove', ({ offsetX, offsetY }) => {
     if (map.scale) cursor = map.metres(offsetX, offsetY);
     redraw();
@@ -303,24 +288,12 @@ function render({ model, el }) {
   sizes.observe(canvas);
   const themes = new MutationObserver(redraw);
   themes.observe(document.body, { attributes: true });
-  const watch = setInterval(() => {
-    if (!quiet && scene.pose && performance.now() - last > QUIET_MS) {
-      quiet = true;
-      words.textContent += ` Nothing new on ${scene.topic}.`;
-    }
-  }, 500);
-  // Several views may show the same map.
-  model.labkitViews = (model.labkitViews ?? 0) + 1;
-  model.send({ view: 'seen' });
 
   return () => {
-    model.off('msg:custom', onMessage);
     sizes.disconnect();
     themes.disconnect();
-    clearInterval(watch);
     cancelAnimationFrame(frame);
-    model.labkitViews -= 1;
-    if (!model.labkitViews) model.send({ view: 'gone' });
+    end();
   };
 }
 

@@ -8,27 +8,26 @@ it. Where widgets can't run, the scene is shown as a picture (`labkit.views.aren
 from __future__ import annotations
 
 import math
-import threading
 import time
 from collections import deque
 from collections.abc import Iterable
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
-import anywidget
 import numpy as np
 
-from labkit import settings
-from labkit.background.runtime import runtime
 from labkit.errors import LabError
 from labkit.sim.kinematics import BURGER, Pose, Twist2, wrap_angle, yaw_from_quaternion
 from labkit.views.arena_picture import Scene, to_svg
-from labkit.views.live import replace_earlier
+from labkit.views.feed import Feed, heard
+from labkit.views.live import helper
+from labkit.views.live_page import LivePage, News
+
+if TYPE_CHECKING:
+    from nav_msgs.msg import Odometry
+    from sensor_msgs.msg import LaserScan
 
 __all__ = ['Arena', 'arena']
 
-# The page gets news at most this often, Hz.
-FRAME_RATE = 30.0
 # Words change no more often than this, s: a screen reader has to be able to speak them.
 WORDS_SEC = 1.0
 # A point of the trail, m from the one before. A longer way at once is none that was driven.
@@ -36,21 +35,9 @@ TRAIL_STEP, JUMP = 0.01, 0.5
 TRAIL_LENGTH = 5000
 # How long a picture waits for the first message of a topic that somebody publishes, s.
 FIRST_SEC = 1.0
-# A page that sees the robot stand is told so this often, s.
-STANDING_SEC = 1.0
-
-# The arenas that live, each with the cell and its execution that made it.
-_live: dict[Arena, tuple[str, str]] = {}
 
 
-class _Canvas(anywidget.AnyWidget):
-    """The canvas in the page. It draws what it is sent, and says when it is seen and gone."""
-
-    _esm = Path(__file__).with_name('arena.js')
-    _css = Path(__file__).with_name('arena.css')
-
-
-class Arena:
+class Arena(LivePage):
     """A live map around one robot, to be shown in a cell; see `arena`.
 
     Attributes:
@@ -59,32 +46,23 @@ class Arena:
         scene: What was heard last.
     """
 
+    _name = 'arena'
+    _period = 1 / 30
+
     def __init__(
         self, *, odom: str, scan: str, namespace: str, goals: Iterable[tuple[float, float]]
     ) -> None:
-        runtime.start()
-        self.odom, self.scan = _full_name(odom, namespace), _full_name(scan, namespace)
         self.scene = Scene(goals=_checked(goals))
+        super().__init__(_feeds(odom, scan, namespace, self))
+        self.odom, self.scan = (feed.topic for feed in self._feeds)
         self._trail: deque[tuple[float, float]] = deque(maxlen=TRAIL_LENGTH)
-        # Guards the scene and what the page does not know yet.
-        self._lock = threading.Lock()
-        self._news: dict[str, Any] = {}
-        self._new_trail: list[float] = []
-        self._new_scan: bytes | None = None
-        # What the page was told last, and when.
-        self._told: tuple[tuple[float, ...], bytes] = ((), b'')
-        self._told_at = self._worded_at = 0.0
-        self._words_due = False
-        self._node: Any = None
-        # The topics on which something has come since it subscribed.
+        # The topics on which something has come since it listens.
         self._heard: set[str] = set()
-        self._entities: list[tuple[str, Any]] = []
-        self._canvas: _Canvas | None = None
-        if settings.audience().live:
-            self._canvas = _Canvas()
-            self._canvas.on_msg(self._on_message)
-        replace_earlier(_live, self)
-        self._subscribe()
+        # What the page does not know yet.
+        self._lifted = False
+        self._new_trail: list[float] = []
+        self._new_scan = self._last_scan = b''
+        self._worded_at = 0.0
 
     # -- for cells ------------------------------------------------------------------------------
 
@@ -95,83 +73,35 @@ class Arena:
             f'Nothing was heard on {self.odom} yet. Start a robot with lab.spin(lab.Turtlebot()).'
         )
 
-    def close(self) -> None:
-        """Listen no more. What is shown stays as it is."""
-        _live.pop(self, None)
-        self._unsubscribe()
-        if self._canvas is not None:
-            self._canvas.send({'closed': True})
-
-    def __enter__(self) -> Arena:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
     def __repr__(self) -> str:
+        self._wait_for_first()
         return self.text
 
-    def _repr_mimebundle_(self, **_: object) -> dict[str, Any]:
-        if self in _live and self._canvas is None:
-            self._subscribe()
+    def _still(self) -> dict[str, str]:
+        if self._watched and not self._ended and self._node is None:
+            # Before the page asks for it: it can't while the cell goes on and lets a robot drive.
+            self._open()
         self._wait_for_first()
         with self._lock:
             self.scene.trail = list(self._trail)
-            svg = to_svg(self.scene, self.text)
-            bundle: dict[str, Any] = {'text/plain': self.text, 'image/svg+xml': svg}
-        if self._canvas is None:
-            # Nobody looks on, so it listens only as long as it takes to draw a picture.
-            self._unsubscribe()
-        else:
-            shown: Any = self._canvas._repr_mimebundle_()
-            bundle = {**(shown[0] if isinstance(shown, tuple) else shown or {}), **bundle}
-        return bundle
+            return {'text/plain': self.text, 'image/svg+xml': to_svg(self.scene, self.text)}
 
     # -- ROS ------------------------------------------------------------------------------------
 
-    def _subscribe(self) -> None:
-        """Listen, on labkit's hidden node: a view is no part of the learner's graph."""
-        from nav_msgs.msg import Odometry
-        from rclpy.qos import QoSProfile, ReliabilityPolicy
-        from sensor_msgs.msg import LaserScan
-
-        if self._node is not None and self._node is runtime.helper:
-            return
-        self._heard.clear()
-        self._node = node = runtime.helper
-        assert node is not None
-        # Best effort hears every publisher, whatever it offers.
-        qos = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)  # type: ignore[no-untyped-call]
-        self._entities = [
-            (
-                'subscription',
-                node.create_subscription(Odometry, self.odom, self._on_odometry, qos),
-            ),
-            ('subscription', node.create_subscription(LaserScan, self.scan, self._on_scan, qos)),
-        ]
-        if self._canvas is not None:
-            self._entities.append(('timer', node.create_timer(1 / FRAME_RATE, self._push)))
-
-    def _unsubscribe(self) -> None:
-        if self._node is not None and self._node is runtime.helper:
-            for kind, entity in self._entities:
-                getattr(self._node, f'destroy_{kind}')(entity)
-        self._node, self._entities = None, []
-
     def _wait_for_first(self) -> None:
         """Give topics that are published a moment to be heard, so that there is a picture."""
-        if self._node is None or self._node is not runtime.helper:
+        if self._ended:
             return
-        count = runtime.helper.count_publishers
+        if self._node is None:
+            self._heard.clear()
 
-        def heard() -> bool:
-            return all(
-                topic in self._heard or count(topic) == 0 for topic in (self.odom, self.scan)
-            )
+        def enough() -> bool:
+            return all(feed.topic in self._heard or not feed.publishers for feed in self._feeds)
 
-        runtime.wait(heard, FIRST_SEC)
+        with heard(self._feeds, enough, timeout_sec=FIRST_SEC):
+            pass
 
-    def _on_odometry(self, message: Any) -> None:
+    def _on_odometry(self, message: Odometry) -> None:
         position, turn = message.pose.pose.position, message.pose.pose.orientation
         yaw = yaw_from_quaternion(turn.x, turn.y, turn.z, turn.w)
         speeds = message.twist.twist
@@ -182,19 +112,17 @@ class Arena:
         self._heard.add(self.odom)
         with self._lock:
             self.scene.pose, self.scene.twist = Pose(*numbers[:3]), Twist2(*numbers[3:])
-            if numbers != self._told[0] or time.monotonic() - self._told_at > STANDING_SEC:
-                self._news['pose'] = numbers
             way = math.dist(self._trail[-1], point) if self._trail else math.inf
             if way > JUMP:
                 # The robot was put there: its path begins anew.
                 self._trail.clear()
                 self._new_trail.clear()
-                self._news['lifted'] = True
+                self._lifted = True
             if way >= TRAIL_STEP:
                 self._trail.append(point)
                 self._new_trail += point
 
-    def _on_scan(self, message: Any) -> None:
+    def _on_scan(self, message: LaserScan) -> None:
         ranges = np.array(message.ranges, dtype=np.float64)
         # REP 117: +inf is nothing, -inf too near. Some drivers write 0 for nothing.
         good = np.isfinite(ranges) & (ranges >= message.range_min) & (ranges <= message.range_max)
@@ -216,49 +144,29 @@ class Arena:
                 beam = int(np.nanargmin(ranges))
                 self.scene.nearest = float(ranges[beam]), wrap_angle(float(angles[beam]))
             numbers = ends.astype('<f4').tobytes()
-            if numbers != self._told[1]:
-                self._new_scan = numbers
+            self._new_scan = numbers if numbers != self._last_scan else b''
 
     # -- the page -------------------------------------------------------------------------------
 
-    def _on_message(self, _: object, content: dict[str, Any], __: object) -> None:
-        """The page says that somebody sees the canvas, or that nobody does any more."""
-        if content.get('view') == 'gone':
-            self._unsubscribe()
-        elif content.get('view') == 'seen' and self in _live:
-            if runtime.started:
-                self._subscribe()
-            self._send(everything=True)
-
-    def _push(self) -> None:
-        """Tell the page what is new, if anything is."""
-        words = self._words_due and time.monotonic() - self._worded_at >= WORDS_SEC
-        if self._news or self._new_trail or self._new_scan or words:
-            self._send()
-
-    def _send(self, *, everything: bool = False) -> None:
-        if self._canvas is None:
-            return
-        with self._lock:
-            if everything:
-                self._gather_everything()
-            news, scan = {**self._news, 'trail': self._new_trail}, self._new_scan
-            self._told = (news.get('pose', self._told[0]), scan or self._told[1])
-            self._told_at = now = time.monotonic()
-            self._words_due = everything or now - self._worded_at < WORDS_SEC
-            if everything or not self._words_due:
-                self._worded_at, news['text'] = now, self.text
-            self._news, self._new_trail, self._new_scan = {}, [], None
-        self._canvas.send(news, [scan] if scan is not None else None)
-
-    def _gather_everything(self) -> None:
-        """Let the next message tell all that is known, for a page that has just been opened."""
-        scene = self.scene
-        self._news = {'lifted': True, 'goals': scene.goals, 'topic': self.odom}
-        self._new_trail = [number for point in self._trail for number in point]
-        self._new_scan = self._new_scan or self._told[1] or None
+    def _news(self, everything: bool) -> News:
+        scene, now = self.scene, time.monotonic()
+        if everything:
+            self._lifted, self._new_scan = True, self._new_scan or self._last_scan
+            self._new_trail = [number for point in self._trail for number in point]
+        state: dict[str, object] = {'goals': scene.goals}
         if scene.pose is not None:
-            self._news['pose'] = (*scene.pose, *scene.twist)
+            state['pose'] = (*scene.pose, *scene.twist)
+        if everything or now - self._worded_at >= WORDS_SEC:
+            self._worded_at = now
+            silences = (feed.silence() for feed in self._feeds)
+            state |= {'text': self.text, 'note': next(filter(None, silences), '')}
+        news = self._new_of(state)
+        if self._lifted or self._new_trail:
+            news |= {'lifted': self._lifted, 'trail': self._new_trail}
+        scans = [self._new_scan] if self._new_scan else []
+        self._last_scan = self._new_scan or self._last_scan
+        self._lifted, self._new_trail, self._new_scan = False, [], b''
+        return news, scans
 
 
 def arena(
@@ -286,6 +194,23 @@ def arena(
         LabError: A goal is not a pair of numbers.
     """
     return Arena(odom=odom, scan=scan, namespace=namespace, goals=goals)
+
+
+def _feeds(odom: str, scan: str, namespace: str, view: Arena) -> list[Feed]:
+    """Return what an arena listens to."""
+    from nav_msgs.msg import Odometry
+    from rclpy.qos import QoSProfile, ReliabilityPolicy
+    from sensor_msgs.msg import LaserScan
+
+    # Best effort hears every publisher, whatever it offers.
+    qos = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)  # type: ignore[no-untyped-call]
+    return [
+        Feed(_full_name(topic, namespace), helper(), take, msg_type=msg_type, qos_profile=qos)
+        for topic, msg_type, take in (
+            (odom, Odometry, view._on_odometry),
+            (scan, LaserScan, view._on_scan),
+        )
+    ]
 
 
 def _full_name(topic: str, namespace: str) -> str:

@@ -8,10 +8,14 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from labkit.background.compat import RCLError
+from labkit.background.discovery import alone, asking_node
 from labkit.background.nodes import node_exists
+from labkit.background.runtime import runtime
 from labkit.errors import LabError
 from labkit.ros2.qos_options import match_all
 from labkit.rosgraph.endpoints import Endpoint, publishers
@@ -22,14 +26,20 @@ from labkit.rosgraph.names import full_topic_name
 if TYPE_CHECKING:
     from rclpy.node import Node
     from rclpy.qos import QoSProfile
+    from rclpy.subscription import Subscription
 
-__all__ = ['Feed', 'checked_type']
+__all__ = ['STILL_SEC', 'Feed', 'checked_type', 'heard']
 
 DEPTH = 100
 # The rate is that of the last messages of so many seconds, and of the last two at least.
 RATE_SEC = 2.0
 # A topic is said to be silent when nothing has come for so long, in seconds.
 SILENT_SEC = 1.0
+# How long a still picture waits for messages, s, and for somebody to publish any: in this process,
+# or in another one, which may have been started just now.
+STILL_SEC = 4.0
+NOBODY_SEC = 1.0
+NOBODY_ELSEWHERE_SEC = 3.0
 
 
 class Feed:
@@ -60,7 +70,7 @@ class Feed:
         node: Node,
         take: Callable[[Any], None],
         *,
-        msg_type: Any = None,
+        msg_type: type | None = None,
         qos_profile: QoSProfile | int | None = None,
         raw: bool = False,
     ) -> None:
@@ -72,8 +82,8 @@ class Feed:
         self._profile_wanted, self._raw = qos_profile, raw
         self._take = take
         self._node: Node | None = None
-        self._subscription: Any = None
-        self._profile: Any = None
+        self._subscription: Subscription | None = None
+        self._profile: QoSProfile | None = None
         self._problem = ''
         self._changed_at = 0.0
         # Moments and how many messages had come by then.
@@ -92,6 +102,11 @@ class Feed:
         """Listen no more."""
         self._unsubscribe()
         self._node = None
+
+    @property
+    def is_open(self) -> bool:
+        """Tell whether it listens, or waits for something to listen to."""
+        return self._node is not None
 
     @property
     def has_new_publishers(self) -> bool:
@@ -127,11 +142,11 @@ class Feed:
         self.msg_type = msg_type
         profile = self._profile_to_use()
         wanted = (msg_type, profile.reliability, profile.durability)
-        if self._subscription is None or wanted != self._heard_as():
+        if wanted != self._heard_as():
             self._unsubscribe()
             self._subscribe(profile)
 
-    def _type_to_hear(self) -> Any:
+    def _type_to_hear(self) -> type | None:
         """Return the class to subscribe to, None if it is not the time to."""
         types = sorted({end.msg_type for end in self.publishers})
         if self._wanted is not None:
@@ -144,7 +159,7 @@ class Feed:
             )
         return message_class(types[0]) if types else None
 
-    def _profile_to_use(self) -> Any:
+    def _profile_to_use(self) -> QoSProfile:
         from rclpy.qos import QoSProfile
 
         if isinstance(self._profile_wanted, QoSProfile):
@@ -156,17 +171,14 @@ class Feed:
             match_all(profile, offered)
         return profile
 
-    def _heard_as(self) -> tuple[Any, Any, Any]:
-        return (
-            self._subscription.msg_type,
-            self._profile.reliability,
-            self._profile.durability,
-        )
+    def _heard_as(self) -> tuple[object, ...] | None:
+        if self._subscription is None or self._profile is None:
+            return None
+        profile = self._profile
+        return self._subscription.msg_type, profile.reliability, profile.durability
 
-    def _subscribe(self, profile: Any) -> None:
+    def _subscribe(self, profile: QoSProfile) -> None:
         from rclpy.event_handler import SubscriptionEventCallbacks
-
-        from labkit.background.compat import RCLError
 
         assert self._node is not None
         self._profile = profile
@@ -231,14 +243,51 @@ class Feed:
         return why_silent(self._node, self.topic, self.msg_type, self._profile_to_use())
 
 
-def checked_type(msg_type: Any) -> Any:
+@contextmanager
+def heard(
+    feeds: Sequence[Feed], enough: Callable[[], object], *, timeout_sec: float = STILL_SEC
+) -> Iterator[None]:
+    """Wait for messages of topics; they stay open for as long as a `with` block lasts.
+
+    Args:
+        feeds: The topics. Those that are open stay so.
+        enough: Tells whether there are enough messages. Waiting ends too when time is over, or
+            when nobody publishes one of the topics.
+        timeout_sec: Seconds to wait.
+    """
+    node = asking_node()
+    begin, patience = time.monotonic(), NOBODY_SEC if alone() else NOBODY_ELSEWHERE_SEC
+
+    def done() -> bool:
+        for feed in feeds:
+            if not feed.is_settled:
+                feed.look()
+        late = time.monotonic() - begin > patience
+        settled = all(feed.is_settled for feed in feeds)
+        return bool(settled and enough()) or (
+            late and not all(feed.is_promising for feed in feeds)
+        )
+
+    closed = [feed for feed in feeds if not feed.is_open]
+    for feed in closed:
+        feed.open(node)
+    try:
+        runtime.wait(done, timeout_sec)
+        yield
+    finally:
+        for feed in closed:
+            feed.close()
+
+
+def checked_type(msg_type: type | str | None) -> type | None:
     """Return the class that a learner names: a class, `'std_msgs/msg/String'`, or None.
 
     Raises:
         LabError: There is no such type.
     """
     if isinstance(msg_type, str):
-        return message_class(msg_type)
+        found: type = message_class(msg_type)
+        return found
     if msg_type is None or hasattr(msg_type, 'get_fields_and_field_types'):
         return msg_type
     raise LabError(

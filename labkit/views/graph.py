@@ -2,60 +2,50 @@
 
 JupyterLab draws Mermaid diagrams by itself, offline and in the colours of its theme. Everywhere
 else, and for screen readers, the graph is told in words.
+
+A live picture is the cell's output, replaced again and again. It has no part in the page, which
+would have to bring a Mermaid of its own, as large as all of labkit. So nobody tells whether it is
+looked at: it follows until its cell is run again, or ROS is stopped.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
-from labkit import settings
 from labkit.background.discovery import soon
-from labkit.background.runtime import runtime
 from labkit.errors import LabError
 from labkit.rosgraph.snapshot import Graph, GraphNode, is_whole, read_graph
+from labkit.views.live import Live, helper
+
+if TYPE_CHECKING:
+    from IPython.display import DisplayHandle
 
 __all__ = ['GraphView', 'graph', 'to_mermaid']
 
-UPDATE_SEC = 0.5
 # Above this many boxes, they are drawn closer together.
 MANY = 20
 # The words on an arrow hide the arrow behind them.
 CSS = '.edgeLabel rect {opacity: 1}'
 
-# Live pictures by the id of their cell, so that a cell that is run again ends its earlier one.
-_live: dict[str, GraphView] = {}
 
-
-class GraphView:
+class GraphView(Live):
     """The computation graph, to be shown in a cell.
 
     Attributes:
         data: The graph as data, see `labkit.rosgraph.snapshot.Graph`.
     """
 
+    _name = 'graph'
+    _period = 0.5
+
     def __init__(self, *, services: bool, hidden: bool, live: bool) -> None:
-        self._services = services
-        self._hidden = hidden
-        self._is_live = live and settings.audience().live
-        self._handle: Any = None
-        self._timer: Any = None
-        runtime.start()
-        helper = runtime.helper
-        assert helper is not None
-        soon(lambda: is_whole(helper))
+        super().__init__()
+        self._services, self._hidden = services, hidden
+        self._follows = live and self._watched
+        self._handle: DisplayHandle | None = None
+        node = helper()
+        soon(lambda: is_whole(node))
         self.data = self._read()
-
-    def close(self) -> None:
-        """Follow changes no more. The picture stays as it is."""
-        if self._timer is not None and runtime.helper is not None:
-            runtime.helper.destroy_timer(self._timer)
-        self._timer = None
-
-    def __enter__(self) -> GraphView:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def __repr__(self) -> str:
         if not self.data.nodes:
@@ -71,40 +61,33 @@ class GraphView:
     def _ipython_display_(self) -> None:
         from IPython.display import display
 
-        bundle = self._repr_mimebundle_()
-        if not self._is_live:
-            display(bundle, raw=True)  # type: ignore[no-untyped-call]
-            return
-        self._handle = display(  # type: ignore[no-untyped-call]
-            bundle, raw=True, display_id=True
+        follows = self._follows and not self._ended
+        handle = display(  # type: ignore[no-untyped-call]
+            self._repr_mimebundle_(), raw=True, display_id=follows or None
         )
-        self._follow()
+        if follows:
+            self._handle = handle
+            self._take_place()
+            if self._node is None:
+                self._open()
 
-    def _follow(self) -> None:
-        cell_id = runtime.console.current_cell().cell_id
-        earlier = _live.pop(cell_id, None)
-        if earlier is not None:
-            earlier.close()
-        self.close()
-        runtime.start()
-        assert runtime.helper is not None
-        self._timer = runtime.helper.create_timer(UPDATE_SEC, self._update)
-        _live[cell_id] = self
-
-    def _update(self) -> None:
+    def _tick(self) -> None:
         now = self._read()
         if now != self.data:
             self.data = now
-            self._handle.update(self._repr_mimebundle_(), raw=True)
+            self._show(self._repr_mimebundle_())
+
+    def _say_end(self) -> None:
+        # What was shown would go on telling of nodes that are gone.
+        if self._cut_off():
+            self._show({'text/plain': self._ended})
+
+    def _show(self, bundle: dict[str, str]) -> None:
+        if self._handle is not None:
+            self._handle.update(bundle, raw=True)  # type: ignore[no-untyped-call]
 
     def _read(self) -> Graph:
-        runtime.start()
-        assert runtime.helper is not None
-        return read_graph(
-            runtime.helper,
-            include_hidden=self._hidden,
-            include_services=self._services,
-        )
+        return read_graph(helper(), include_hidden=self._hidden, include_services=self._services)
 
 
 def graph(*, services: bool = False, hidden: bool = False, live: bool = False) -> GraphView:
@@ -117,10 +100,15 @@ def graph(*, services: bool = False, hidden: bool = False, live: bool = False) -
     Args:
         services: Whether to show services too.
         hidden: Whether to show hidden nodes and topics, and those that every node has.
-        live: Whether the picture follows what changes, until the cell is run again.
+        live: Whether the picture follows what changes, until the cell is run again or ROS is
+            stopped.
 
     Returns:
-        What a cell shows as a picture, and `print()` as text. `.data` is the graph as data.
+        What a cell shows as a picture, and `print()` as text. `.data` is the graph as data, and
+        `.close()` ends a live one.
+
+    Raises:
+        LabError: An argument is neither True nor False.
     """
     for name, value in (('services', services), ('hidden', hidden), ('live', live)):
         if not isinstance(value, bool):

@@ -74,18 +74,14 @@ function render({ model, el }) {
   const type = element('span', { className: 'labkit-monitor-type' });
   const [rate, count, last] = ['Rate', 'Messages', 'Last one came'].map(figure);
   const figures = element('dl', {}, rate.box, count.box, last.box);
-  const note = element('p', { className: 'labkit-live-note', hidden: true });
-  note.setAttribute('role', 'status');
   const tree = element('div', { className: 'labkit-monitor-tree' });
   const publishers = publishersTable();
-  el.append(element('header', {}, topic, type), figures, note, tree, publishers.box);
-
   const closed = new Set();
   let [places, heardAt] = [[], null];
   const showAge = () => {
     if (heardAt !== null) setText(last.place, `${age((performance.now() - heardAt) / 1000)} ago`);
   };
-  const end = follow(model, el, note, (news) => {
+  const { note, end } = follow(model, el, (news) => {
     if (news.topic) {
       topic.textContent = news.topic;
       el.setAttribute('aria-label', `Monitor of ${news.topic}`);
@@ -100,6 +96,7 @@ function render({ model, el }) {
     tree.hidden = !places.length;
     showAge();
   });
+  el.append(element('header', {}, topic, type), figures, note, tree, publishers.box);
   const ageing = setInterval(showAge, AGE_MS);
   return () => {
     clearInterval(ageing);

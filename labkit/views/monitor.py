@@ -7,53 +7,54 @@ Messages are taken as bytes; only one that is shown is made into a Python object
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from labkit.background.runtime import runtime
 from labkit.errors import LabError
 from labkit.rosgraph.endpoints import Endpoint
 from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.names import UNKNOWN_NODE
-from labkit.views.feed import Feed, checked_type
-from labkit.views.live import Live, heard, page_widget
+from labkit.views.feed import Feed, checked_type, heard
+from labkit.views.live import helper
+from labkit.views.live_page import LivePage, News
 from labkit.views.message_tree import as_text, rows
 
 if TYPE_CHECKING:
+    from enum import Enum
+
     from rclpy.qos import QoSProfile
 
 __all__ = ['Monitor', 'monitor']
 
-# What changes more often than this can't be read, s.
-READ_SEC = 0.1
 
-_Page = page_widget('monitor')
-
-
-class Monitor(Live):
+class Monitor(LivePage):
     """A live view of one topic, to be shown in a cell; see `monitor`.
 
     Attributes:
         topic: Full name of the topic.
     """
 
-    _what = 'monitor'
+    _name = 'monitor'
+    # What changes more often can't be read.
+    _period = 0.1
 
     def __init__(
-        self, topic: str, *, msg_type: Any, qos_profile: QoSProfile | int | None, count: int
+        self,
+        topic: str,
+        *,
+        msg_type: type | str | None,
+        qos_profile: QoSProfile | int | None,
+        count: int,
     ) -> None:
         if not isinstance(count, int) or count < 1:
             raise LabError(f'count must be a whole number of at least 1, but it is {count!r}.')
-        runtime.start()
-        self._options = {'msg_type': checked_type(msg_type), 'qos_profile': qos_profile}
+        self._msg_type, self._qos_profile = checked_type(msg_type), qos_profile
         self._feed = self._new_feed(topic, self._take)
         self.topic = self._feed.topic
-        self._last: tuple[Any, bytes] | None = None
-        # What the page was told last, and when.
-        self._told: dict[str, Any] = {}
-        self._told_at = 0.0
-        super().__init__(_Page, [self._feed])
+        self._last: tuple[type | None, bytes] | None = None
         self._wanted = count
-        self._text = self._still() if self._widget is None else ''
+        super().__init__([self._feed])
+        self._text = '' if self._watched else self._heard_text()
 
     @property
     def count(self) -> int:
@@ -61,22 +62,26 @@ class Monitor(Live):
         return self._feed.count
 
     def __repr__(self) -> str:
-        return self._text or self._still()
+        return self._text or self._heard_text()
 
-    def _repr_mimebundle_(self, **_: object) -> dict[str, Any]:
-        if self._widget is None:
-            return {'text/plain': self._text}
+    def _still(self) -> dict[str, str]:
         words = f'Monitor of {self.topic}: live, for as long as a page shows it.'
-        return {**self._page_bundle(), 'text/plain': words}
+        return {'text/plain': self._text or words}
 
-    def _new_feed(self, topic: str, take: Any) -> Feed:
-        assert runtime.helper is not None
-        return Feed(topic, runtime.helper, take, raw=True, **self._options)
+    def _new_feed(self, topic: str, take: Callable[[bytes], None]) -> Feed:
+        return Feed(
+            topic,
+            helper(),
+            take,
+            msg_type=self._msg_type,
+            qos_profile=self._qos_profile,
+            raw=True,
+        )
 
     def _take(self, data: bytes) -> None:
         self._last = (self._feed.msg_type, data)
 
-    def _still(self) -> str:
+    def _heard_text(self) -> str:
         """Wait for messages; return the last of them as text that is the same each time."""
         messages: list[bytes] = []
         feed = self._new_feed(self.topic, messages.append)
@@ -91,13 +96,8 @@ class Monitor(Live):
             message = _message(feed.msg_type, messages[: self._wanted][-1])
             return '\n'.join([*lines, as_text(rows(message, no_time=True))])
 
-    def _news(self, everything: bool) -> tuple[dict[str, Any], list[bytes]]:
-        now = time.monotonic()
-        if everything:
-            self._told = {}
-        elif now - self._told_at < READ_SEC:
-            return {}, []
-        feed, self._told_at = self._feed, now
+    def _news(self, everything: bool) -> News:
+        now, feed = time.monotonic(), self._feed
         rate = feed.rate()
         state: dict[str, Any] = {
             'topic': self.topic,
@@ -112,15 +112,13 @@ class Monitor(Live):
             tree = rows(_message(*self._last))
             state['fields'] = [row[:-1] for row in tree]
             state['values'] = [row.value for row in tree]
-        news = {key: value for key, value in state.items() if value != self._told.get(key)}
-        self._told.update(state)
-        return news, []
+        return self._new_of(state), []
 
 
 def monitor(
     topic: str,
     *,
-    msg_type: Any = None,
+    msg_type: type | str | None = None,
     qos_profile: QoSProfile | int | None = None,
     count: int = 1,
 ) -> Monitor:
@@ -132,19 +130,21 @@ def monitor(
     Args:
         topic: Name of the topic. It need not exist yet.
         msg_type: Class of its messages, or its name. By default that of the publishers.
-        qos_profile: QoS profile or queue depth. By default one that hears all publishers.
+        qos_profile: QoS profile, or queue depth in messages. By default one that hears all
+            publishers.
         count: For the text: how many messages to wait for. The last of them is shown.
 
     Returns:
         What a cell shows. `.close()` ends it.
 
     Raises:
-        LabError: `topic` is no name of a topic, or there is no such type.
+        LabError: `topic` is no name of a topic, there is no such type, or `count` is no number
+            of messages.
     """
     return Monitor(topic, msg_type=msg_type, qos_profile=qos_profile, count=count)
 
 
-def _message(msg_type: Any, data: bytes) -> Any:
+def _message(msg_type: type | None, data: bytes) -> Any:
     from rclpy.serialization import deserialize_message
 
     return deserialize_message(data, msg_type)
@@ -162,5 +162,5 @@ def _name(end: Endpoint) -> str:
     return 'not known yet' if UNKNOWN_NODE in end.node else end.node
 
 
-def _word(policy: Any) -> str:
+def _word(policy: Enum) -> str:
     return str(policy.name).lower().replace('_', ' ')

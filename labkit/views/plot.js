@@ -251,13 +251,10 @@ function render({ model, el }) {
   el.setAttribute('role', 'group');
   const canvas = element('canvas');
   canvas.setAttribute('role', 'img');
-  const note = element('p', { className: 'labkit-live-note', hidden: true });
-  note.setAttribute('role', 'status');
   const button = element('button', { type: 'button', textContent: 'Pause' });
   const data = new Lines();
   const legend = new Legend();
   const sheet = new Sheet(canvas);
-  el.append(element('header', {}, legend.table, button), note, canvas);
   let [paused, frame, drawnAt, toldAt] = [null, 0, 0, 0];
 
   const draw = (moment) => {
@@ -278,7 +275,7 @@ function render({ model, el }) {
     button.textContent = paused ? 'Resume' : 'Pause';
     el.classList.toggle('labkit-plot-paused', paused !== null);
   });
-  const end = follow(model, el, note, (news, buffers) => {
+  const { note, end } = follow(model, el, (news, buffers) => {
     data.take(news, buffers);
     if (!news.series) return;
     legend.build(data.lines);
@@ -290,6 +287,7 @@ function render({ model, el }) {
     const height = units === 1 ? PANEL.one : PANEL.many * units + GAP * (units - 1);
     canvas.style.height = `${height + TOP + BOTTOM}px`;
   });
+  el.append(element('header', {}, legend.table, button), note, canvas);
   frame = requestAnimationFrame(draw);
   return () => {
     cancelAnimationFrame(frame);

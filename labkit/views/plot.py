@@ -14,12 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from labkit.background.runtime import runtime
 from labkit.errors import LabError
 from labkit.rosgraph.interfaces import message_class
 from labkit.rosgraph.names import full_topic_name
-from labkit.views.feed import Feed
-from labkit.views.live import Live, heard, page_widget
+from labkit.views.feed import Feed, heard
+from labkit.views.live import helper
+from labkit.views.live_page import LivePage, News
 from labkit.views.plot_fields import Source, parse, resolve, unit_of
 from labkit.views.plot_picture import COLOURS, Floats, Line, thin, to_svg
 
@@ -31,8 +31,6 @@ COLUMNS = 800
 MAX_WAITING = 20_000
 # Longest window, s.
 MOST_SEC = 3600.0
-
-_Page = page_widget('plot')
 
 
 class Series:
@@ -101,35 +99,33 @@ class Series:
         return thin(times, values, window / COLUMNS)
 
 
-class Plot(Live):
+class Plot(LivePage):
     """A live plot of fields, to be shown in a cell; see `plot`."""
 
-    _what = 'plot'
+    _name = 'plot'
+    # The page makes sure of no more than 20 in any second.
+    _period = 0.055
 
     def __init__(self, sources: list[Source], *, seconds: float, count: int) -> None:
-        runtime.start()
         self._sources, self._seconds, self._count = sources, seconds, count
         self._series = [Series(source) for source in sources]
         feeds = _feeds(self._series)
         for feed in feeds:
             _refuse_wrong_fields(feed, self._series)
-        # What the page was told last, and the moment that is its zero of time.
-        self._told: dict[str, Any] = {}
+        # The moment that is the page's zero of time.
         self._begin = 0.0
-        super().__init__(_Page, feeds)
-        self._bundle = self._still() if self._widget is None else {}
+        super().__init__(feeds)
+        self._bundle = {} if self._watched else self._heard_bundle()
 
     def __repr__(self) -> str:
-        return (self._bundle or self._still())['text/plain']
-
-    def _repr_mimebundle_(self, **_: object) -> dict[str, Any]:
-        if self._widget is None:
-            return self._bundle
-        names = ', '.join(source.text for source in self._sources)
-        words = f'Plot of {names}: live, for as long as a page shows it.'
-        return {**self._page_bundle(), 'text/plain': words}
+        return (self._bundle or self._heard_bundle())['text/plain']
 
     def _still(self) -> dict[str, str]:
+        names = ', '.join(source.text for source in self._sources)
+        words = f'Plot of {names}: live, for as long as a page shows it.'
+        return self._bundle or {'text/plain': words}
+
+    def _heard_bundle(self) -> dict[str, str]:
         """Wait for messages; return text and picture that are the same each time."""
         series = [Series(source) for source in self._sources]
         feeds = _feeds(series)
@@ -163,9 +159,7 @@ class Plot(Live):
             each.waiting.append((moment, math.nan))
         super()._open()
 
-    def _news(self, everything: bool) -> tuple[dict[str, Any], list[bytes]]:
-        if everything:
-            self._told = {}
+    def _news(self, everything: bool) -> News:
         parts, buffers = [], []
         for number, each in enumerate(self._series):
             chunk = each.everything(self._seconds) if everything else each.take(self._seconds)
@@ -179,8 +173,7 @@ class Plot(Live):
             'seconds': self._seconds,
             'note': ' '.join(_problems(self._series, self._feeds)),
         }
-        news: dict[str, Any] = {k: v for k, v in state.items() if v != self._told.get(k)}
-        self._told = state
+        news = self._new_of(state)
         if news or parts:
             news |= {'parts': parts, 'now': time.monotonic() - self._begin, 'anew': everything}
         return news, buffers
@@ -222,12 +215,11 @@ def plot(*fields: str, seconds: float = 10.0, count: int = 10) -> Plot:
 
 def _feeds(series: list[Series]) -> list[Feed]:
     """Return one subscription for each topic."""
-    assert runtime.helper is not None
     groups: dict[str, list[Series]] = {}
     for each in series:
-        each.topic = full_topic_name(each.source.topic, runtime.helper)
+        each.topic = full_topic_name(each.source.topic, helper())
         groups.setdefault(each.topic, []).append(each)
-    return [Feed(topic, runtime.helper, _adder(group)) for topic, group in groups.items()]
+    return [Feed(topic, helper(), _adder(group)) for topic, group in groups.items()]
 
 
 def _adder(group: list[Series]) -> Callable[[Any], None]:
@@ -241,8 +233,7 @@ def _adder(group: list[Series]) -> Callable[[Any], None]:
 
 def _refuse_wrong_fields(feed: Feed, series: list[Series]) -> None:
     """Raise a LabError for a field that can't be drawn, if the type of its messages is known."""
-    assert runtime.helper is not None
-    ends = runtime.helper.get_publishers_info_by_topic(feed.topic)
+    ends = helper().get_publishers_info_by_topic(feed.topic)
     types = {end.topic_type for end in ends}
     if len(types) == 1:
         msg_type = message_class(types.pop())

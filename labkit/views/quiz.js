@@ -3,12 +3,6 @@
 const LETTERS = 'abcdefghijklmnopqrstuvwxyz';
 let forms = 0;
 
-function element(tag, properties = {}, ...children) {
-  const made = Object.assign(document.createElement(tag), properties);
-  made.append(...children);
-  return made;
-}
-
 function inputs(question, name) {
   if (question.kind === 'text') {
     const field = element('input', { type: 'text', name, autocomplete: 'off' });
@@ -28,9 +22,7 @@ function given(form, question, name) {
 
 function render({ model, el }) {
   el.classList.add('labkit-quiz');
-  // JupyterLab's own keys (a, b, x, arrows) stay out of the form.
-  el.setAttribute('data-lm-suppress-shortcuts', 'true');
-  el.addEventListener('keydown', (event) => event.stopPropagation());
+  keepKeys(el);
   const spoken = model.get('questions').map((question, index) => {
     const number = index + 1;
     const name = `labkit-quiz-${(forms += 1)}`;

@@ -1,12 +1,12 @@
 """A quiz as a form in the notebook: real form elements, so keyboard and screen reader work.
 
 The page knows the questions only. An answer goes to the kernel, which says what it thinks of it.
+A form listens to nothing, so it has no end: nothing is left behind when its page is gone.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 import anywidget
@@ -14,6 +14,7 @@ import traitlets
 
 from labkit.errors import LabError
 from labkit.views.card import Card
+from labkit.views.widget import page_files, widget_bundle
 
 __all__ = ['QuizForm', 'quiz_form']
 
@@ -26,8 +27,7 @@ class QuizForm(anywidget.AnyWidget):
         feedback: For each question that was answered, by number: HTML.
     """
 
-    _esm = Path(__file__).with_name('quiz.js')
-    _css = Path(__file__).with_name('quiz.css')
+    _esm, _css = page_files('quiz')
     questions: traitlets.List[dict[str, Any]] = traitlets.List().tag(sync=True)
     feedback: traitlets.Dict[str, str] = traitlets.Dict().tag(sync=True)
 
@@ -51,10 +51,9 @@ class QuizForm(anywidget.AnyWidget):
             card = Card('warn', 'CANNOT TELL', 'the graph could not be asked', text=text)
         self.feedback = {**self.feedback, str(number): card._repr_html_()}
 
-    def bundle(self) -> dict[str, Any]:
+    def bundle(self) -> dict[str, object]:
         """Return the data that makes a notebook show the form."""
-        shown: Any = self._repr_mimebundle_()
-        return dict(shown[0] if isinstance(shown, tuple) else shown or {})
+        return widget_bundle(self)
 
 
 def quiz_form(questions: Sequence[dict[str, Any]], answer: Callable[[int, Any], Card]) -> QuizForm:
@@ -64,5 +63,8 @@ def quiz_form(questions: Sequence[dict[str, Any]], answer: Callable[[int, Any], 
         questions: For each one `text`, `how`, `kind` (`'radio'`, `'checkbox'` or `'text'`) and
             `labels`.
         answer: Called with the number of a question, from 1, and the answer: letters, or text.
+
+    Returns:
+        The form; `bundle()` gives what a cell shows.
     """
     return QuizForm(questions, answer)

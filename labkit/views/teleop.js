@@ -15,18 +15,6 @@ const HINT = 'Click here, then hold a key: w a d x or the arrows drive, s or spa
   '+ and - change the speed.';
 const DRIVING = 'Your keys drive the robot. It stops when you click elsewhere.';
 const SILENT = 'The kernel does not answer: it may be busy with a cell. The robot stops by itself.';
-const ENDED = 'This teleop has ended. Run its cell to start a new one.';
-
-function element(tag, properties = {}, ...children) {
-  const made = Object.assign(document.createElement(tag), properties);
-  made.append(...children);
-  return made;
-}
-
-// Say it once: a screen reader speaks what comes into the element.
-function say(place, text) {
-  if (place.textContent !== text) place.textContent = text;
-}
 
 class Driver {
   constructor(send, show) {
@@ -130,7 +118,7 @@ function roundPad(driver) {
   const knob = element('div', { className: 'labkit-teleop-knob' });
   const pad = element('div', { className: 'labkit-teleop-pad' }, knob);
   pad.title = 'Drag: up is forward, left turns left';
-  const follow = (event) => {
+  const drag = (event) => {
     const box = pad.getBoundingClientRect();
     const radius = box.width / 2 - 18;
     let x = (event.clientX - box.left - box.width / 2) / radius;
@@ -144,10 +132,10 @@ function roundPad(driver) {
   };
   pad.addEventListener('pointerdown', (event) => {
     pad.setPointerCapture(event.pointerId);
-    follow(event);
+    drag(event);
   });
   pad.addEventListener('pointermove', (event) => {
-    if (driver.pad !== null) follow(event);
+    if (driver.pad !== null) drag(event);
   });
   for (const kind of ['pointerup', 'pointercancel', 'lostpointercapture']) {
     pad.addEventListener(kind, () => {
@@ -179,21 +167,19 @@ function command([v, w], topic, count) {
 function render({ model, el }) {
   const hint = element('div', { className: 'labkit-teleop-wide labkit-teleop-hint' }, HINT);
   const published = element('div', { className: 'labkit-teleop-wide labkit-teleop-published' });
-  const notice = element('div', { className: 'labkit-teleop-wide' });
-  notice.setAttribute('role', 'status');
-  const root = element('div', { className: 'labkit-teleop', tabIndex: 0 });
-  root.setAttribute('role', 'application');
-  root.setAttribute('aria-label', `Drive the robot. ${HINT}`);
-  // JupyterLab's own keys (a, d d, x, arrows) stay out.
-  root.setAttribute('data-lm-suppress-shortcuts', 'true');
+  el.classList.add('labkit-live', 'labkit-teleop');
+  el.tabIndex = 0;
+  el.setAttribute('role', 'application');
+  el.setAttribute('aria-label', `Drive the robot. ${HINT}`);
 
-  let [speeds, topic, ended, asked, answered] = [[0, 0], '/cmd_vel', false, 0, 0];
+  let [speeds, topic, way, fault] = [[0, 0], '/cmd_vel', [0, 0], ''];
+  let [ended, asked, answered] = [false, 0, 0];
   const driver = new Driver(
     (content) => {
       if (ended) return;
       // From the first question that has no answer yet.
       if (asked <= answered) asked = performance.now();
-      else if (performance.now() - asked > PATIENCE_MS) say(notice, SILENT);
+      else if (performance.now() - asked > PATIENCE_MS) say(SILENT);
       model.send(content);
     },
     () => {
@@ -209,58 +195,55 @@ function render({ model, el }) {
   const keys = keypad(driver);
   const round = roundPad(driver);
   const speed = speedControl(driver);
-  root.append(keys, round.pad, speed.place, hint, published, notice);
-  el.append(root);
-
-  const onMessage = (news) => {
-    answered = performance.now();
+  const { note, say, end } = follow(model, el, (news) => {
     if (news.topic) ({ topic, speeds, steps: driver.steps, step: driver.step } = news);
-    if (news.published) {
-      published.textContent = command(news.published, topic, news.count);
-      say(notice, news.listeners ? '' : `Nobody listens on ${topic}. Is the robot running?`);
+    if (news.note !== undefined) fault = news.note;
+    if (news.published) way = news.published;
+    if (news.count) {
+      // Only this is an answer: a kernel that can't hear the page goes on saying that it is there.
+      answered = performance.now();
+      published.textContent = command(way, topic, news.count);
+      say(fault);
     }
-    if (news.silent) say(notice, SILENT);
     if (news.ended) {
       ended = true;
       driver.stop();
-      say(notice, ENDED);
     }
     driver.show();
-  };
-  model.on('msg:custom', onMessage);
+  });
+  note.classList.add('labkit-teleop-wide');
+  el.append(keys, round.pad, speed.place, hint, published, note);
 
-  root.addEventListener('keydown', (event) => {
+  el.addEventListener('keydown', (event) => {
     const name = KEYS[event.key.toLowerCase()];
-    event.stopPropagation();
     // What is typed with these belongs to the browser: Ctrl+S, Alt+left.
     if (!name || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
     if (!event.repeat) driver.press(name);
   });
-  root.addEventListener('keyup', (event) => {
+  el.addEventListener('keyup', (event) => {
     const name = KEYS[event.key.toLowerCase()];
     event.stopPropagation();
     if (!name) return;
     event.preventDefault();
     driver.release(name);
   });
-  root.addEventListener('pointerdown', () => root.focus({ preventScroll: true }));
-  root.addEventListener('focusin', () => say(hint, DRIVING));
-  root.addEventListener('focusout', (event) => {
-    if (root.contains(event.relatedTarget)) return;
+  el.addEventListener('pointerdown', () => el.focus({ preventScroll: true }));
+  el.addEventListener('focusin', () => setText(hint, DRIVING));
+  el.addEventListener('focusout', (event) => {
+    if (el.contains(event.relatedTarget)) return;
     driver.stop();
-    say(hint, HINT);
+    setText(hint, HINT);
   });
   const leave = () => driver.stop();
   const hide = () => document.hidden && driver.stop();
   window.addEventListener('blur', leave);
   window.addEventListener('pagehide', leave);
   document.addEventListener('visibilitychange', hide);
-  model.send({ hello: true });
 
   return () => {
     driver.stop();
-    model.off('msg:custom', onMessage);
+    end();
     window.removeEventListener('blur', leave);
     window.removeEventListener('pagehide', leave);
     document.removeEventListener('visibilitychange', hide);

@@ -8,20 +8,17 @@ hears nothing of the page.
 from __future__ import annotations
 
 import math
-import threading
 import time
-from pathlib import Path
 from typing import Any
 
-import anywidget
-
-from labkit import settings
 from labkit.background.nodes import destroy_node, helper_node, node_exists
 from labkit.background.runtime import runtime
 from labkit.errors import LabError
 from labkit.rosgraph.names import full_node_name
 from labkit.sim.kinematics import BURGER
 from labkit.views.arena_picture import two
+from labkit.views.live import living
+from labkit.views.live_page import LivePage, News
 
 __all__ = ['Teleop', 'teleop']
 
@@ -39,22 +36,11 @@ _KEYS = """\
   a or ←   turn left     d or →   turn right
   s or space   stop      + or -   faster or slower"""
 
-# By the full name of their node: the next one of that name takes its place.
-_live: dict[str, Teleop] = {}
 
-
-class _Pad(anywidget.AnyWidget):
-    """The keys and the pad in the page. It sends which way to go, and is sent what is published.
-
-    A way is two numbers from -1 to 1: `v` forwards and `w` to the left.
-    """
-
-    _esm = Path(__file__).with_name('teleop.js')
-    _css = Path(__file__).with_name('teleop.css')
-
-
-class Teleop:
+class Teleop(LivePage):
     """A node that publishes what a person does, to be shown in a cell; see `teleop`.
+
+    The page sends which way to go, as two numbers from -1 to 1: `v` forwards and `w` to the left.
 
     Attributes:
         node: The node.
@@ -62,6 +48,9 @@ class Teleop:
         published: The speeds of the last command, in m/s and rad/s; None if there was none.
         count: How many commands have been published.
     """
+
+    _name = 'teleop'
+    _period = 0.1
 
     def __init__(
         self,
@@ -82,26 +71,19 @@ class Teleop:
         self.count = 0
         # The way to go, None while no key is held; and when the page said so.
         self._way: tuple[float, float] | None = None
-        self._heard = 0.0
-        # A stop must come after the last command that moves, whichever thread publishes it.
-        self._lock = threading.Lock()
+        self._heard_at = 0.0
+        self._listeners = 0
         self._msg_type = _message_class(stamped)
-        self._open(topic, namespace, name)
-        self._pad: _Pad | None = None
-        if settings.audience().live:
-            self._pad = _Pad()
-            self._pad.on_msg(self._on_message)
-
-    def _open(self, topic: str, namespace: str, name: str) -> None:
-        earlier = _live.get(full_node_name(name, namespace))
-        if earlier is not None:
-            earlier.close()
+        self._full_name = full_node_name(name, namespace)
+        _end_earlier(self._full_name)
         self.node = helper_node(name, namespace=namespace or None, enable_rosout=True)
         self._publisher = self.node.create_publisher(self._msg_type, topic, QUEUE_DEPTH)
         self.topic: str = self._publisher.topic_name
-        self.node.create_timer(1 / RATE, self._on_timer)
+        self.node.create_timer(1 / RATE, self._drive)
+        super().__init__()
         runtime.add(self.node)
-        _live[self.node.get_fully_qualified_name()] = self
+        # Where no page shows it too: its node is there.
+        self._take_place()
 
     # -- for cells ------------------------------------------------------------------------------
 
@@ -113,23 +95,7 @@ class Teleop:
 
     def close(self) -> None:
         """Stop the robot and end the node."""
-        for name, other in list(_live.items()):
-            if other is self:
-                del _live[name]
-        if node_exists(self.node):
-            self.stop()
-            entry = runtime.entry_of(self.node)
-            if entry is not None:
-                runtime.discard(entry)
-            else:
-                destroy_node(self.node)
-        self._tell(ended=True)
-
-    def __enter__(self) -> Teleop:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
+        super().close()
 
     def __repr__(self) -> str:
         share = STEPS[FIRST_STEP]
@@ -140,45 +106,69 @@ class Teleop:
             f'{two(share * self.max_turn)} rad/s'
         )
 
-    def _repr_mimebundle_(self, **_: object) -> dict[str, Any]:
-        bundle: dict[str, Any] = {'text/plain': repr(self)}
-        if self._pad is not None:
-            shown: Any = self._pad._repr_mimebundle_()
-            bundle = {**(shown[0] if isinstance(shown, tuple) else shown or {}), **bundle}
-        return bundle
+    def _still(self) -> dict[str, str]:
+        return {'text/plain': repr(self)}
+
+    # -- the end --------------------------------------------------------------------------------
+
+    def _close(self) -> None:
+        with self._lock:
+            # Nobody looks any more, so nobody holds a key.
+            if self._way is not None:
+                self.stop()
+            super()._close()
+
+    def _cut_off(self) -> str:
+        words = super()._cut_off()
+        if not words and not node_exists(self.node):
+            words = 'The node of this teleop has ended. Run this cell to start it again.'
+        return words
+
+    def _end(self, words: str) -> None:
+        self.stop()
+        super()._end(words)
+        if node_exists(self.node):
+            entry = runtime.entry_of(self.node)
+            if entry is not None:
+                runtime.discard(entry)
+            else:
+                destroy_node(self.node)
 
     # -- the page -------------------------------------------------------------------------------
 
-    def _on_message(self, _: object, content: dict[str, Any], __: object) -> None:
-        """The page says which way to go, to stop, or that it has been opened."""
-        if content.get('hello'):
-            self._tell(
-                topic=self.topic,
-                speeds=[self.max_speed, self.max_turn],
-                steps=STEPS,
-                step=FIRST_STEP,
-            )
-        if not node_exists(self.node):
-            self._tell(ended=True)
-            return
+    def _hear(self, content: dict[str, Any]) -> None:
+        """The page says which way to go, or to stop."""
         way = content.get('v'), content.get('w')
         if content.get('stop'):
             self.stop()
         elif all(isinstance(part, (int, float)) and math.isfinite(part) for part in way):
             v, w = (max(-1.0, min(1.0, float(part))) for part in way if part is not None)
-            with self._lock:
-                self._way, self._heard = (v, w), time.monotonic()
+            self._way, self._heard_at = (v, w), time.monotonic()
 
-    def _on_timer(self) -> None:
+    def _news(self, everything: bool) -> News:
+        deaf = self.published is not None and not self._listeners
+        state = {
+            'topic': self.topic,
+            'speeds': [self.max_speed, self.max_turn],
+            'steps': STEPS,
+            'step': FIRST_STEP,
+            'published': self.published,
+            'count': self.count,
+            'note': f'Nobody listens on {self.topic}. Is the robot running?' if deaf else '',
+        }
+        return self._new_of(state), []
+
+    # -- driving --------------------------------------------------------------------------------
+
+    def _drive(self) -> None:
         with self._lock:
             if self._way is None:
                 return
-            if time.monotonic() - self._heard <= SILENCE_SEC:
+            if time.monotonic() - self._heard_at <= SILENCE_SEC:
                 v, w = self._way
                 self._publish(v * self.max_speed, w * self.max_turn)
-                return
-        self.stop()
-        self._tell(silent=True)
+            else:
+                self.stop()
 
     def _publish(self, v: float, w: float) -> None:
         if not node_exists(self.node):
@@ -190,19 +180,22 @@ class Teleop:
         twist.linear.x, twist.angular.z = v, w
         self._publisher.publish(message)
         self.published, self.count = (v, w), self.count + 1
-        listeners = self._publisher.get_subscription_count()
-        self._tell(published=[v, w], count=self.count, listeners=listeners)
-
-    def _tell(self, **content: object) -> None:
-        if self._pad is not None:
-            self._pad.send(content)
+        self._listeners = self._publisher.get_subscription_count()
 
 
-def _message_class(stamped: bool) -> Any:
+def _end_earlier(full_name: str) -> None:
+    """End a teleop whose node has the name that a new one gets."""
+    for view in living():
+        if isinstance(view, Teleop) and view._full_name == full_name:
+            view.close()
+
+
+def _message_class(stamped: bool) -> type:
     """Return the class of what is published."""
     from geometry_msgs.msg import Twist, TwistStamped
 
-    return TwistStamped if stamped else Twist
+    found: type = TwistStamped if stamped else Twist
+    return found
 
 
 def teleop(

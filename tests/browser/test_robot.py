@@ -19,7 +19,19 @@ CELLS = {
 lab.wait_until(lambda: robot.twist == (0, 0), timeout_sec=50)
 print('standing', pilot.published)
 """,
+    'no-ears': """
+import asyncio
+from labkit.background.runtime import runtime
+
+def ears():
+    return {s.topic_name for s in runtime.helper.subscriptions}
+
+while {'/odom', '/scan'} & ears():
+    await asyncio.sleep(0.02)
+print('nobody listens')
+""",
     'close': 'view.close()\npilot.close()',
+    'stop': 'lab.stop()',
 }
 STANDS = 'linear.x = 0.00 m/s  angular.z = 0.00 rad/s'
 # What is drawn, by the colours of the pixels: what is but a few of them is not the ground.
@@ -170,12 +182,14 @@ def test_whoever_leaves_stops_the_robot(stage):
         assert stage.notebook.error_of('teleop') == '', name
 
 
-def test_closing_the_tab_stops_the_robot(stage, jupyter, browser):
+def test_closing_the_tab_stops_the_robot_and_leaves_no_subscription(stage, jupyter, browser):
     stage.hold('w', 'linear.x = 0.11')
     name = stage.page.evaluate('window.jupyterapp.shell.currentWidget.context.path')
-    other = open_notebook(jupyter, browser, name.removesuffix('.ipynb'))
+    # It goes without a word, like one that has crashed: the kernel finds out.
     stage.page.close(run_before_unload=False)
+    other = open_notebook(jupyter, browser, name.removesuffix('.ipynb'))
     assert other.run_cell('standing') == 'standing (0.0, 0.0)'
+    assert other.run_cell('no-ears') == 'nobody listens'
     # The fixture goes on with this tab.
     stage.notebook.page = other.page
 
@@ -193,8 +207,9 @@ def test_drives_while_a_cell_is_running(stage):
 
 def test_closed_views_say_so(stage):
     stage.notebook.run_cell('close')
-    expect(stage.page.locator('.labkit-arena-words')).to_contain_text('This map has ended')
-    expect(stage.teleop).to_contain_text('This teleop has ended')
+    arena = stage.page.locator('.labkit-arena')
+    expect(arena.get_by_role('status')).to_contain_text('This arena has ended')
+    expect(stage.teleop.get_by_role('status')).to_contain_text('This teleop has ended')
     # Running the cells again gives new ones.
     stage.notebook.run_cell('arena')
     stage.notebook.run_cell('teleop')
@@ -202,3 +217,6 @@ def test_closed_views_say_so(stage):
     stage.hold('ArrowUp', 'linear.x = 0.11')
     stage.page.keyboard.up('ArrowUp')
     stage.expect_stop()
+    stage.notebook.run_cell('stop')
+    for view in (arena, stage.teleop):
+        expect(view.get_by_role('status')).to_contain_text('ROS was stopped. Run this cell')

@@ -30,11 +30,14 @@ def drive(v, w, steps):
 """
 # The hidden node's subscriptions and timers: what an arena has, and what is left of it.
 COUNT = 'print(len(list(runtime.helper.subscriptions)), len(list(runtime.helper.timers)))'
-# Keeps what goes to the page, as a page would get it.
+# Keeps what goes to the page, as a page would get it, and says what a page would say.
 SPY = """
 sent = []
-canvas = view._canvas
-canvas.send = lambda content, buffers=None: sent.append((content, buffers))
+page = view._widget
+page.send = lambda content, buffers=None: sent.append((content, buffers))
+
+def say(word):
+    page._handle_custom_msg({'view': word}, [])
 """
 
 
@@ -88,32 +91,36 @@ def test_closing_leaves_nothing(kernel):
     before = kernel.run(COUNT).text
     kernel.run('with lab.arena() as view:\n    pass')
     assert kernel.run(COUNT).text == before
-    kernel.run('view = lab.arena()')
+    kernel.run(f'view = lab.arena()\n{SPY}')
+    assert kernel.run(COUNT).text == before
+    # Before the page says that it is there: it can't while a cell lets the robot drive.
+    kernel.run('display(view)')
     assert kernel.run(COUNT).text != before
     # Nobody sees it any more, then somebody does again.
-    kernel.run("view._canvas._handle_custom_msg({'view': 'gone'}, [])")
+    kernel.run("say('gone')")
     assert kernel.run(COUNT).text == before
-    kernel.run("view._canvas._handle_custom_msg({'view': 'seen'}, [])")
+    kernel.run("say('seen')")
     assert kernel.run(COUNT).text != before
     kernel.run('view.close()')
-    kernel.run("view._canvas._handle_custom_msg({'view': 'seen'}, [])")
+    kernel.run("say('seen')")
     assert kernel.run(COUNT).text == before
     kernel.run('view.close(); lab.stop(); view.close(); print(view)')
 
 
 def test_page_is_told_what_is_new_and_no_more(kernel):
     kernel.run(ROBOT)
-    kernel.run(f'view = lab.arena()\nlab.wait_until(lambda: view.scene.scan)\n{SPY}')
-    kernel.run("canvas._handle_custom_msg({'view': 'seen'}, [])")
-    first = eval(kernel.run('print(sent[0][0])').text)  # what this test has sent itself
+    kernel.run(f'view = lab.arena(goals=[(1.0, 0.5)])\n{SPY}\ndisplay(view)')
+    kernel.run('sent.clear()\nsay("seen")')
+    # What this test has sent itself.
+    first = eval(kernel.run('print(next(c for c, _ in sent if "goals" in c))').text)
     assert first['pose'] == (0, 0, 0, 0, 0) and first['trail'] == [0, 0]
-    assert first['topic'] == '/odom' and 'It stands' in first['text']
+    assert first['goals'] == [(1.0, 0.5)] and 'It stands' in first['text']
     kernel.run(
         'drive(0.2, 0.0, 10)\n'
         'lab.wait_until(lambda: any("pose" in c and c["pose"][0] > 0.19 for c, _ in sent))'
     )
-    code = 'print([n for c, _ in sent for n in c["trail"]], sum(b is not None for _, b in sent))'
-    trail, scans = kernel.run(code).text.rsplit(' ', 1)
+    trail = kernel.run('print([n for c, _ in sent for n in c.get("trail", ())])').text
+    scans = kernel.run('print(sum(b is not None for _, b in sent))').text
     # The whole path in order, though there may be fewer messages than there was odometry.
     xs = eval(trail)[::2]
     assert xs == sorted(xs) and xs[-1] == pytest.approx(0.19, abs=0.02) and len(xs) == 11
@@ -125,9 +132,30 @@ def test_page_is_told_what_is_new_and_no_more(kernel):
 
 def test_robot_that_was_put_elsewhere_has_a_new_trail(kernel):
     kernel.run(ROBOT)
-    kernel.run('view = lab.arena()\ndrive(0.2, 0.0, 5)\nrobot.place(x=-1.0)\ndrive(0.2, 0.0, 5)')
+    kernel.run('view = lab.arena()\ndisplay(view)\ndrive(0.2, 0.0, 5)')
+    kernel.run('robot.place(x=-1.0)\ndrive(0.2, 0.0, 5)')
     kernel.run('lab.wait_until(lambda: view.scene.pose.x < -0.9)')
     assert float(kernel.run('print(max(x for x, _ in view._trail))').text) < -0.8
+
+
+def test_says_why_nothing_comes(kernel):
+    kernel.run(ROBOT)
+    # In one process, a publisher of another type would keep it from subscribing.
+    kernel.run("pilot.create_publisher(Twist, '/elsewhere', 10)")
+    assert not kernel.run(f"view = lab.arena(odom='/elsewhere')\n{SPY}\ndisplay(view)").error
+    note = kernel.run('say("seen")\nprint([c["note"] for c, _ in sent if "note" in c][-1])').text
+    assert '/pilot publishes on /elsewhere, but messages of another type' in note
+    # The robot that was there goes.
+    kernel.run(f'view = lab.arena()\n{SPY}\ndisplay(view)\nlab.remove(robot)')
+    said = kernel.run('lab.wait_until(lambda: "Nobody publishes on /odom" in str(sent))')
+    assert not said.error
+
+
+def test_print_tells_what_is_heard_and_listens_no_more(kernel):
+    kernel.run(ROBOT)
+    before = kernel.run(COUNT).text
+    assert 'Robot at x = 0.00 m' in kernel.run('print(lab.arena())').text
+    assert kernel.run(COUNT).text == before
 
 
 def test_goals_that_are_none_are_refused(kernel):

@@ -73,6 +73,25 @@ def test_live_picture_follows_and_ends_when_closed(kernel):
     assert int(kernel.run(timers).text) == before - 1
 
 
+def test_live_picture_says_that_ros_was_stopped(kernel):
+    kernel.run(NODES)
+    cell = kernel.run('view = lab.graph(live=True)\nview')
+    assert '/talker' in shown(cell)['text/vnd.mermaid']
+    # Else it would go on showing nodes that are gone.
+    result = kernel.run('lab.stop()')
+    assert not result.error
+    updates = [
+        message['content']['data']
+        for message in kernel._messages[result.msg_id]
+        if message['msg_type'] == 'update_display_data'
+    ]
+    assert updates == [{'text/plain': 'ROS was stopped. Run this cell to start it again.'}]
+    # Shown again, it is the picture of then; ROS is not started by it.
+    assert '/talker' in shown(kernel.run('view'))['text/vnd.mermaid']
+    started = 'from labkit.background.runtime import runtime\nprint(runtime.started)'
+    assert kernel.run(started).text == 'False\n'
+
+
 @pytest.mark.parametrize(
     'name', ['/a"]); click n0 "javascript:1"', '/<img onerror=1>', '/x#quot;']
 )

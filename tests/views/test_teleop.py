@@ -17,7 +17,7 @@ ear.create_subscription(
 pilot = lab.teleop(max_speed=0.2, max_turn=2.0)
 
 def page(**content):
-    pilot._pad._handle_custom_msg(content, [])
+    pilot._widget._handle_custom_msg(content, [])
 
 def wait_for(command):
     lab.wait_until(lambda: command in heard)
@@ -25,7 +25,7 @@ def wait_for(command):
 # Keeps what goes to the page, as a page would get it.
 SPY = """
 told = []
-pilot._pad.send = told.append
+pilot._widget.send = lambda content, buffers=None: told.append(content)
 """
 
 
@@ -71,10 +71,10 @@ lab.wait_until(lambda: stamped[-1].twist.linear.x == 0.0)
 
 
 def test_silence_of_the_page_stops_the_robot(pilot):
-    pilot(SPY + 'page(v=1, w=0)\nwait_for((0.2, 0.0))\nwait_for((0.0, 0.0))')
+    pilot('page(v=1, w=0)\nwait_for((0.2, 0.0))\nwait_for((0.0, 0.0))')
     assert pilot('print(heard[-1])') == '(0.0, 0.0)'
     # Once: a stop that is repeated would disturb others that drive.
-    assert pilot('print(heard.count((0.0, 0.0)), {"silent": True} in told)') == '1 True'
+    assert pilot('print(heard.count((0.0, 0.0)))') == '1'
 
 
 NONSENSE = (
@@ -110,14 +110,14 @@ def test_closing_stops_the_robot_and_ends_the_node(pilot):
     pilot(SPY + 'page(v=1, w=0)\nwait_for((0.2, 0.0))\npilot.close()\nwait_for((0.0, 0.0))')
     assert pilot('print([entry.name for entry in runtime.nodes()])') == "['/ear']"
     pilot('page(v=1, w=0)\npilot.stop()\npilot.close()')
-    assert pilot('print(heard[-1], told[-1])') == "(0.0, 0.0) {'ended': True}"
+    assert 'This teleop has ended' in pilot('print(heard[-1] == (0.0, 0.0) and told[-1]["ended"])')
 
 
 def test_a_second_one_takes_the_place_of_the_first(pilot):
     pilot('page(v=1, w=0)\nwait_for((0.2, 0.0))\nfirst = pilot\npilot = lab.teleop()')
     assert pilot('print(heard[-1])') == '(0.0, 0.0)'
     assert pilot('print([e.name for e in runtime.nodes()])') == "['/ear', '/teleop']"
-    pilot("first._pad._handle_custom_msg({'v': 1, 'w': 0}, [])\npage(v=-1, w=0)")
+    pilot("first._widget._handle_custom_msg({'v': 1, 'w': 0}, [])\npage(v=-1, w=0)")
     pilot('wait_for((-0.22, 0.0))')
     assert pilot('print(heard.count((0.2, 0.0)) < len(heard))') == 'True'
     # Another name is another robot's.
@@ -128,17 +128,39 @@ def test_a_second_one_takes_the_place_of_the_first(pilot):
 
 
 def test_after_the_end_of_its_node_it_says_so(pilot):
-    pilot(SPY + "lab.remove('teleop')\npage(v=1, w=0)")
-    assert pilot('print(told)') == "[{'ended': True}]"
-    pilot('told.clear()\nlab.stop()\npage(hello=True)')
-    assert 'ended' in pilot('print(told)')
+    # At once, not when the page asks.
+    pilot(SPY + "lab.remove('teleop')")
+    assert 'The node of this teleop has ended' in pilot('print(told[-1]["ended"])')
+    pilot('told.clear()\npage(v=1, w=0)\nlab.stop()\npage(view="seen")')
+    assert pilot('print(len(told), all("ended" in each for each in told))') == '2 True'
+
+
+def test_end_of_ros_stops_the_robot_first(pilot):
+    # Its last command is published while its node still is there.
+    pilot(SPY + 'page(v=1, w=0)\nwait_for((0.2, 0.0))\nlab.stop()')
+    assert pilot('print(pilot.published)') == '(0.0, 0.0)'
+    assert 'ROS was stopped' in pilot('print(told[-1]["ended"])')
+
+
+def test_page_that_is_closed_stops_the_robot(pilot):
+    pilot("""
+repeat = ear.create_timer(0.1, lambda: page(v=1, w=0))
+wait_for((0.2, 0.0))
+ear.destroy_timer(repeat)
+page(view='gone')
+""")
+    assert pilot('print(pilot.published)') == '(0.0, 0.0)'
 
 
 def test_page_is_told_what_is_published_and_who_listens(pilot):
-    pilot(SPY + 'page(hello=True)\npage(v=1, w=0)\nwait_for((0.2, 0.0))')
-    first, second = eval(pilot('print(told[:2])'))  # what this test has sent itself
-    assert first['topic'] == '/cmd_vel' and first['speeds'] == [0.2, 2.0]
-    assert second == {'published': [0.2, 0.0], 'count': 1, 'listeners': 1}
+    pilot(SPY + 'page(view="seen")')
+    known = eval(pilot('print(told[0])'))  # what this test has sent itself
+    assert known['topic'] == '/cmd_vel' and known['speeds'] == [0.2, 2.0] and not known['note']
+    pilot('page(v=1, w=0)\nlab.wait_until(lambda: any("published" in each for each in told))')
+    news = eval(pilot('print(next(each for each in told if "published" in each))'))
+    assert news['published'] in ((0.2, 0.0), (0.0, 0.0)) and news['count'] > 0
+    pilot('lab.remove("ear")\ntold.clear()\npage(v=1, w=0)')
+    pilot('lab.wait_until(lambda: any("Nobody listens" in e.get("note", "") for e in told))')
 
 
 def test_headless_it_is_text(start_kernel):

@@ -1,0 +1,46 @@
+"""The part of a view that lives in the page: its files, and what makes a notebook show it."""
+
+from __future__ import annotations
+
+import functools
+from pathlib import Path
+
+import anywidget
+
+__all__ = ['page_files', 'widget_bundle', 'widget_class']
+
+
+def page_files(name: str) -> tuple[str, str]:
+    """Return JavaScript and style of a view's part in the page.
+
+    Args:
+        name: Its files are `NAME.js` and `NAME.css`; what all views share (`live`) goes before.
+    """
+    folder = Path(__file__).parent
+    script, style = (
+        '\n'.join(
+            (folder / f'{part}.{ending}').read_text(encoding='utf-8') for part in ('live', name)
+        )
+        for ending in ('js', 'css')
+    )
+    return script, style
+
+
+@functools.cache
+def widget_class(name: str) -> type[anywidget.AnyWidget]:
+    """Return the class of a view's part in the page.
+
+    Args:
+        name: See `page_files`.
+    """
+    script, style = page_files(name)
+    files = {'_esm': script, '_css': style}
+    # anywidget takes the name of the class for that of its style.
+    return type(f'{name.capitalize()}Page', (anywidget.AnyWidget,), files)
+
+
+def widget_bundle(widget: anywidget.AnyWidget | None) -> dict[str, object]:
+    """Return the data that makes a notebook show a widget; nothing for None."""
+    if widget is None:
+        return {}
+    return {'application/vnd.jupyter.widget-view+json': widget.get_view_spec()}
