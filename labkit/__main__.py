@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from labkit import __version__
+from labkit.course.run_tests import SHARDS, run_tests
 from labkit.errors import LabError, SetupError
 
 __all__ = ['main']
@@ -54,13 +55,16 @@ def _run(words: list[str]) -> int:
 
         start_lab(others)
     if options.command == 'test':
-        from labkit.course.run_tests import run_tests
-
-        return run_tests(others)
+        return run_tests(others, fast=options.fast, shard=options.shard, coverage=options.coverage)
     if options.command == 'reset':
         from labkit.course.learner_folder import reset
 
         print(reset(options.lesson))
+        return 0
+    if options.command == 'docs':
+        from labkit.course.public_names import write_page
+
+        print(write_page())
         return 0
     if options.command == 'doctor':
         return _doctor(words)
@@ -132,10 +136,17 @@ def _parser() -> argparse.ArgumentParser:
         'Options it does not know, and all after `--`, go to JupyterLab: '
         '`--no-browser`, `--port 9000`.',
     )
-    add(
+    test = add(
         'test',
         'Run every lesson and every test',
-        'Options and paths are for pytest, which then runs alone: `-k odds`, `tests/sim`.',
+        'Other options, and paths, are for pytest, which then runs alone: `-k odds`, `tests/sim`.',
+    )
+    test.add_argument(
+        '--fast', action='store_true', help='only what takes seconds: style, types, layers, format'
+    )
+    test.add_argument('--shard', choices=SHARDS, help='one part of the notebooks and tests')
+    test.add_argument(
+        '--coverage', action='store_true', help='show which lines and branches of labkit ran'
     )
     add('doctor', 'Say what is wrong with this machine or environment, and what to do')
     record = add('record', 'Run lessons and store their outputs in notebooks/')
@@ -144,6 +155,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     reset = add('reset', 'Get a fresh copy of a lesson, and keep the old one as a backup')
     reset.add_argument('lesson', metavar='NN', help='number or name of the lesson')
+    add('docs', 'Write docs/api.md anew from the docstrings of the public names')
     for name in _forwarded():
         text = {'progress': 'Show what you have solved', 'ros2': 'The words of the ros2 command'}
         commands.add_parser(name, help=text[name], add_help=False)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -15,6 +17,13 @@ from labkit import __version__
 from labkit.__main__ import main
 from labkit.course import run_tests
 
+MEASURED = """
+import subprocess, sys
+CODE = 'from labkit.files import is_inside; is_inside("a", "b")'
+def test_it():
+    done = subprocess.run([sys.executable, '-c', CODE], capture_output=True)
+    assert (done.returncode, done.stderr) == (0, b'')
+"""
 COMMANDS = ('lab', 'test', 'doctor', 'record', 'reset')
 
 
@@ -120,10 +129,14 @@ def test_order_of_the_test_command() -> None:
         'style',
         'format',
         'types',
-        'layers and notebook format',
+        'types of the tests',
+        'layers and format',
         'notebooks and tests',
     ]
-    assert all((ROOT / path).is_file() for path in steps[3][1] if path.startswith('tests/'))
+    assert run_tests._steps(fast=True) == steps[:-1]
+    fast = [path for path in steps[-2][1] if path.startswith('tests/')]
+    assert fast and all((ROOT / path).is_file() for path in fast)
+    assert all(f'--ignore={path}' in steps[-1][1] for path in fast)
 
 
 def test_arguments_for_pytest() -> None:
@@ -131,6 +144,41 @@ def test_arguments_for_pytest() -> None:
     assert command[-4:] == ['notebooks', 'tests', '-k', 'odds']
     ((_, command),) = run_tests._steps(['tests/test_layers.py::test_x', '-x'])
     assert 'notebooks' not in command
+    ((_, command),) = run_tests._steps(['-x'], shard='lessons')
+    assert {'notebooks', '-x'} < set(command) and 'tests' not in command
+
+
+def test_what_is_measured() -> None:
+    steps = run_tests._measured(run_tests._steps(['tests/sim']))
+    assert [command[:2] for _, command in steps] == [
+        ['coverage', 'erase'],
+        ['coverage', 'run'],
+        ['coverage', 'combine'],
+        ['coverage', 'html'],
+        ['coverage', 'report'],
+    ]
+    assert steps[1][1][2:5] == ['-m', 'pytest', '--nbval']
+    everything = run_tests._measured(run_tests._steps())
+    assert [name for name, command in everything if 'run' in command] == ['notebooks and tests']
+
+
+@pytest.mark.parametrize('words', [['--fast', '-k', 'odds'], ['--fast', '--coverage']])
+def test_options_that_do_not_go_together(
+    words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(['test', *words]) == 2
+    assert '--fast' in capsys.readouterr().err
+
+
+def test_coverage_of_processes_too(course: Course) -> None:
+    course.make_complete()
+    shutil.copy(ROOT / 'pyproject.toml', course.folder)
+    (course.folder / 'tests' / 'test_it.py').write_text(MEASURED)
+    done = course.run('test', '--coverage', 'tests/test_it.py')
+    assert done.returncode == 0, done.stdout + done.stderr
+    # Nobody but the test's own process has imported this module.
+    assert re.search(r'labkit/files\.py .* [1-9]\d%', done.stdout)
+    assert (course.venv / 'cache' / 'coverage' / 'index.html').is_file()
 
 
 def test_run_without_a_test_is_a_failure(course: Course) -> None:

@@ -218,7 +218,8 @@ def test_what_is_taken_for_left_behind_too_early_is_made_anew(
     # Another process looks between the moment when a file is made and that when it is locked.
     import fcntl
 
-    lock, taken = fcntl.flock, []
+    lock = fcntl.flock
+    taken: list[str] = []
 
     def take_first(handle: int, kind: int) -> None:
         if not taken and not kind & fcntl.LOCK_NB:
@@ -303,7 +304,8 @@ def test_of_those_that_want_a_name_at_once_one_gets_it(
     files = [tmp_path / str(number) for number in range(8)]
     for file in files:
         file.write_text(file.name)
-    refused, start = [], threading.Barrier(len(files))
+    refused: list[str] = []
+    start = threading.Barrier(len(files))
 
     def rename(file: Path) -> None:
         start.wait(TIMEOUT_SEC)

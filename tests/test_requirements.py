@@ -52,11 +52,13 @@ def asked_for(file: str) -> tuple[str, ...]:
     return tuple(normal(re.split(r'[\[=]', line)[0]) for line in lines if line != '-e .')
 
 
+modules_of_packages = cache(importlib.metadata.packages_distributions)
+
+
 @cache
 def packages_of(module: str) -> frozenset[str]:
     """Return the packages that a module may come from."""
-    found = importlib.metadata.packages_distributions().get(module, ())
-    return frozenset(map(normal, found))
+    return frozenset(map(normal, modules_of_packages().get(module, ())))
 
 
 @cache
@@ -84,6 +86,7 @@ def code_of(path: Path) -> Iterator[ast.Module]:
             yield ast.parse(source, str(path))
 
 
+@cache
 def third_party(folder: str) -> dict[str, str]:
     """Return the modules that a folder imports and that come with packages: name -> a place."""
     here = {path.stem for path in (ROOT / 'tests').rglob('*.py')}

@@ -1,4 +1,4 @@
-"""Run the whole test suite: style, types, format, layers, then every notebook and every test."""
+"""Run the test suite, or a part of it: style, types, format, layers, every notebook and test."""
 
 from __future__ import annotations
 
@@ -8,57 +8,142 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from labkit.errors import LabError
 from labkit.setup.environment import ROOT, VENV, environment_variables, make_environment
 
-__all__ = ['run_tests']
+__all__ = ['SHARDS', 'run_tests']
 
 REQUIREMENTS = ('environment.txt', 'tests/requirements.txt')
 # Quick, and about the code as it stands; they come first and are not repeated later.
-_FORMAT_TESTS = ('tests/test_layers.py', 'tests/test_notebook_format.py')
+_FAST_TESTS = (
+    'tests/test_layers.py',
+    'tests/test_notebook_format.py',
+    'tests/test_requirements.py',
+    'tests/course/test_shards.py',
+    'tests/course/test_public_names.py',
+)
+# What continuous integration runs beside each other. The last one has what no other has, so that
+# a new test is in exactly one of them.
+SHARDS = {
+    'lessons': ('notebooks', 'tests/lessons'),
+    'ros': ('tests/background', 'tests/ros2', 'tests/exercises'),
+    'browser': ('tests/browser', 'tests/network', 'tests/views'),
+    'rest': ('tests',),
+}
 _PYTEST = ('pytest', '--nbval', '--timeout=300')
 # One worker runs a notebook from top to bottom, so that its cells share a kernel.
 _PARALLEL = ('-n', '2', '--dist', 'loadscope')
 
 
-def run_tests(arguments: Sequence[str] = ()) -> int:
+def run_tests(
+    arguments: Sequence[str] = (),
+    *,
+    fast: bool = False,
+    shard: str | None = None,
+    coverage: bool = False,
+) -> int:
     """Make the environment and run the tests in it.
 
     Args:
         arguments: Options and paths for pytest. With any, only pytest runs.
+        fast: Whether to run only what takes seconds: style, types, layers, format of notebooks.
+        shard: Which part of the notebooks and tests to run, None for all; see `SHARDS`.
+        coverage: Whether to measure which lines and branches of labkit run, kernels included.
 
     Returns:
         The exit code of the first step that failed, or 0. No test at all is a failure too.
+
+    Raises:
+        LabError: These options do not go together.
     """
+    steps = _steps(arguments, fast=fast, shard=shard)
+    if coverage:
+        steps = _measured(steps)
     python = make_environment(REQUIREMENTS)
-    for name, command in _steps(arguments):
+    variables = _variables()
+    for name, command in steps:
         print(f'\n== {name}: {" ".join(command)}', flush=True)
-        code = subprocess.run([str(python), '-m', *command], cwd=ROOT, env=_variables()).returncode
-        if code != 0:
+        done = subprocess.run([str(python), '-m', *command], cwd=ROOT, env=variables)
+        if done.returncode != 0:
+            code = done.returncode
             print(f'\nlabkit test: {name} failed (exit code {code}).', file=sys.stderr, flush=True)
             return code
     print('\nlabkit test: all passed.', flush=True)
     return 0
 
 
-def _steps(arguments: Sequence[str]) -> list[tuple[str, list[str]]]:
+def _steps(
+    arguments: Sequence[str] = (), *, fast: bool = False, shard: str | None = None
+) -> list[tuple[str, list[str]]]:
+    if fast:
+        if arguments or shard:
+            raise LabError('--fast runs a fixed list of checks: give it no other words.')
+        return _fast_steps()
+    done = [f'--ignore={path}' for path in _FAST_TESTS]
+    run = [*_PYTEST, *_PARALLEL]
+    if shard:
+        return [(f'tests of {shard}', [*run, *shard_paths(shard), *done, *arguments])]
     if arguments:
         chosen = any((ROOT / argument.split('::')[0]).exists() for argument in arguments)
         paths = [] if chosen else ['notebooks', 'tests']
-        return [('tests', [*_PYTEST, *_PARALLEL, *paths, *arguments])]
-    done = [f'--ignore={path}' for path in _FORMAT_TESTS]
+        return [('tests', [*run, *paths, *arguments])]
+    return [*_fast_steps(), ('notebooks and tests', [*run, 'notebooks', 'tests', *done])]
+
+
+def _fast_steps() -> list[tuple[str, list[str]]]:
     return [
         ('style', ['ruff', 'check', '.']),
         ('format', ['ruff', 'format', '--check', '.']),
         ('types', ['mypy', '--strict', 'labkit']),
-        ('layers and notebook format', ['pytest', '-q', *_FORMAT_TESTS]),
-        ('notebooks and tests', [*_PYTEST, *_PARALLEL, 'notebooks', 'tests', *done]),
+        ('types of the tests', ['mypy', '--config-file', 'tests/mypy.ini']),
+        ('layers and format', ['pytest', '-q', *_FAST_TESTS]),
     ]
+
+
+def shard_paths(name: str) -> list[str]:
+    """Return the words for pytest that choose a shard: folders, and what in them to ignore.
+
+    Args:
+        name: One of `SHARDS`.
+    """
+    others = [path for other, paths in SHARDS.items() if other != name for path in paths]
+    inner = [
+        path
+        for path in others
+        if any(path != own and path.startswith(f'{own}/') for own in SHARDS[name])
+    ]
+    return [*SHARDS[name], *(f'--ignore={path}' for path in inner)]
+
+
+# --- Coverage ------------------------------------------------------------------------------------
+
+
+def _measured(steps: list[tuple[str, list[str]]]) -> list[tuple[str, list[str]]]:
+    """Let the tests among the steps be measured, and show the result after them."""
+    if not any(command[:2] == list(_PYTEST[:2]) for _, command in steps):
+        raise LabError('--coverage measures tests: there are none in --fast.')
+    result = [('coverage of before', ['coverage', 'erase'])]
+    for name, command in steps:
+        tests = command[:2] == list(_PYTEST[:2])
+        result.append((name, ['coverage', 'run', '-m', *command] if tests else command))
+    page = _cache() / 'coverage' / 'index.html'
+    return [
+        *result,
+        ('coverage put together', ['coverage', 'combine', '--quiet']),
+        (f'coverage, also in {page}', ['coverage', 'html', '--quiet', '-d', str(page.parent)]),
+        ('coverage', ['coverage', 'report']),
+    ]
+
+
+def _cache() -> Path:
+    return Path(os.environ.get('LABKIT_CACHE', VENV / 'cache'))
 
 
 def _variables() -> dict[str, str]:
     """Return the variables for the steps: what the tools remember goes into the environment."""
     variables = environment_variables()
-    cache = Path(os.environ.get('LABKIT_CACHE', VENV / 'cache'))
+    cache = _cache()
+    variables['COVERAGE_FILE'] = str(cache / 'coverage.data')
     variables['RUFF_CACHE_DIR'] = str(cache / 'ruff')
     variables['MYPY_CACHE_DIR'] = str(cache / 'mypy')
     variables['HYPOTHESIS_STORAGE_DIRECTORY'] = str(cache / 'hypothesis')
