@@ -197,5 +197,13 @@ def _arguments(parser: Parser) -> None:
 COMMAND = Command(
     'doctor',
     'Check ROS setup and other potential issues',
-    (Verb('doctor', 'Check ROS setup and other potential issues', doctor, _arguments),),
+    (
+        Verb(
+            'doctor',
+            'Check ROS setup and other potential issues',
+            doctor,
+            _arguments,
+            'A failed check gives exit code 1 here; the real one ends with 0.',
+        ),
+    ),
 )

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
-from collections.abc import Iterator
-
-from rosidl_adapter.parser import parse_message_string  # type: ignore[import-untyped]
 
 from labkit import settings
 from labkit.ros2.parser import Command, Parser, Usage, Verb
 from labkit.rosgraph import interfaces
+from labkit.rosgraph.definitions import definition
 from labkit.rosgraph.message_yaml import to_yaml
 
 __all__ = ['COMMAND']
@@ -49,10 +47,7 @@ def show(args: Namespace) -> None:
     name = interfaces.check_exists(_type(args))
     if args.all_comments and args.no_comments:
         raise Usage('ros2 interface show: --all-comments and --no-comments can not go together.')
-    lines = _definition(
-        name, comments=not args.no_comments, nested_comments=args.all_comments, indent=''
-    )
-    for line in lines:
+    for line in definition(name, comments=not args.no_comments, nested_comments=args.all_comments):
         print(line)
 
 
@@ -64,37 +59,6 @@ def show_prototype(args: Namespace) -> None:
     else:
         text = to_yaml(interfaces.message_class(name)())
     print(text if args.no_quotes else f'"{text}"')
-
-
-def _definition(name: str, *, comments: bool, nested_comments: bool, indent: str) -> Iterator[str]:
-    """Yield the lines of a definition.
-
-    Args:
-        name: Full name of the type.
-        comments: Whether comments and empty lines are kept.
-        nested_comments: The same for types within this one.
-        indent: What stands before each line.
-    """
-    package, _, word = name.split('/')
-    for raw in interfaces.path_of(name).read_text(encoding='utf-8').splitlines():
-        text, nested = raw.rstrip(), ''
-        if text != '---':
-            parsed = parse_message_string(package, word, text)
-            field = parsed.fields[0] if parsed.fields else None
-            if not comments and (not text or parsed.annotations['comment']):
-                continue
-            if field is not None:
-                if not comments and field.annotations['comment']:
-                    text = text.partition('#')[0].strip()
-                nested = str(field.type).partition('[')[0]
-        yield f'{indent}{text}' if text else ''
-        if '/' in nested:
-            yield from _definition(
-                nested.replace('/', '/msg/'),
-                comments=nested_comments,
-                nested_comments=nested_comments,
-                indent=f'{indent}\t',
-            )
 
 
 def _type(args: Namespace) -> str:

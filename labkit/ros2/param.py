@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from argparse import Namespace
 from collections.abc import Iterable, Iterator
@@ -19,7 +20,7 @@ from labkit.background.service_calls import call_node
 from labkit.errors import LabError
 from labkit.ros2.asking import add_discovery_options, asking_node, check_node_name, unknown
 from labkit.ros2.graph_words import node_names
-from labkit.ros2.parser import Command, Parser, Verb, positive_float
+from labkit.ros2.parser import Command, Parser, Usage, Verb, positive_float
 from labkit.rosgraph.names import is_hidden
 from labkit.rosgraph.snapshot import node_names as names_of_nodes
 
@@ -42,6 +43,7 @@ _TYPES = {
 
 def list_parameters(args: Namespace) -> None:
     """Print the names of the parameters of one node or of all."""
+    wanted = _pattern(args.filter)
     node = asking_node(args)
     if args.node_name:
         chosen = [check_node_name(node, args.node_name)]
@@ -55,16 +57,26 @@ def list_parameters(args: Namespace) -> None:
         ]
     for name in chosen:
         try:
-            names = _names_of(node, name, args.param_prefixes)
+            names = list(filter(wanted.match, _names_of(node, name, args.param_prefixes)))
             types = _types_of(node, name, names) if args.param_type else {}
         except LabError as error:
             print(error, file=sys.stderr)
             continue
-        if not args.node_name:
+        if names and not args.node_name:
             print(f'{name}:')
         for parameter in names:
             kind = f' (type: {types[parameter]})' if parameter in types else ''
             print(f'  {parameter}{kind}')
+
+
+def _pattern(text: str) -> re.Pattern[str]:
+    try:
+        return re.compile(text)
+    except re.error as error:
+        raise Usage(
+            f'ros2 param list: {text!r} is no regular expression: {error}.',
+            todo="Such as 'qos.*', which stands for all that begins with qos.",
+        ) from error
 
 
 def get(args: Namespace) -> str | None:
@@ -195,11 +207,16 @@ def _parameters_in(path: str, name: str, *, wildcard: bool) -> dict[str, Paramet
     """
     nodes = yaml.safe_load(Path(path).read_text(encoding='utf-8'))
     keys = [key for key in ('/**', name) if key in nodes and (wildcard or key == name)]
+    if not nodes:
+        raise LabError('Param file does not contain selected parameters')
     if not keys:
-        others = ', '.join(map(str, nodes))
-        raise LabError(f'Param file does not contain parameters for {name}, only for: {others}')
+        raise LabError(
+            f'Param file does not contain parameters for {name}, only for nodes: {list(nodes)}'
+        )
     values: dict[str, Any] = {}
     for key in keys:
+        if not isinstance(nodes[key], dict) or 'ros__parameters' not in nodes[key]:
+            raise LabError(f'YAML file is not a valid ROS parameter file for node {key}')
         values.update(_flat(nodes[key]['ros__parameters']))
     make: Any = NodeParameter
     return {key: make(key, value=value).to_parameter_msg() for key, value in values.items()}
@@ -270,6 +287,12 @@ def _node_arguments(parser: Parser, *, optional: bool = False) -> None:
 def _list_arguments(parser: Parser) -> None:
     _node_arguments(parser, optional=True)
     parser.add(
+        '--filter',
+        metavar='REGEX',
+        default='',
+        help='Only list parameters whose names match a regular expression, from their beginning',
+    )
+    parser.add(
         '--param-prefixes',
         nargs='+',
         default=[],
@@ -314,12 +337,21 @@ COMMAND = Command(
     'param',
     'Various param related sub-commands',
     (
-        Verb('delete', 'Delete parameter', delete, _parameter_arguments),
+        Verb(
+            'delete',
+            'Delete parameter',
+            delete,
+            _parameter_arguments,
+            'A parameter that is not deleted gives exit code 1 here, and one that is 0; the real '
+            'one has it the other way round.',
+        ),
         Verb(
             'describe',
             'Show descriptive information about declared parameters',
             describe,
             _describe_arguments,
+            'A parameter that the node does not have is an error here, with exit code 1; the real '
+            'one says nothing.',
         ),
         Verb(
             'dump',
@@ -329,7 +361,20 @@ COMMAND = Command(
         ),
         Verb('get', 'Get parameter', get, _get_arguments),
         Verb('list', 'Output a list of available parameters', list_parameters, _list_arguments),
-        Verb('load', 'Load parameter file for a node', load, _load_arguments),
-        Verb('set', 'Set parameter', set_parameter, _set_arguments),
+        Verb(
+            'load',
+            'Load parameter file for a node',
+            load,
+            _load_arguments,
+            'A parameter that is not set, or a file for another node, gives exit code 1 here; the '
+            'real one sets all that the file has, for whatever node, and ends with 0.',
+        ),
+        Verb(
+            'set',
+            'Set parameter',
+            set_parameter,
+            _set_arguments,
+            'A parameter that is not set gives exit code 1 here; the real one ends with 0.',
+        ),
     ),
 )

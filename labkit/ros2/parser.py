@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import textwrap
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
@@ -26,6 +27,9 @@ __all__ = [
     'positive_int',
     'unsigned_int',
 ]
+
+# Columns of the help.
+WIDTH = 88
 
 Complete = Callable[[argparse.Namespace], Iterable[str]]
 """Return the words that may stand at a place of the line, given what stands before it."""
@@ -51,7 +55,7 @@ class Parser(argparse.ArgumentParser):
         super().__init__(
             prog=prog,
             description=description,
-            formatter_class=lambda prog: argparse.RawDescriptionHelpFormatter(prog, width=88),
+            formatter_class=lambda prog: argparse.RawDescriptionHelpFormatter(prog, width=WIDTH),
         )
 
     def add(
@@ -172,17 +176,20 @@ class Verb:
         summary: What it does, as the real `ros2` says it in its help.
         run: Does it. Returns None or 0 if all went well, another exit code, or an error message.
         arguments: Adds its arguments to a parser.
+        note: Where it differs from the real one, for the end of its help.
     """
 
     name: str
     summary: str
     run: Callable[[argparse.Namespace], str | int | None]
     arguments: Callable[[Parser], None] = lambda parser: None
+    note: str = ''
 
     def parser(self, command: str) -> Parser:
         """Return the parser of the words after the verb."""
         prog = f'ros2 {command} {self.name}' if command != self.name else f'ros2 {command}'
         parser = Parser(prog, self.summary)
+        parser.epilog = textwrap.fill(self.note, WIDTH)
         self.arguments(parser)
         return parser
 

@@ -12,6 +12,7 @@ from rclpy.node import Node
 
 from labkit import settings
 from labkit.background.discovery import alone, soon
+from labkit.background.runtime import runtime
 from labkit.background.service_calls import ServiceCalls
 from labkit.errors import LabError
 from labkit.ros2.asking import add_discovery_options, asking_node, full_name, unknown
@@ -26,8 +27,7 @@ from labkit.rosgraph.refusals import Refusal, Refused
 __all__ = ['COMMAND']
 
 HIDDEN = '--include-hidden-services'
-# A service that the graph knows is ready soon.
-READY_SEC = 1.0
+WAITING = 'waiting for service to become available...'
 
 
 def list_services(args: Namespace) -> None:
@@ -68,16 +68,19 @@ def call(args: Namespace) -> None:
     srv_type = interfaces.service_class(args.service_type)
     request = srv_type.Request()
     fill(request, read_yaml(_values(args)))
+    # This process knows of no service yet, as none of the real one does when it makes its client.
+    waiting = not runtime.started
+    if waiting:
+        print(WAITING, flush=True)
     node = asking_node(args)
     name = full_name(args.service_name, node)
     _check_type(node, name, type_name(srv_type))
     limit = settings.audience().patience_sec
     with ServiceCalls(node, srv_type, name) as service:
-        known = name in dict(node.get_service_names_and_types())
-        if not service.wait_until_ready(READY_SEC if known else 0.0):
-            print('waiting for service to become available...', flush=True)
-            if not service.wait_until_ready(limit):
-                raise LabError(f'{name} has not become available.')
+        if not waiting and not service.wait_until_ready(0.0):
+            print(WAITING, flush=True)
+        if not service.wait_until_ready(limit):
+            raise LabError(f'{name} has not become available.')
         while True:
             print(f'requester: making request: {request!r}\n', flush=True)
             started = time.monotonic()
@@ -208,7 +211,14 @@ COMMAND = Command(
     'Various service related sub-commands',
     (
         Verb('call', 'Call a service', call, _call_arguments),
-        Verb('find', 'Output a list of available services of a given type', find, _find_arguments),
+        Verb(
+            'find',
+            'Output a list of available services of a given type',
+            find,
+            _find_arguments,
+            'A type that is not installed is an error here, with exit code 1; the real one finds '
+            'nothing.',
+        ),
         Verb('info', 'Print information about a service', show_info, _info_arguments),
         Verb('list', 'Output a list of available services', list_services, _list_arguments),
         Verb('type', "Output a service's type", show_type, _type_arguments),

@@ -135,13 +135,14 @@ def tell(text: str, end: str = '\n') -> None:
     print(text, end=end, flush=not settings.in_kernel())
 
 
-def wait_for_type(node: Node, topic: str, stop: Stop) -> str | None:
+def wait_for_type(node: Node, topic: str, stop: Stop, *, typed: str) -> str | None:
     """Return the type of a topic; wait for a topic that does not exist yet, and say so.
 
     Args:
         node: The node to ask the graph with.
         topic: Full name of the topic.
         stop: When to stop waiting.
+        typed: The name of the topic as it was typed, which is how it is shown.
 
     Returns:
         The type's name, None if it was time to stop.
@@ -164,7 +165,7 @@ def wait_for_type(node: Node, topic: str, stop: Stop) -> str | None:
             said = True
             others = [name for name, _ in node.get_topic_names_and_types() if not is_hidden(name)]
             hint = unknown(topic, others, 'topic')
-            print(f'WARNING: topic [{topic}] does not appear to be published yet', flush=True)
+            print(f'WARNING: topic [{typed}] does not appear to be published yet', flush=True)
             if hint.startswith('Did you mean'):
                 print(hint, flush=True)
         if stop.reached:

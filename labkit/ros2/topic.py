@@ -172,7 +172,14 @@ COMMAND = Command(
         BW,
         DELAY,
         ECHO,
-        Verb('find', 'Output a list of available topics of a given type', find, _find_arguments),
+        Verb(
+            'find',
+            'Output a list of available topics of a given type',
+            find,
+            _find_arguments,
+            'A type that is not installed is an error here, with exit code 1; the real one finds '
+            'nothing.',
+        ),
         HZ,
         Verb('info', 'Print information about a topic', show_info, _info_arguments),
         Verb('list', 'Output a list of available topics', list_topics, _list_arguments),

@@ -8,6 +8,7 @@ from argparse import Namespace
 from collections.abc import Iterable
 from typing import Any
 
+import yaml
 from rclpy.node import Node
 
 from labkit import settings
@@ -93,7 +94,7 @@ def _type_of(node: Node, topic: str, args: Namespace, stop: Stop) -> Any:
     if args.message_type is not None:
         return interfaces.message_class(args.message_type)
     soon(lambda: dict(node.get_topic_names_and_types()).get(topic))
-    name = wait_for_type(node, topic, stop)
+    name = wait_for_type(node, topic, stop, typed=args.topic_name)
     return None if name is None else interfaces.message_class(name)
 
 
@@ -131,8 +132,7 @@ def _show(args: Namespace, fields: list[str], message: Any, info: dict[str, Any]
         tell(text)
     else:
         if args.include_message_info:
-            print('\n'.join(f'{key}: {value}' for key, value in sorted(info.items())))
-            print('---')
+            tell(yaml.safe_dump(info), end='---\n')
         text = to_yaml(
             part,
             truncate_length=length,
@@ -192,7 +192,7 @@ def _arguments(parser: Parser) -> None:
     for name, text in (
         ('--no-arr', "Don't print array fields of messages"),
         ('--no-str', "Don't print string fields of messages"),
-        ('--flow-style', 'Print collections on one line (not available with csv format)'),
+        ('--flow-style', 'Print each list on one line (not available with csv format)'),
         ('--no-lost-messages', "Don't report when a message is lost"),
         ('--raw', 'Echo the raw binary representation'),
         ('--once', 'Print the first message received and then exit.'),
@@ -211,4 +211,12 @@ def _arguments(parser: Parser) -> None:
     parser.add('--include-hidden-topics', action='store_true', help=argparse.SUPPRESS)
 
 
-ECHO = Verb('echo', 'Output messages from a topic', echo, _arguments)
+ECHO = Verb(
+    'echo',
+    'Output messages from a topic',
+    echo,
+    _arguments,
+    'It waits for a topic that does not exist yet; the real one needs its type then. If no '
+    'message has come before --timeout, that is exit code 1 here and 0 with the real one. '
+    '--filter is refused here, because it runs Python code.',
+)

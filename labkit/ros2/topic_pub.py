@@ -30,7 +30,7 @@ from labkit.ros2.qos_options import add_qos_options, profile_from
 from labkit.ros2.streams import MAX_SHOWN, Stop, tell
 from labkit.rosgraph import interfaces
 from labkit.rosgraph.interfaces import type_name
-from labkit.rosgraph.message_yaml import fill, prototype, read_yaml
+from labkit.rosgraph.message_yaml import fill, no_dictionary, prototype, read_yaml
 from labkit.rosgraph.names import is_hidden
 
 __all__ = ['PUB']
@@ -54,7 +54,7 @@ def pub(args: Namespace) -> str | None:
     stop = Stop(times or None, args.timeout)
     msg_type = interfaces.message_class(args.message_type)
     message = msg_type()
-    setters = fill(message, read_yaml(_values(args)))
+    setters = fill(message, _fields_in(_values(args)))
     asking = asking_node(args)
     topic = full_name(args.topic_name, asking)
     node = _node(args.node_name, asking)
@@ -188,6 +188,16 @@ def _publisher(node: Node, topic: str, msg_type: Any, args: Namespace) -> Publis
         return node.create_publisher(msg_type, topic, profile_from(args))
     except (RCLError, LabError) as error:
         raise other_type(node, topic, msg_type, error) from error
+
+
+def _fields_in(text: str) -> dict[str, Any]:
+    values = read_yaml(text)
+    if not isinstance(values, dict):
+        raise no_dictionary(
+            values,
+            f'The passed value needs to be a dictionary in YAML format, but it is {text!r}.',
+        )
+    return values
 
 
 def _values(args: Namespace) -> str:

@@ -153,7 +153,7 @@ def _measure(
     node = asking_node(args)
     topic = full_name(topic, node)
     soon(lambda: dict(node.get_topic_names_and_types()).get(topic))
-    name = wait_for_type(node, topic, stop)
+    name = wait_for_type(node, topic, stop, typed=args.topic_name)
     if name is None:
         return f'No message came: {topic} has not appeared.'
     msg_type = interfaces.message_class(name)

@@ -27,7 +27,7 @@ from labkit.errors import nearest
 from labkit.rosgraph.interfaces import message_class, type_name
 from labkit.rosgraph.refusals import Refusal, Refused
 
-__all__ = ['field_paths', 'fill', 'prototype', 'read_yaml', 'to_csv', 'to_yaml']
+__all__ = ['field_paths', 'fill', 'no_dictionary', 'prototype', 'read_yaml', 'to_csv', 'to_yaml']
 
 Setter = Callable[[Any], None]
 
@@ -47,16 +47,31 @@ def to_yaml(
         truncate_length: How much to show of arrays and strings; all of it if None.
         no_arr: Whether to show type and length of arrays only.
         no_str: Whether to show the length of strings only.
-        flow_style: Whether to show all of it on one line.
+        flow_style: Whether to show each list on one line.
     """
     plain = _plain(message, None, truncate_length, no_arr, no_str)
-    return yaml.safe_dump(
+    return _dump(plain, _InLines, flow_style)
+
+
+def _dump(plain: Any, dumper: type[yaml.SafeDumper], flow_style: bool) -> str:
+    text: str = yaml.dump(
         plain,
+        Dumper=dumper,
         allow_unicode=True,
         width=sys.maxsize,
         default_flow_style=flow_style,
         sort_keys=False,
     )
+    return text
+
+
+class _InLines(yaml.SafeDumper):
+    """Writes each field on a line of its own, also in flow style."""
+
+    def represent_mapping(self, *args: Any, **options: Any) -> yaml.MappingNode:
+        node: yaml.MappingNode = super().represent_mapping(*args, **options)
+        node.flow_style = False
+        return node
 
 
 def to_csv(
@@ -70,14 +85,14 @@ def to_csv(
     return _cells(_plain(message, None, truncate_length, no_arr, no_str))
 
 
-def read_yaml(text: str) -> dict[str, Any]:
-    """Return what a text in YAML says: names of fields and their values.
+def read_yaml(text: str) -> Any:
+    """Return what a text in YAML says: for a message, a dictionary of fields and their values.
 
     Raises:
-        Refused: It is not YAML, or not a dictionary.
+        Refused: It is not YAML.
     """
     try:
-        values = yaml.safe_load(text)
+        return yaml.safe_load(text)
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         problem = getattr(error, 'problem', None) or str(error).splitlines()[0]
         raise Refused(
@@ -85,24 +100,30 @@ def read_yaml(text: str) -> dict[str, Any]:
             todo='Write the name of the field, a colon, a space and the value: "{data: 1}"',
             reason=Refusal.NOT_YAML,
         ) from error
-    if values is None:
-        return {}
-    if not isinstance(values, dict):
-        hint = ' A space is missing after the colon.' if ':' in text else ''
-        raise Refused(
-            f'The passed value needs to be a dictionary in YAML format, but it is {text!r}.{hint}',
-            todo='Write the name of the field, a colon, a space and the value: "{data: 1}"',
-            reason=Refusal.SPACE_AFTER_COLON if hint else Refusal.NO_FIELDS,
-        )
-    return values
 
 
-def fill(message: Any, values: dict[str, Any]) -> list[Setter]:
+def no_dictionary(values: Any, complaint: str) -> Refused:
+    """Return what to raise when values are not fields and what they hold.
+
+    Args:
+        values: What was given, as `read_yaml` has read it.
+        complaint: The first sentence.
+    """
+    spaceless = isinstance(values, str) and ':' in values
+    return Refused(
+        f'{complaint} A space is missing after the colon.' if spaceless else complaint,
+        todo='Write the name of the field, a colon, a space and the value: "{data: 1}"',
+        reason=Refusal.SPACE_AFTER_COLON if spaceless else Refusal.NO_FIELDS,
+    )
+
+
+def fill(message: Any, values: Any) -> list[Setter]:
     """Set fields of a message.
 
     Args:
         message: The message.
-        values: Field -> value, as `read_yaml` gives it. A header may be `auto`, a time `now`.
+        values: Field -> value, as `read_yaml` gives it; anything else is refused in the words of
+            the real one. A header may be `auto`, a time `now`.
 
     Returns:
         Functions that set the time fields that are to hold the present time, given that time.
@@ -112,6 +133,11 @@ def fill(message: Any, values: dict[str, Any]) -> list[Setter]:
     """
     setters: list[Setter] = []
     try:
+        if not isinstance(values, dict):
+            kind = type(values).__name__
+            raise no_dictionary(
+                values, f"Value '{values}' is expected to be a dictionary but is a {kind}"
+            )
         _fill(message, values, setters, '')
     except Refused as error:
         raise Refused(
@@ -122,7 +148,8 @@ def fill(message: Any, values: dict[str, Any]) -> list[Setter]:
 
 def prototype(msg_type: Any) -> str:
     """Return the values of a new message as YAML on one line, to be edited."""
-    return to_yaml(msg_type(), flow_style=True).strip()
+    plain = _plain(msg_type(), None, None, False, False)
+    return _dump(plain, yaml.SafeDumper, flow_style=True).strip()
 
 
 def field_paths(msg_type: Any, start: str = '') -> Iterator[str]:

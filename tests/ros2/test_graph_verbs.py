@@ -130,21 +130,33 @@ def test_services(ros2):
 
 
 def test_service_call(ros2):
-    answer, wrong, other = ros2(
+    first, answer, wrong, other, empty, number = ros2(
+        'service call /switch std_srvs/srv/SetBool "{data: true}"',
         'service call /switch std_srvs/srv/SetBool "{data: true}"',
         'service call /switch std_srvs/srv/SetBool "{dat: true}"',
         'service call /switch std_srvs/srv/Trigger',
+        'service call /switch std_srvs/srv/SetBool ""',
+        'service call /switch std_srvs/srv/SetBool 5',
     )
     assert answer.out == (
         'requester: making request: std_srvs.srv.SetBool_Request(data=True)\n\n'
         "response:\nstd_srvs.srv.SetBool_Response(success=True, message='on')\n\n"
     )
+    # A process that has only just come knows of no service, as with each call of the real one.
+    assert first.out == f'waiting for service to become available...\n{answer.out}'
     assert (wrong.code, wrong.err) == (
         1,
         "Failed to populate field: std_srvs/srv/SetBool_Request has no field 'dat'.\n"
         "Did you mean 'data'?\n",
     )
     assert other.err == '/switch is a std_srvs/srv/SetBool, not a std_srvs/srv/Trigger.\n'
+    assert (empty.code, empty.out, number.code, number.out) == (1, '', 1, '')
+    assert empty.err.startswith(
+        "Failed to populate field: Value 'None' is expected to be a dictionary but is a NoneType\n"
+    )
+    assert number.err.startswith(
+        "Failed to populate field: Value '5' is expected to be a dictionary but is a int\n"
+    )
 
 
 def test_doctor(ros2):

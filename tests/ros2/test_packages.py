@@ -43,7 +43,14 @@ def test_interface_show(capsys):
     assert said(capsys, 'interface show geometry_msgs/msg/TwistStamped') == (0, TWIST_STAMPED, '')
     assert said(capsys, 'interface show std_srvs/srv/SetBool') == (0, SET_BOOL, '')
     _, out, _ = said(capsys, 'interface show std_srvs/srv/SetBool --no-comments')
-    assert out == 'bool data\n---\nbool success\nstring message\n'
+    # The sign of a comment stays, as with the real one.
+    assert out == 'bool data #\n---\nbool success   #\nstring message #\n'
+    _, out, _ = said(capsys, 'interface show actionlib_msgs/msg/GoalStatus --no-comments')
+    assert 'uint8 PENDING         = 0   #' in out.splitlines()
+    _, out, _ = said(capsys, 'interface show sensor_msgs/msg/CameraInfo')
+    assert '\tuint32 x_offset  #' in out.splitlines()
+    _, out, _ = said(capsys, 'interface show sensor_msgs/msg/CameraInfo --all-comments')
+    assert '\tuint32 x_offset  # Leftmost pixel of the ROI' in out.splitlines()
     _, out, _ = said(capsys, 'interface show geometry_msgs/msg/TwistStamped --all-comments')
     assert '\t# This expresses velocity in free space' in out
 

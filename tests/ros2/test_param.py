@@ -55,6 +55,35 @@ def test_read(ros2):
     ]
 
 
+def test_names_can_be_filtered(ros2):
+    every, one, nothing, wrong = ros2(
+        'param list --filter "pid|sp"',
+        'param list /lamp --filter ".*sim"',
+        'param list /lamp --filter im',
+        'param list /lamp --filter "("',
+    )
+    # From the beginning of the name; a node that has none is left out.
+    assert every.lines == ['/lamp:', '  pid.p', '  speed']
+    assert one.lines == ['  use_sim_time']
+    assert (nothing.code, nothing.out) == (0, '')
+    assert (wrong.code, wrong.out) == (2, '') and 'no regular expression' in wrong.err
+
+
+def test_a_file_for_another_node_is_refused(ros2, tmp_path):
+    other, empty, no_node = (tmp_path / name for name in ('other', 'empty', 'no_node'))
+    other.write_text(DUMP.replace('/lamp', '/talker'))
+    empty.write_text('{}')
+    no_node.write_text('/lamp: {speed: 5}')
+    answers = ros2(*(f'param load /lamp {path}' for path in (other, empty, no_node)))
+    assert [(answer.code, answer.out) for answer in answers] == [(1, '')] * 3
+    # The words of rclpy.
+    assert answers[0].err == (
+        "Param file does not contain parameters for /lamp, only for nodes: ['/talker']\n"
+    )
+    assert answers[1].err == 'Param file does not contain selected parameters\n'
+    assert answers[2].err == 'YAML file is not a valid ROS parameter file for node /lamp\n'
+
+
 def test_write(ros2, tmp_path):
     good, bad = tmp_path / 'good.yaml', tmp_path / 'bad.yaml'
     good.write_text(DUMP.replace('speed: 5', 'speed: 9').replace('p: 1.5', 'p: 2.5'))
@@ -76,7 +105,7 @@ def test_write(ros2, tmp_path):
     assert out_of_range.err.startswith('Setting parameter failed: Parameter speed out of range')
     assert kind.err.startswith('Setting parameter failed: Wrong parameter type')
     assert wrong_file.err == (
-        'Param file does not contain parameters for /lamp, only for: nothing\n'
+        "Param file does not contain parameters for /lamp, only for nodes: ['nothing']\n"
     )
     assert no_file.err == 'nowhere.yaml can not be read: No such file or directory\n'
     assert {answer.code for answer in (out_of_range, kind, wrong_file, no_file)} == {1}

@@ -110,6 +110,28 @@ def test_help(capsys, line):
     assert shown.out.startswith('usage: ros2') and shown.err == ''
 
 
+@pytest.mark.parametrize(
+    ('verb', 'words'),
+    [
+        ('param set', 'exit code 1'),
+        ('param delete', 'exit code 1'),
+        ('param describe', 'exit code 1'),
+        ('param load', 'another node'),
+        ('topic find', 'exit code 1'),
+        ('service find', 'exit code 1'),
+        ('topic echo', 'exit code 1'),
+        ('doctor', 'exit code 1'),
+    ],
+)
+def test_help_says_where_a_verb_is_stricter_than_the_real_one(capsys, verb, words):
+    assert run_line(f'{verb} -h') == 0
+    shown = capsys.readouterr().out
+    last = shown[shown.rindex('\n\n') :]
+    assert max(map(len, last.splitlines())) <= 88
+    note = ' '.join(last.split())
+    assert 'the real one' in note and words in note
+
+
 def lines():
     """Return lines that are nearly right, and some that are not at all."""
     words = st.sampled_from([*COMMANDS, *VERBS, *OPTIONS, *VALUES]) | st.text(max_size=8)

@@ -24,7 +24,7 @@ def test_echo_shows_messages_as_yaml(ros2):
 
 
 def test_echo_shows_less_or_in_another_form(ros2):
-    short, words, full, flow, csv, no_text, info, raw = ros2(
+    short, words, full, flow, csv, no_text, info, info_csv, raw = ros2(
         'topic echo /scan --once --field ranges --truncate-length 3',
         'topic echo /odom --once --no-arr',
         'topic echo /scan --once -f --flow-style',
@@ -32,16 +32,22 @@ def test_echo_shows_less_or_in_another_form(ros2):
         'topic echo /odom --once --csv --field pose.pose',
         'topic echo /chatter --once --no-str',
         'topic echo /chatter --once -i',
+        'topic echo /chatter --once -i --csv',
         'topic echo /chatter --once --raw',
     )
     assert short.out.startswith('array(')
     assert "  covariance: '<array type: double[36]>'" in words.lines
     assert full.out.count('1.0') == 200 and '...' not in full.out
-    assert re.fullmatch(r'\{data: Hello \d+\}\n---\n', flow.out)
+    assert re.fullmatch(r'data: Hello \d+\n---\n', flow.out)
+    assert 'intensities: []' in full.lines and '  stamp:' in full.lines
     assert csv.out == '1.5,0.0,0.0,0.0,0.0,0.0,1.0\n'
     assert re.fullmatch(r"data: '<string length: <\d+>>'\n---\n", no_text.out)
-    assert info.lines[0].startswith('publication_sequence_number: ')
-    assert info.lines[4] == '---'
+    assert re.fullmatch(
+        r'publication_sequence_number: \d+\nreceived_timestamp: \d+\n'
+        r'reception_sequence_number: null\nsource_timestamp: \d+\n---\ndata: Hello \d+\n---\n',
+        info.out,
+    )
+    assert re.fullmatch(r'\d+,\d+,\d+,None,Hello \d+\n', info_csv.out)
     assert re.fullmatch(r"b'\\x00\\x01.*Hello.*'\n---\n", raw.out)
 
 
@@ -112,11 +118,13 @@ def test_echo_waits_for_a_topic_that_does_not_exist_yet(script, domain):
 
 
 def test_rates(ros2):
-    hz, bw, delay, headless, no_header = ros2(
+    hz, bw, delay, headless, no_delay, no_bw, no_header = ros2(
         'topic hz /chatter --count 2 --window 5',
         'topic bw /scan --count 1',
         'topic delay /odom --count 1',
         'topic hz /nothing --timeout 0.1',
+        'topic delay nothing --timeout 0.1',
+        'topic bw /nothing --timeout 0.1',
         'topic delay /chatter --count 1',
     )
     report = r'average rate: \d+\.\d{3}\n\tmin: \d\.\d{3}s max: \d\.\d{3}s std dev: \d\.\d{5}s'
@@ -133,6 +141,10 @@ def test_rates(ros2):
         delay.out,
     )
     assert headless.code == 1 and 'has not appeared' in headless.err
+    # The name as it was typed, as with the real one.
+    words = 'WARNING: topic [{}] does not appear to be published yet\n'
+    assert headless.out == no_bw.out == words.format('/nothing')
+    assert no_delay.out == words.format('nothing')
     assert no_header.err.startswith('msg does not have header\n')
 
 
@@ -178,6 +190,7 @@ WRONG = {
     '/odds std_msgs/msg/Int16 "data:1"': 'A space is missing after the colon.',
     '/odds std_msgs/msg/Int16 "{data: 1"': 'can not be read as YAML',
     '/odds std_msgs/msg/Int16 "5"': 'needs to be a dictionary in YAML format',
+    '/odds std_msgs/msg/Int16 ""': 'The passed value needs to be a dictionary in YAML format',
     '/odds std_msgs/msg/Int16 {data: 1}': 'YAML goes in quotation marks',
     '/odds std_msgs/msg/Int17': "Did you mean 'std_msgs/msg/Int16'?",
     '/odds std_srvs/srv/Trigger': 'The passed message type is invalid',

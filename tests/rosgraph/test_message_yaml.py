@@ -5,7 +5,7 @@ from __future__ import annotations
 import hypothesis.strategies as st
 import pytest
 import yaml
-from geometry_msgs.msg import PoseWithCovariance, Twist
+from geometry_msgs.msg import Point, PoseWithCovariance, Twist
 from hypothesis import given, settings
 from sensor_msgs.msg import Image, LaserScan, PointCloud2
 from std_msgs.msg import Bool, Byte, Char, Float32, Header, Int16, Int16MultiArray, String, UInt64
@@ -57,11 +57,28 @@ def test_yaml_is_that_of_the_real_one():
         'intensities: []',
     ]
     assert "ranges: '<sequence type: float, length: 2>'" in to_yaml(scan, no_arr=True)
-    assert to_yaml(String(data='Grüße'), flow_style=True) == '{data: Grüße}\n'
+    assert to_yaml(String(data='Grüße')) == 'data: Grüße\n'
     assert to_yaml(String(data='abcdef'), truncate_length=3) == 'data: abc...\n'
     assert to_yaml(Image(data=[1, 2, 3]), truncate_length=2).splitlines()[-3:] == [
         *('- 1', '- 2', "- '...'")
     ]
+
+
+def test_in_flow_style_only_lists_stand_on_one_line():
+    twist = Twist()
+    twist.linear.x = 0.5
+    assert to_yaml(twist, flow_style=True) == to_yaml(twist)
+    marker = Marker(ns='a', points=[Point(x=1.0), Point(z=2.0)])
+    lines = to_yaml(marker, flow_style=True).splitlines()
+    assert 'points: [{x: 1.0, y: 0.0, z: 0.0}, {x: 0.0, y: 0.0, z: 2.0}]' in lines
+    assert lines[:4] == ['header:', '  stamp:', '    sec: 0', '    nanosec: 0']
+    assert {'ns: a', 'colors: []', '  position:', '    x: 0.0'} <= set(lines)
+
+
+def test_a_prototype_stands_on_one_line():
+    assert prototype(Twist) == (
+        '{linear: {x: 0.0, y: 0.0, z: 0.0}, angular: {x: 0.0, y: 0.0, z: 0.0}}'
+    )
 
 
 def test_csv():
@@ -128,6 +145,9 @@ def test_fill_takes(msg_type, value, held):
         (PoseWithCovariance, {'covariance': [1.0]}, 'must be a list of 36 values'),
         (Marker, {'points': [{}, {'w': 1}]}, 'points[1]: geometry_msgs/msg/Point has no field'),
         (Header, {'stamp': 'soon'}, 'needs a value for each field'),
+        # The words of the real one.
+        (Int16, None, "Value 'None' is expected to be a dictionary but is a NoneType\n"),
+        (Int16, 5, "Value '5' is expected to be a dictionary but is a int\n"),
     ],
 )
 def test_fill_refuses(msg_type, values, sentence):
@@ -148,11 +168,12 @@ def test_the_present_time_is_filled_in_when_asked_for():
 
 
 @pytest.mark.parametrize(
-    'text', ['{', '- 1', 'data:1', '5', '[1]', '&a [*a]', '!!python/object:os.system {}', '\x00']
+    'text',
+    ['', '{', '- 1', 'data:1', '5', '[1]', '&a [*a]', '!!python/object:os.system {}', '\x00'],
 )
 def test_what_is_no_dictionary_in_yaml_is_refused(text):
     with pytest.raises(LabError):
-        read_yaml(text)
+        fill(String(), read_yaml(text))
 
 
 def test_field_paths():
