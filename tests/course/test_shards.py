@@ -86,6 +86,30 @@ def test_downloads_are_kept(workflow: dict[Any, Any]) -> None:
         assert all(name in cache['key'] for name in run_tests.REQUIREMENTS)
 
 
+def test_hooks_are_the_quick_checks() -> None:
+    hooks = yaml.safe_load((ROOT / '.pre-commit-config.yaml').read_text())['repos']
+    assert [one['repo'] for one in hooks] == ['local']
+    entries = {hook['name']: hook['entry'].split() for hook in hooks[0]['hooks']}
+    prefix = ['.venv/bin/python', '-m']
+    assert entries == {name: [*prefix, *command] for name, command in run_tests._fast_steps()}
+
+
+@pytest.mark.parametrize('path', sorted((ROOT / '.github').rglob('*.yml')), ids=lambda p: p.name)
+def test_files_for_github_can_be_read(path: Path) -> None:
+    content = yaml.safe_load(path.read_text())
+    if path.parent.name == 'ISSUE_TEMPLATE' and path.name != 'config.yml':
+        ids = [part['id'] for part in content['body']]
+        assert len(ids) == len(set(ids))
+        assert {'name', 'description', 'body'} <= set(content)
+
+
+def test_bug_reports_ask_for_what_the_doctor_says() -> None:
+    text = (ROOT / '.github' / 'ISSUE_TEMPLATE' / 'bug.yml').read_text()
+    (doctor,) = [part for part in yaml.safe_load(text)['body'] if part['id'] == 'doctor']
+    assert '`python3 -m labkit doctor`' in doctor['attributes']['label']
+    assert doctor['validations'] == {'required': True}
+
+
 def test_one_command_runs_everything() -> None:
     last = (ROOT / '.ci' / 'run').read_text().splitlines()[-1]
     assert last == 'exec python3 -m labkit test "$@" </dev/null'
