@@ -86,6 +86,16 @@ class Watch:
         """
         return [reduce(getattr, field.split('.'), sample.message) for sample in self.samples]
 
+    def last_run(self) -> list[Sample]:
+        """Return the messages of the publisher that was made last, where they come in turn.
+
+        A cell or a command may have been run before; each publisher counts from 1.
+        """
+        run: list[Sample] = []
+        for sample in self.samples:
+            run = [*run, sample] if run and sample.number > run[-1].number else [sample]
+        return run
+
     def streams(self) -> list[list[Sample]]:
         """Return the messages of each publisher.
 

@@ -14,13 +14,12 @@ from labkit.exercises import (
     Probe,
     Solution,
     Style,
-    Watch,
     Wrong,
     changed,
     expect,
 )
 from labkit.exercises.watch import Sample
-from labkit.lessons.command_line.last_command import explain_last_command, forget_commands
+from labkit.lessons.command_line.last_command import heard
 
 __all__ = ['drive']
 
@@ -30,32 +29,22 @@ COUNT = 5
 PERIOD_SEC = 0.1
 FORWARD, LEFT = 0.2, 0.5
 EXPECTED = f'{COUNT} messages on {TOPIC} with linear.x = {FORWARD} and angular.z = {LEFT}'
-LATE_SEC = 0.3
 
-_LINE = (
-    '%ros2 topic pub --times 5 --rate 10 /cmd_vel geometry_msgs/msg/Twist '
-    '"{linear: {x: 0.2}, angular: {z: 0.5}}"\n'
-)
+_LINE = """
+%ros2 topic pub --times 5 --rate 10 /cmd_vel geometry_msgs/msg/Twist \\
+    "{linear: {x: 0.2}, angular: {z: 0.5}}"
+"""
 _ONCE = changed(_LINE, ('--times 5', '--once'))
 
 
 def _judge_drive(probe: Probe) -> str:
-    recorded = probe.recorded[TOPIC]
-
-    def enough() -> bool:
-        recorded.pump()
-        return len(recorded) >= COUNT
-
-    if not enough() and not recorded:
-        explain_last_command(TOPIC, EXPECTED)
-    probe.wait(enough, LATE_SEC)
+    recorded = heard(probe, TOPIC, COUNT, EXPECTED)
     if not recorded:
         raise NotAttempted(
             f'Not attempted yet: nothing has come on {TOPIC}. Write your command in the cell '
             'above, run that cell, then run this one again.'
         )
-    forget_commands()
-    run = _last_run(recorded)
+    run = recorded.last_run()
     _expect_fields(run[-1].message)
     _expect_count(run)
     gap = median(later.stamp - earlier.stamp for earlier, later in pairwise(run))
@@ -67,14 +56,6 @@ def _judge_drive(probe: Probe) -> str:
         todo='Use --rate 10.',
     )
     return f'{COUNT} messages came, ten a second: forwards, and to the left.'
-
-
-def _last_run(recorded: Watch) -> list[Sample]:
-    """Return the messages of the command that was run last: each counts from 1."""
-    run: list[Sample] = []
-    for sample in recorded.samples:
-        run = [*run, sample] if run and sample.number > run[-1].number else [sample]
-    return run
 
 
 def _expect_fields(message: Any) -> None:
@@ -140,8 +121,10 @@ drive = Exercise(
     styles=[
         Style(
             'in lines, all fields',
-            '%ros2 topic pub -r 10 -t 5 cmd_vel geometry_msgs/msg/Twist "{linear: {x: 0.2, y: 0, '
-            'z: 0.0}, angular: {x: 0.0, y: 0.0, z: 5.0e-1}}"\n',
+            """
+%ros2 topic pub -r 10 -t 5 cmd_vel geometry_msgs/msg/Twist \\
+    "{linear: {x: 0.2, y: 0, z: 0.0}, angular: {x: 0.0, y: 0.0, z: 5.0e-1}}"
+""",
         ),
         Style(
             'a node',

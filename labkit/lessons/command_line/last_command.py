@@ -7,31 +7,61 @@ look at the commands that this notebook has run. Commands of a terminal are not 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Sequence
 
-from labkit.errors import LabError
-from labkit.exercises import Fail
+from labkit.exercises import Fail, Probe, Watch
+from labkit.rosgraph.refusals import Refusal
 
-__all__ = ['explain_last_command', 'forget_commands']
+__all__ = ['explain_last_command', 'forget_commands', 'heard']
 
 # How much of two names has to be the same, from 0 to 1.
 NEAR = 0.75
-# A part of a complaint -> the misconception behind it. The first that fits counts.
+# How long messages of a process that has ended a moment ago may be on their way.
+LATE_SEC = 0.3
+# The misconception behind a refusal, in words of the lesson.
 _WHY = {
-    'A space is missing after the colon': 'In YAML a colon is followed by a space: data: 1',
-    'YAML goes in quotation marks': 'A space ends a word of a command. Quotation marks around the '
-    'YAML hold its words together.',
-    'but got [': 'The brackets make a list. A field of this type holds one number, so each number '
-    'needs a message of its own.',
-    'must be a whole number': 'An Int16 holds whole numbers from -32768 to 32767, written in '
+    Refusal.SPACE_AFTER_COLON: 'In YAML a colon is followed by a space: data: 1',
+    Refusal.QUOTES_MISSING: 'A space ends a word of a command. Quotation marks around the YAML '
+    'hold its words together.',
+    Refusal.LIST_FOR_NUMBER: 'The brackets make a list. A field of this type holds one number, so '
+    'each number needs a message of its own.',
+    Refusal.NOT_A_WHOLE_NUMBER: 'An Int16 holds whole numbers from -32768 to 32767, written in '
     'digits.',
-    'is not known': 'The name of a type has three parts: the package, the word msg, and the type.',
-    'of another type': 'A topic carries one type of message. Another type is refused, or nobody '
+    Refusal.OUT_OF_RANGE: 'An Int16 holds whole numbers from -32768 to 32767.',
+    Refusal.UNKNOWN_TYPE: 'The name of a type has three parts: the package, the word msg, and the '
+    'type.',
+    Refusal.OTHER_TYPE: 'A topic carries one type of message. Another type is refused, or nobody '
     'hears it.',
-    'has no field': 'The message has other fields. Fields that are messages themselves take '
-    'braces of their own.',
-    "repeated '/'": 'One slash at the beginning is enough.',
+    Refusal.NO_SUCH_FIELD: 'The message has other fields. Fields that are messages themselves '
+    'take braces of their own.',
+    Refusal.FIELDS_WANTED: 'Fields that are messages themselves take braces of their own.',
+    Refusal.REPEATED_SLASH: 'One slash at the beginning is enough.',
 }
+
+
+def heard(probe: Probe, topic: str, count: int, expected: str) -> Watch:
+    """Return what commands have published on a topic that is recorded; forget the commands then.
+
+    Args:
+        probe: The probe of the check.
+        topic: Full name of the topic.
+        count: How many messages are asked for. It waits for them for a moment.
+        expected: What should have come, in words.
+
+    Raises:
+        Fail: Nothing has come, and the last command says why.
+    """
+    recorded = probe.recorded[topic]
+
+    def enough() -> bool:
+        recorded.pump()
+        return len(recorded) >= count
+
+    if not enough() and not recorded:
+        explain_last_command(topic, expected)
+    probe.wait(enough, LATE_SEC)
+    if recorded:
+        forget_commands()
+    return recorded
 
 
 def explain_last_command(topic: str, expected: str) -> None:
@@ -47,31 +77,31 @@ def explain_last_command(topic: str, expected: str) -> None:
     from labkit.ros2.shell import history
 
     tried = [
-        ran
-        for ran in history
-        if ran.words[:2] == ('topic', 'pub') and any(_is_near(word, topic) for word in ran.words)
+        ran for ran in history if ran.words[:2] == ('topic', 'pub') and _is_near(ran.topic, topic)
     ]
     if not tried:
         return
-    words, complaint = tried[-1].words, tried[-1].complaint
-    other = _topic_of(words)
-    if other not in ('', topic) and not any(part in complaint for part in _WHY):
-        why = f'{other} is not {topic}: names must be equal to the last letter.'
-        if other.lower() == topic:
-            why = f'Capital and small letters differ in names: {other} and {topic} are two topics.'
+    last = tried[-1]
+    if last.topic != topic and last.reason not in _WHY:
+        why = f'{last.topic} is not {topic}: names must be equal to the last letter.'
+        if last.topic.lower() == topic:
+            why = (
+                f'Capital and small letters differ in names: {last.topic} and {topic} are two '
+                'topics.'
+            )
         raise Fail(
             expected,
-            f'a command that publishes on {other}',
+            f'a command that publishes on {last.topic}',
             why=why,
             todo=f'Write the topic as {topic}.',
         )
-    if complaint:
-        line, _, rest = complaint.partition('\n')
+    if last.reason is not None:
+        what, _, todo = last.complaint.partition('\n')
         raise Fail(
             expected,
-            f'a command that was refused: {line}',
-            why=next((why for part, why in _WHY.items() if part in complaint), ''),
-            todo='' if rest.startswith('usage') else rest,
+            f'a command that was refused: {what}',
+            why=_WHY.get(last.reason, ''),
+            todo=todo,
         )
 
 
@@ -82,19 +112,7 @@ def forget_commands() -> None:
     history.clear()
 
 
-def _is_near(word: str, topic: str) -> bool:
-    """Tell whether a word of a command was probably meant to be a topic."""
-    one, other = word.strip('/').lower(), topic.strip('/').lower()
+def _is_near(seen: str, topic: str) -> bool:
+    """Tell whether a name was probably meant to be that of a topic."""
+    one, other = seen.strip('/').lower(), topic.strip('/').lower()
     return difflib.SequenceMatcher(None, one, other).ratio() > NEAR
-
-
-def _topic_of(words: Sequence[str]) -> str:
-    """Return the topic that a `topic pub` command names, '' if it can't be told."""
-    from labkit.ros2.parser import Done
-    from labkit.ros2.topic_pub import PUB
-
-    try:
-        name = str(PUB.parser('topic').read(list(words[2:])).topic_name)
-    except (LabError, Done):
-        return ''
-    return name if name.startswith('/') else f'/{name}'

@@ -16,7 +16,7 @@ from labkit.exercises import (
     changed,
     expect,
 )
-from labkit.lessons.command_line.last_command import explain_last_command, forget_commands
+from labkit.lessons.command_line.last_command import heard
 
 __all__ = ['odds']
 
@@ -24,31 +24,20 @@ INT16 = 'std_msgs/msg/Int16'
 TOPIC = '/odds'
 WANTED = [1, 3, 5]
 EXPECTED = f'the numbers 1, 3 and 5 on {TOPIC}, one message each'
-# How long messages of a process that has ended a moment ago may be on their way.
-LATE_SEC = 0.3
 
 _ONE = '%ros2 topic pub --once /odds std_msgs/msg/Int16 "{data: 1}"\n'
 _COMMANDS = ''.join(changed(_ONE, ('1}', f'{number}}}')) for number in WANTED)
 
 
 def _judge_odds(probe: Probe) -> str:
-    recorded = probe.recorded[TOPIC]
-
-    def enough() -> bool:
-        recorded.pump()
-        return len(recorded) >= len(WANTED)
-
     _refuse_other_types(probe)
-    if not enough() and not recorded:
-        explain_last_command(TOPIC, EXPECTED)
-    probe.wait(enough, LATE_SEC)
+    recorded = heard(probe, TOPIC, len(WANTED), EXPECTED)
     if not recorded:
         raise NotAttempted(
             f'Not attempted yet: nothing has come on {TOPIC}. Write your commands in the cell '
             'above, run that cell, then run this one again. If a command says that something '
             'is wrong, nothing was sent.'
         )
-    forget_commands()
     values = recorded.values('data')
     # Who has run the cell twice, or has tried something before, is right in the end.
     if values[-3:] != WANTED or values[-4:-3] == WANTED[:1]:

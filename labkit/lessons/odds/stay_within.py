@@ -20,6 +20,7 @@ from labkit.exercises import (
     expect,
 )
 from labkit.exercises.watch import Sample
+from labkit.lessons._script import in_process
 
 __all__ = ['stay_within']
 
@@ -54,7 +55,6 @@ class LateOdds(Node):
 
 late_odds = lab.spin(LateOdds(first=32751))
 """
-_START = 'late_odds = lab.spin(LateOdds(first=32751))'
 _GUARD = '        if self.number > 32767:\n            self.number = 1\n'
 
 
@@ -100,19 +100,11 @@ def _wait_for_end(probe: Probe, recorded: Watch) -> list[Sample]:
         recorded.pump()
         return len(recorded) > count
 
-    while len(_last_run(recorded)) < ENOUGH:
+    while len(recorded.last_run()) < ENOUGH:
         # A callback that fails from the limit on is noticed while this waits.
         if not probe.wait(partial(more_than, len(recorded)), QUIET_SEC):
             break
-    return _last_run(recorded)
-
-
-def _last_run(recorded: Watch) -> list[Sample]:
-    """Return the messages of the publisher that was made last: the cell may have run before."""
-    run: list[Sample] = []
-    for sample in recorded.samples:
-        run = [*run, sample] if run and sample.number > run[-1].number else [sample]
-    return run
+    return recorded.last_run()
 
 
 def _position(value: int) -> int:
@@ -200,10 +192,7 @@ lab.spin(node)
         ),
         Style(
             'own process',
-            changed(
-                _LATE,
-                (_START, 'import rclpy\n\nrclpy.init()\nrclpy.spin(LateOdds(first=32751))'),
-            ),
+            in_process(_LATE),
             process=True,
         ),
     ],
