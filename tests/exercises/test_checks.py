@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 import rclpy
+from counter_node import Counter
 from rclpy.node import Node
 from std_msgs.msg import Int16, String
 
@@ -31,20 +32,6 @@ def exercise(judge: Callable[[Probe], str | None], **options: Any) -> Exercise:
         answer=Solution('pass', 'So.'),
         **options,
     )
-
-
-class Counter(Node):
-    """Publishes 1, 2, 3, ... often."""
-
-    def __init__(self, name: str = 'counter', topic: str = 'odds') -> None:
-        super().__init__(name)
-        self.publisher = self.create_publisher(Int16, topic, 10)
-        self.number = 0
-        self.create_timer(0.02, self.on_timer)
-
-    def on_timer(self) -> None:
-        self.number += 1
-        self.publisher.publish(Int16(data=self.number))
 
 
 def counts(probe: Probe) -> str:
@@ -355,3 +342,19 @@ def test_stamps_give_the_rate_and_numbers_the_first_value(lab: ModuleType) -> No
 
     verdict = exercise(judge).check()
     assert verdict.passed and int(verdict.text) > 20
+
+
+def test_node_that_is_not_spun_is_told_so_where_its_answer_is_wanted(lab: ModuleType) -> None:
+    node = Node('evens')
+    node.create_subscription(Int16, 'odds', lambda message: None, 10)
+    node.create_publisher(Int16, 'evens', 10)
+
+    def judge(probe: Probe) -> None:
+        hears, says = expect.subscription(probe, '/odds'), expect.publisher(probe, '/evens')
+        expect.replies(probe, hears, [{'data': 1}], says, lambda sent: 2)
+
+    evens = {'publishes': {'/evens': INT16}, 'subscribes': {'/odds': INT16}}
+    verdict = exercise(judge, **evens).check()
+    assert verdict.outcome is Outcome.FAIL
+    assert verdict.todo == 'Hand the node over: lab.spin(node)'
+    node.destroy_node()

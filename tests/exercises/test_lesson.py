@@ -1,11 +1,16 @@
 from __future__ import annotations
 
+from pathlib import Path
+
+import jedi
 import pytest
 
 from labkit.errors import LabError
 from labkit.exercises.exercise import Exercise, Solution, changed
 from labkit.exercises.lesson import Lesson, NoSuchNameError, load
 from labkit.exercises.quiz import Quiz
+
+ROOT = Path(__file__).resolve().parent.parent.parent
 
 
 @pytest.fixture
@@ -62,3 +67,16 @@ def test_changed_refuses_what_is_not_there() -> None:
     assert changed('a = 1', ('1', '2')) == 'a = 2'
     with pytest.raises(ValueError, match="'3' is not in the code"):
         changed('a = 1', ('3', '2'))
+
+
+@pytest.mark.parametrize(
+    ('expression', 'names'),
+    [
+        ("lab.lesson('odds').count_up.", {'check', 'hint', 'solution'}),
+        ("lab.lesson('odds').count_up.check().", {'outcome', 'passed', 'seen', 'why', 'todo'}),
+        ("lab.lesson('odds').quiz('types').", {'answer'}),
+    ],
+)
+def test_editor_completes_what_a_learner_writes(expression: str, names: set[str]) -> None:
+    script = jedi.Script(f'import labkit as lab\n{expression}', project=jedi.Project(ROOT))
+    assert names <= {completion.name for completion in script.complete()}

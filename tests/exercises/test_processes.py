@@ -3,27 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from labkit.background.domains import claim_domain
 
-COUNTER = """
-import rclpy
-from rclpy.node import Node
-from std_msgs.msg import Int16
-class Counter(Node):
-    def __init__(self, name):
-        super().__init__(name)
-        self.publisher = self.create_publisher(Int16, 'odds', 10)
-        self.create_timer(0.05, lambda: self.publisher.publish(Int16(data=1)))
-"""
-SETUP = """
+NODE = Path(__file__).resolve().with_name('counter_node.py')
+SETUP = f"""
+import sys
+sys.path.append({str(NODE.parent)!r})
 import labkit as lab
+from counter_node import Counter
 from labkit.exercises import Exercise, Lesson, Solution
 from labkit.exercises import expect
 def judge(probe):
     expect.publisher(probe, '/odds')
-exercise = Exercise(name='ones', task='', publishes={'/odds': 'std_msgs/msg/Int16'}, judge=judge,
+exercise = Exercise(name='ones', task='', publishes={{'/odds': 'std_msgs/msg/Int16'}}, judge=judge,
                     hints=['.'], answer=Solution('', ''))
 Lesson('odds', '04_odds.ipynb', exercises=[exercise]).begin()
 lab.start()
@@ -34,10 +29,9 @@ from labkit.background.runtime import runtime
 def sees_noise():
     return '/noise' in node_names(runtime.helper)
 """
-SCRIPT = """
-import subprocess, sys
-open('ones.py', 'w').write({code!r})
-process = subprocess.Popen([sys.executable, 'ones.py'])
+START = f"""
+import subprocess
+process = subprocess.Popen([sys.executable, {str(NODE)!r}, 'ones'])
 """
 
 
@@ -46,8 +40,8 @@ def test_other_notebook_is_named(start_kernel: Callable[..., Any]) -> None:
     env = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'ROS_DOMAIN_ID': str(claim.domain_id)}
     mine = start_kernel(JPY_SESSION_NAME='/home/me/04_odds.ipynb', **env)
     other = start_kernel(JPY_SESSION_NAME='/home/me/02_talker_listener.ipynb', **env)
-    other.run(f'import labkit as lab\n{COUNTER}\nlab.spin(Counter("noise"))')
-    mine.run(f'{SETUP}\n{COUNTER}\nlab.spin(Counter("mine"))')
+    other.run(f'{SETUP}\nlab.spin(Counter("noise"))')
+    mine.run(f'{SETUP}\nlab.spin(Counter("mine"))')
     mine.run(SEES)
     found = mine.run('lab.wait_until(sees_noise, timeout_sec=30)\nexercise.check()')
     claim.close()
@@ -62,8 +56,7 @@ def test_script_that_was_just_started_is_waited_for(start_kernel: Callable[..., 
         ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST', ROS_DOMAIN_ID=str(claim.domain_id)
     )
     kernel.run(SETUP)
-    code = f'{COUNTER}\nrclpy.init()\nrclpy.spin(Counter("ones"))'
-    found = kernel.run(SCRIPT.format(code=code) + 'exercise.check()')
+    found = kernel.run(START + 'exercise.check()')
     # Slow to start on a busy machine: then the check says so, and the next one sees it.
     while 'run this cell again' in found.text.lower().replace('\n', ' '):
         found = kernel.run('exercise.check()')
@@ -87,8 +80,7 @@ def test_cell_that_raised_is_an_error_and_not_an_attempt_left_out(kernel: Any) -
 
 def test_check_works_in_a_plain_script(script: Callable[..., Any]) -> None:
     done = script(
-        f'{SETUP}\n{COUNTER}\nprint(exercise.check())\nlab.spin(Counter("ones"))\n'
-        'print(exercise.check())'
+        f'{SETUP}\nprint(exercise.check())\nlab.spin(Counter("ones"))\nprint(exercise.check())'
     )
     assert done.exit_code == 0, done.stderr
     assert done.stdout.startswith('NOT ATTEMPTED: ones')

@@ -8,7 +8,14 @@ from __future__ import annotations
 
 from labkit.exercises.expect.endpoints import alone, node, publisher, qos, subscription
 from labkit.exercises.expect.replies import Reply, logs, replies
-from labkit.exercises.expect.timing import describe_rate, ends_with_node, hanging, messages, rate
+from labkit.exercises.expect.timing import (
+    describe_rate,
+    ends_with_node,
+    hanging,
+    messages,
+    rate,
+    spun,
+)
 from labkit.exercises.expect.values import (
     each,
     equal,
@@ -38,6 +45,7 @@ __all__ = [
     'rate',
     'replies',
     'show',
+    'spun',
     'steps',
     'subscription',
     'text_trouble',

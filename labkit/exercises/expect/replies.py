@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from labkit.exercises.expect.timing import hanging
+from labkit.exercises.expect.timing import hanging, spun
 from labkit.exercises.expect.values import show, text_trouble
 from labkit.exercises.probe import Probe
 from labkit.exercises.verdict import Fail
@@ -89,6 +89,7 @@ def replies(
             sent_at = send(fields)
             if _arrives(probe, watch, before, lambda: right in came()) or came():  # noqa: B023
                 break
+            spun(probe, source)
         if right not in came():
             _refuse(source, answer, fields, right, came(), field, explain)
         position = before + came().index(right)
@@ -128,6 +129,7 @@ def logs(probe: Probe, node: str, source: Endpoint, fields: Mapping[str, Any], t
         send(fields)
         if _arrives(probe, probe.logs, before, logged) or lines():
             break
+        spun(probe, source)
     if not logged():
         raise Fail(
             f'{node} logs a line with {text!r} when {_show(fields)} comes on {source.topic}',

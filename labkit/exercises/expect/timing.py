@@ -15,7 +15,7 @@ from labkit.exercises.watch import Watch
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
 
-__all__ = ['ends_with_node', 'hanging', 'messages', 'rate']
+__all__ = ['ends_with_node', 'hanging', 'messages', 'rate', 'spun']
 
 # How long a topic may be silent before that is a finding, where no rate is asked for.
 QUIET_SEC = 2.0
@@ -157,6 +157,18 @@ def hanging(probe: Probe) -> None:
             why='While a callback runs, no other one can: no message is taken, no timer ticks. '
             'A callback that waits or loops holds everything up.',
             todo='Do one small step in the callback and return. For "again later" use a timer.',
+        )
+
+
+def spun(probe: Probe, endpoint: Endpoint) -> None:
+    """Raise Fail if an endpoint's node is in this notebook, and nobody runs its callbacks."""
+    node = probe.node_object(endpoint.node)
+    if node is not None and node.executor is None:
+        raise Fail(
+            f'{endpoint.node} takes its messages and calls its callbacks',
+            f'{endpoint.node} is there, but it is not spun',
+            why='Messages come and wait in the queue. Nothing takes them out.',
+            todo='Hand the node over: lab.spin(node)',
         )
 
 

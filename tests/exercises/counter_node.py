@@ -1,0 +1,33 @@
+"""A node that counts on a topic: 1, 2, 3, ..."""
+
+from __future__ import annotations
+
+import sys
+
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Int16
+
+
+class Counter(Node):
+    """Publishes the next number often."""
+
+    def __init__(self, name: str = 'counter', topic: str = 'odds') -> None:
+        super().__init__(name)
+        self.publisher = self.create_publisher(Int16, topic, 10)
+        self.number = 0
+        self.create_timer(0.02, self.on_timer)
+
+    def on_timer(self) -> None:
+        self.number += 1
+        self.publisher.publish(Int16(data=self.number))
+
+
+def main() -> None:
+    """Run it under the name that is the program's argument."""
+    rclpy.init()
+    rclpy.spin(Counter(sys.argv[1]))
+
+
+if __name__ == '__main__':
+    main()
