@@ -13,6 +13,7 @@ That is all: lessons are found by name. Types of messages are given by name
         Choice, Exercise, Lesson, Probe, Quiz, Solution, Style, Wrong, changed, expect, right,
         wrong,
     )
+    from labkit.lessons._script import in_process
 
     INT16 = 'std_msgs/msg/Int16'
 
@@ -25,9 +26,9 @@ That is all: lessons are found by name. Types of messages are given by name
 
 
     NODE = """
-    import rclpy
     from rclpy.node import Node
     from std_msgs.msg import Int16
+
 
     class Ones(Node):
         def __init__(self):
@@ -37,6 +38,9 @@ That is all: lessons are found by name. Types of messages are given by name
 
         def on_timer(self):
             self.publisher.publish(Int16(data=1))
+
+
+    lab.spin(Ones())
     """
 
     LESSON = Lesson(
@@ -49,13 +53,10 @@ That is all: lessons are found by name. Types of messages are given by name
                 publishes={'/ones': INT16},
                 judge=judge_ones,
                 hints=['What calls a function again and again?', 'create_timer(0.1, ...)'],
-                answer=Solution(NODE + 'lab.spin(Ones())', 'A timer leaves the node free.'),
-                styles=[
-                    Style('process', NODE + 'rclpy.init(); rclpy.spin(Ones())', process=True),
-                ],
+                answer=Solution(NODE, 'A timer leaves the node free.'),
+                styles=[Style('own process', in_process(NODE), process=True)],
                 wrong=[
-                    Wrong('Hz for s', changed(NODE, ('0.1', '10')) + 'lab.spin(Ones())',
-                          'its period is 10 s'),
+                    Wrong('Hz for s', changed(NODE, ('0.1', '10')), 'its period is 10 s'),
                 ],
             ),
         ],
@@ -121,6 +122,10 @@ answer with its sentence, each style, the solution, and the check pressed again.
 one exercise keeps running while the next one is proved, as it does when a learner goes on. Have
 at least three wrong answers and two other styles (`process=True`: a script in a process of its
 own). `pytest tests/lessons -k odds-ones` proves one exercise.
+
+Ruff looks at all of these answers as it does at other code, and a learner sees the solution as it
+is formatted. Where what it finds is the mistake itself, as a name that is not defined, the wrong
+answer says so: `refused='The name is not defined.'`.
 '''
 
 from __future__ import annotations

@@ -65,6 +65,7 @@ class Wrong:
         says: A sentence, or a part of one, that the verdict must contain.
         outcome: The outcome that it must get: FAIL, or ERROR if the code raises.
         process: Whether it is a script for a process of its own.
+        refused: What a linter finds in it, where that is the mistake; `''` if it finds nothing.
     """
 
     name: str
@@ -72,6 +73,7 @@ class Wrong:
     says: str
     outcome: Outcome = Outcome.FAIL
     process: bool = False
+    refused: str = ''
 
 
 def changed(code: str, *changes: tuple[str, str]) -> str:

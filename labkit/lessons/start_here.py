@@ -98,6 +98,7 @@ node = rclpy.create_node('hello_robot')
             _NODE.replace("'hello_robot'", 'hello_robot'),
             'Python does not know the name hello_robot here',
             outcome=Outcome.ERROR,
+            refused='The name is not defined.',
         ),
         Wrong(
             'a text is not a node',

@@ -7,6 +7,6 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 # With pytest's importlib mode a test can't import the file beside it by itself.
-sys.path[:0] = [str(HERE), str(HERE / 'demo')]
+sys.path.insert(0, str(HERE))
 # Neither a test nor, for nbval, a lesson.
 collect_ignore = ['demo']

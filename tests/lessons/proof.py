@@ -112,7 +112,7 @@ class Proof:
         notebook = notebook_of(lesson)
         self._path = folder / notebook.name
         if lesson is demo.LESSON:
-            shutil.copy(HERE / 'demo' / 'demo.py', folder)
+            shutil.copytree(HERE / 'demo', folder / 'demo')
         shutil.copy(HERE / 'kernel_tools.py', folder)
         content = nbformat.read(notebook, as_version=4)
         if any(state.process for exercise in lesson.exercises for state in states_of(exercise)):

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import ast
 import json
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -68,8 +66,6 @@ def test_exercise_is_complete(lesson: Lesson, exercise: Exercise) -> None:
     assert len(names) == len(set(names))
     for wrong in exercise.wrong:
         assert len(wrong.says) >= 8
-    for shown in (exercise.answer, *exercise.styles):
-        ast.parse(re.sub(r'^(\s*)[%!].*', r'\1pass', shown.code, flags=re.MULTILINE))
     if lesson is not demo.LESSON:
         assert len(exercise.wrong) >= 3
         assert len(exercise.styles) >= 2

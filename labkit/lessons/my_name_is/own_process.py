@@ -37,19 +37,21 @@ rclpy.init()
 rclpy.spin(Opener())
 """
 
-_START = f"""
+_START = f'''
 import subprocess
 import sys
 
 from std_msgs.msg import String
 
-program = '''{_SCRIPT}'''
+earlier = globals().get('process')
+if earlier is not None:
+    earlier.terminate()
 
-if 'process' in globals():
-    process.terminate()
+program = """{_SCRIPT}"""
+
 process = subprocess.Popen([sys.executable, '-c', program])
 print(lab.wait_for_message('/incomplete', String, timeout_sec=20))
-"""
+'''
 
 
 def _judge_own_process(probe: Probe) -> str:
@@ -142,14 +144,16 @@ while rclpy.ok():
         ),
         Wrong(
             'does not spin',
-            f"""
+            f'''
 import subprocess
 import sys
+from pathlib import Path
 
-program = '''{changed(_SCRIPT, ('rclpy.spin(Opener())', 'Opener()'))}'''
+program = """{changed(_SCRIPT, ('rclpy.spin(Opener())', 'Opener()'))}"""
 process = subprocess.Popen([sys.executable, '-c', program])
-lab.wait_until(lambda: 'zombie' in open(f'/proc/{{process.pid}}/status').read(), timeout_sec=20)
-""",
+status = Path(f'/proc/{{process.pid}}/status')
+lab.wait_until(lambda: 'zombie' in status.read_text(), timeout_sec=20)
+''',
             'rclpy.spin(node) in the last line keeps it going',
         ),
         Wrong(

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from labkit.exercises import Exercise, Outcome, Probe, Solution, Style, Wrong, changed, expect
+from labkit.lessons._script import in_process
 from labkit.lessons._stage import find_stage
 from labkit.lessons.my_name_is.two_stages import STRING
 
@@ -31,7 +32,6 @@ class Polite(Node):
 
 polite = lab.spin(Polite())
 """
-_START = 'polite = lab.spin(Polite())'
 _SUM = "msg.data + '. Nice to meet you.'"
 
 
@@ -108,7 +108,7 @@ publisher = node.create_publisher(String, '/greeting', 5)
 
 
 def bow(text):
-    publisher.publish(String(data='{}. Nice to meet you.'.format(text.data)))
+    publisher.publish(String(data=f'{text.data}. Nice to meet you.'))
 
 
 node.create_subscription(String, '/complete', bow, 5)
@@ -117,7 +117,7 @@ lab.spin(node)
         ),
         Style(
             'own process',
-            changed(_POLITE, (_START, 'import rclpy\n\nrclpy.init()\nrclpy.spin(Polite())')),
+            in_process(_POLITE),
             process=True,
         ),
     ],

@@ -172,8 +172,7 @@ for name in ('Eve', 'Finn', 'Gus'):
                 _NAMES,
                 (
                     _START,
-                    """
-class Ada(Introducer):
+                    """class Ada(Introducer):
     def __init__(self):
         super().__init__('lady', 'Ada')
 
@@ -194,12 +193,13 @@ lab.spin(Bob())
             changed(
                 _NAMES,
                 (
+                    'from rclpy.node',
+                    'import rclpy\nfrom rclpy.executors import MultiThreadedExecutor\n'
+                    'from rclpy.node',
+                ),
+                (
                     _START,
-                    """
-import rclpy
-from rclpy.executors import MultiThreadedExecutor
-
-rclpy.init()
+                    """rclpy.init()
 executor = MultiThreadedExecutor()
 for node in (Introducer('ada', 'Ada'), Introducer('bob', 'Bob')):
     executor.add_node(node)

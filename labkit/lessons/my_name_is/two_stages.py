@@ -203,12 +203,13 @@ threading.Thread(target=work, daemon=True).start()
             changed(
                 _CHAIN,
                 (
+                    'from rclpy.node',
+                    'import rclpy\nfrom rclpy.executors import SingleThreadedExecutor\n'
+                    'from rclpy.node',
+                ),
+                (
                     _START,
-                    """
-import rclpy
-from rclpy.executors import SingleThreadedExecutor
-
-rclpy.init()
+                    """rclpy.init()
 executor = SingleThreadedExecutor()
 for stage in (Completer(), Opener()):
     executor.add_node(stage)
@@ -235,11 +236,14 @@ executor.spin()
             'string grows',
             changed(
                 _CHAIN,
-                ("super().__init__('completer')", "super().__init__('completer'); self.text = ''"),
+                (
+                    "super().__init__('completer')\n",
+                    "super().__init__('completer')\n        self.text = ''\n",
+                ),
                 (
                     f'self.publisher.publish(String(data={_SUM}))',
-                    'self.text += msg.data; '
-                    "self.publisher.publish(String(data=self.text + 'Ada'))",
+                    'self.text += msg.data\n'
+                    "        self.publisher.publish(String(data=self.text + 'Ada'))",
                 ),
             ),
             'The texts of earlier messages are still in it',

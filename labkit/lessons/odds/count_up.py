@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from labkit.exercises import Exercise, Probe, Solution, Style, Watch, Wrong, changed, expect
+from labkit.lessons._script import in_process, two_copies
 
 __all__ = ['count_up']
 
@@ -31,8 +32,6 @@ class Odds(Node):
 
 odds = lab.spin(Odds())
 """
-_START = 'odds = lab.spin(Odds())'
-_MAIN = 'import rclpy\n\nrclpy.init()\nrclpy.spin(Odds())'
 
 
 def _judge_count_up(probe: Probe) -> str:
@@ -132,7 +131,7 @@ def work():
 threading.Thread(target=work, daemon=True).start()
 """,
         ),
-        Style('own process', changed(_ODDS, (_START, _MAIN)), process=True),
+        Style('own process', in_process(_ODDS), process=True),
     ],
     wrong=[
         Wrong(
@@ -167,6 +166,7 @@ threading.Thread(target=work, daemon=True).start()
             '=+ for +=',
             changed(_ODDS, ('self.number += 2', 'self.number =+ 2')),
             'Every message says 2',
+            refused='No formatter writes =+ without a space.',
         ),
         Wrong(
             'in the namespace of the node',
@@ -190,10 +190,7 @@ threading.Thread(target=work, daemon=True).start()
         ),
         Wrong(
             'two copies running',
-            changed(
-                _ODDS,
-                (_START, 'import rclpy\n\nrclpy.init()\ncopy = Odds()\nrclpy.spin(Odds())'),
-            ),
+            two_copies(_ODDS),
             'Two copies of the node run at once',
             process=True,
         ),

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from labkit.exercises import Exercise, Outcome, Probe, Solution, Style, Wrong, changed, expect
+from labkit.lessons._script import in_process
 from labkit.lessons._stage import find_stage
 
 __all__ = ['evens']
@@ -33,7 +34,6 @@ class Evens(Node):
 
 evens = lab.spin(Evens())
 """
-_START = 'evens = lab.spin(Evens())'
 
 
 def _judge_evens(probe: Probe) -> str:
@@ -128,7 +128,7 @@ postman = lab.spin(Postman())
         ),
         Style(
             'own process',
-            changed(_EVENS, (_START, 'import rclpy\n\nrclpy.init()\nrclpy.spin(Evens())')),
+            in_process(_EVENS),
             process=True,
         ),
     ],
@@ -143,7 +143,7 @@ postman = lab.spin(Postman())
             changed(
                 _EVENS,
                 ("super().__init__('evens')\n", "super().__init__('evens')\n        self.n = 0\n"),
-                ('even.data = msg.data + 1', 'self.n += 2; even.data = self.n'),
+                ('even.data = msg.data + 1', 'self.n += 2\n        even.data = self.n'),
             ),
             'does not depend on the number that came',
         ),

@@ -12,6 +12,7 @@ from labkit.exercises import (
     changed,
     expect,
 )
+from labkit.lessons._script import in_process
 from labkit.lessons.odds.stadium import GATES, VISITORS, wrong_gates
 
 __all__ = ['find_gate']
@@ -41,7 +42,6 @@ class Inspector(Node):
 
 inspector = lab.spin(Inspector())
 """
-_START = 'inspector = lab.spin(Inspector())'
 _DIFFERS = "!= 'std_msgs/msg/Int16'"
 
 
@@ -126,7 +126,7 @@ lab.spin(node)
         ),
         Style(
             'own process',
-            changed(_INSPECTOR, (_START, 'import rclpy\n\nrclpy.init()\nrclpy.spin(Inspector())')),
+            in_process(_INSPECTOR),
             process=True,
         ),
     ],

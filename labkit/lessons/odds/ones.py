@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from labkit.exercises import Exercise, Outcome, Probe, Solution, Style, Wrong, changed, expect
+from labkit.lessons._script import in_process
 
 __all__ = ['ones']
 
@@ -29,7 +30,6 @@ class Ones(Node):
 
 ones = lab.spin(Ones())
 """
-_START = 'ones = lab.spin(Ones())'
 
 
 def _judge_ones(probe: Probe) -> str:
@@ -116,7 +116,7 @@ threading.Thread(target=work, daemon=True).start()
         ),
         Style(
             'own process',
-            changed(_ONES, (_START, 'import rclpy\n\nrclpy.init()\nrclpy.spin(Ones())')),
+            in_process(_ONES),
             process=True,
         ),
     ],
@@ -158,7 +158,7 @@ threading.Thread(target=work, daemon=True).start()
             changed(
                 _ONES,
                 ("super().__init__('ones')\n", "super().__init__('ones')\n        self.n = 0\n"),
-                ('msg.data = 1', 'self.n += 1; msg.data = self.n'),
+                ('msg.data = 1', 'self.n += 1\n        msg.data = self.n'),
             ),
             'The number changes from message to message.',
         ),
@@ -167,6 +167,7 @@ threading.Thread(target=work, daemon=True).start()
             changed(_ONES, ('self.publisher = ', 'publisher = ')),
             'Ones has nothing called publisher',
             outcome=Outcome.ERROR,
+            refused='The variable is never used.',
         ),
         Wrong(
             'rate for period',

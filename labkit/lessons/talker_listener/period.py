@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from labkit.exercises import Exercise, Outcome, Probe, Solution, Style, Wrong, changed, expect
-from labkit.lessons.talker_listener.script import in_process
+from labkit.lessons._script import in_process, two_copies
 
 __all__ = ['four_a_second']
 
@@ -29,7 +29,6 @@ class Beacon(Node):
 if period is not ...:
     beacon = lab.spin(Beacon())
 """
-_START = 'if period is not ...:\n    beacon = lab.spin(Beacon())'
 
 
 def _judge_four_a_second(probe: Probe) -> str:
@@ -76,7 +75,7 @@ def work():
 threading.Thread(target=work, daemon=True).start()
 """,
         ),
-        Style('own process', in_process(_BEACON, _START, 'Beacon()'), process=True),
+        Style('own process', in_process(_BEACON), process=True),
     ],
     wrong=[
         Wrong('rate for period', changed(_BEACON, ('0.25', '4.0')), 'its period is 4 s'),
@@ -87,13 +86,11 @@ threading.Thread(target=work, daemon=True).start()
             changed(_BEACON, ('0.25', '0,25')),
             'the pair of 0 and 25',
             outcome=Outcome.ERROR,
+            refused='A formatter writes a space after the comma.',
         ),
         Wrong(
             'two copies running',
-            changed(
-                in_process(_BEACON, _START, 'Beacon()'),
-                ('    rclpy.spin(', '    copy = Beacon()\n    rclpy.spin('),
-            ),
+            two_copies(_BEACON),
             'Two copies of the node run at once',
             process=True,
         ),

@@ -30,6 +30,7 @@ EAR = """
 from rclpy.node import Node
 from std_msgs.msg import String
 
+
 class Ear(Node):
     def __init__(self, name, noise):
         super().__init__(name)
@@ -39,6 +40,7 @@ class Ear(Node):
 
     def listen(self):
         self.publisher.publish(String(data=self.noise))
+
 
 left_ear = lab.spin(Ear('left_ear', 'a dog'))
 right_ear = lab.spin(Ear('right_ear', 'a bell'))
@@ -68,11 +70,13 @@ ears = Exercise(
 import rclpy
 from std_msgs.msg import String
 
+
 def make_ear(name):
     ear = rclpy.create_node(name)
     publisher = ear.create_publisher(String, '/sound', 1)
     ear.create_timer(1 / 5, lambda: publisher.publish(String(data=f'{name} hears rain')))
     lab.spin(ear)
+
 
 make_ear('left_ear')
 make_ear('right_ear')
@@ -82,22 +86,27 @@ make_ear('right_ear')
             'two classes and a thread',
             """
 import threading
+
 import rclpy
 from rclpy.node import Node
 from std_msgs.msg import String
+
 
 class LeftEar(Node):
     def __init__(self):
         super().__init__('left_ear')
         self.pub = self.create_publisher(String, 'sound', 10)
 
+
 class RightEar(Node):
     def __init__(self):
         super().__init__('right_ear')
         self.pub = self.create_publisher(String, 'sound', 10)
 
+
 ears = [lab.spin(LeftEar()), lab.spin(RightEar())]
 stop = threading.Event()
+
 
 def work():
     while not stop.wait(0.2) and rclpy.ok():
@@ -106,6 +115,7 @@ def work():
                 ear.pub.publish(String(data='wind'))
             except Exception:
                 return
+
 
 threading.Thread(target=work, daemon=True).start()
 """,

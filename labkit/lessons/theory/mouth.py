@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from labkit.exercises import Exercise, Outcome, Probe, Solution, Style, Wrong, changed, expect
+from labkit.lessons._script import in_process
 
 STRING = 'std_msgs/msg/String'
 
@@ -38,6 +39,7 @@ MOUTH = """
 from rclpy.node import Node
 from std_msgs.msg import String
 
+
 class Mouth(Node):
     def __init__(self):
         super().__init__('mouth')
@@ -46,6 +48,7 @@ class Mouth(Node):
 
     def on_thought(self, msg):
         self.publisher.publish(String(data=msg.data.upper()))
+
 
 mouth = lab.spin(Mouth())
 """
@@ -77,10 +80,12 @@ from std_msgs.msg import String
 node = rclpy.create_node('mouth')
 speech = node.create_publisher(String, '/speech', 5)
 
+
 def say(message):
     loud = String()
     loud.data = message.data.upper()
     speech.publish(loud)
+
 
 node.create_subscription(String, '/thought', say, 5)
 lab.spin(node)
@@ -88,21 +93,7 @@ lab.spin(node)
         ),
         Style(
             'main() in a process of its own',
-            changed(
-                MOUTH,
-                (
-                    'mouth = lab.spin(Mouth())',
-                    """
-import rclpy
-
-def main():
-    rclpy.init()
-    rclpy.spin(Mouth())
-
-main()
-""",
-                ),
-            ),
+            in_process(MOUTH),
             process=True,
         ),
     ],

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from labkit.exercises import (
     Exercise,
     Fail,
-    Outcome,
     Probe,
     Solution,
     Style,
@@ -15,6 +14,7 @@ from labkit.exercises import (
     changed,
     expect,
 )
+from labkit.lessons._script import in_process
 from labkit.lessons.turtlebot.drawing import observed
 from labkit.lessons.turtlebot.drive import (
     EMPTY,
@@ -25,10 +25,10 @@ from labkit.lessons.turtlebot.drive import (
     driver,
     expect_rate,
     expect_stop,
-    in_process,
     is_zero,
     stands,
 )
+from labkit.lessons.turtlebot.mistakes import int_for_float, own_clock
 from labkit.sim.kinematics import Pose, Twist2
 
 if TYPE_CHECKING:
@@ -162,14 +162,14 @@ def _moves(found: Drive) -> list[tuple[tuple[float, Twist2], Pose]]:
 
 _LOOP = """
 import threading
+
 import rclpy
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rclpy.parameter import Parameter
 from std_msgs.msg import Empty
 
-node = rclpy.create_node(
-    'loop_bot', parameter_overrides=[Parameter('use_sim_time', value=True)])
+node = rclpy.create_node('loop_bot', parameter_overrides=[Parameter('use_sim_time', value=True)])
 pub = node.create_publisher(Twist, '/cmd_vel', 1)
 state = {'x': 0.0}
 started = threading.Event()
@@ -219,7 +219,7 @@ bot = Exercise(
     ),
     styles=[
         Style('a loop with a rate, in a thread', _LOOP),
-        Style('own process', in_process(_BOT, 'HomingBot()'), process=True),
+        Style('own process', in_process(_BOT), process=True),
     ],
     wrong=[
         Wrong('sign of the error', changed(_BOT, ('= -self.x', '= self.x')), 'The sign is wrong'),
@@ -256,17 +256,8 @@ bot = Exercise(
             ),
             'the sensor sets the rate',
         ),
-        Wrong(
-            'its own clock',
-            changed(_BOT, (', parameter_overrides=[SIM_TIME]', '')),
-            'The node follows its own clock',
-        ),
-        Wrong(
-            'an int in a float field',
-            changed(_BOT, ('= -self.x', '= -int(10 * self.x)')),
-            'takes values of type float',
-            outcome=Outcome.ERROR,
-        ),
+        own_clock(_BOT),
+        int_for_float(_BOT, '= -self.x', '= -int(10 * self.x)'),
         Wrong(
             'publishes when it is made, and not at the sign',
             changed(

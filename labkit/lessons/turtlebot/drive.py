@@ -31,7 +31,6 @@ __all__ = [
     'expect_end',
     'expect_rate',
     'expect_stop',
-    'in_process',
     'is_zero',
     'stands',
 ]
@@ -259,32 +258,13 @@ def _expect_nobody_drives(
 def _explain_no_command(probe: Probe, source: Endpoint) -> None:
     """Raise Fail with the likeliest reason why no command came."""
     expect.hanging(probe)
-    node = probe.node_object(source.node)
-    if node is not None and node.executor is None:
-        raise Fail(
-            f'commands of {source.node} on /cmd_vel',
-            'nothing, and the node is not spun',
-            why='Nobody runs its callbacks.',
-            todo='Hand the node over: lab.spin(node)',
-        )
+    expect.spun(probe, source)
     raise Fail(
         f'commands of {source.node} on /cmd_vel',
         'nothing, though the sign to start was given',
         why='The callback of the sign does not start anything, or the timer does not publish.',
         todo='Let the callback set what the timer looks at, and publish in the timer.',
     )
-
-
-def in_process(code: str, node: str) -> str:
-    """Return a solution as a script for a process of its own.
-
-    Args:
-        code: The solution; its last line starts the node in a notebook.
-        node: What makes the node, such as `'Bot()'`.
-    """
-    lines = code.strip().splitlines()
-    main = f'import rclpy\n\nrclpy.init()\nrclpy.spin({node})\n'
-    return '\n'.join([*lines[:-1], main])
 
 
 def expect_stop(found: Drive) -> None:

@@ -7,7 +7,6 @@ import math
 from labkit.exercises import (
     Exercise,
     Fail,
-    Outcome,
     Probe,
     Solution,
     Style,
@@ -15,6 +14,7 @@ from labkit.exercises import (
     changed,
     expect,
 )
+from labkit.lessons._script import in_process
 from labkit.lessons.turtlebot.drawing import observed
 from labkit.lessons.turtlebot.drive import (
     ODOMETRY,
@@ -25,9 +25,9 @@ from labkit.lessons.turtlebot.drive import (
     expect_end,
     expect_rate,
     expect_stop,
-    in_process,
     stands,
 )
+from labkit.lessons.turtlebot.mistakes import int_for_float, own_clock
 from labkit.sim.kinematics import wrap_angle
 
 __all__ = ['go_to']
@@ -208,7 +208,7 @@ go_to = Exercise(
                 ('= 0.2', '= max(0.0, 0.2 * math.cos(error))'),
             ),
         ),
-        Style('own process', in_process(_GO_TO, 'GoTo()'), process=True),
+        Style('own process', in_process(_GO_TO), process=True),
     ],
     wrong=[
         Wrong(
@@ -244,16 +244,7 @@ go_to = Exercise(
             changed(_GO_TO, ('< 0.05', '< 0.0')),
             'It does not end',
         ),
-        Wrong(
-            'its own clock',
-            changed(_GO_TO, (', parameter_overrides=[SIM_TIME]', '')),
-            'The node follows its own clock',
-        ),
-        Wrong(
-            'an int in a float field',
-            changed(_GO_TO, ('= 0.2', '= 1')),
-            'takes values of type float',
-            outcome=Outcome.ERROR,
-        ),
+        own_clock(_GO_TO),
+        int_for_float(_GO_TO, '= 0.2', '= 1'),
     ],
 )

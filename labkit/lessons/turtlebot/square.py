@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from labkit.exercises import Exercise, Fail, Outcome, Probe, Solution, Style, Wrong, changed
+from labkit.exercises import Exercise, Fail, Probe, Solution, Style, Wrong, changed
+from labkit.lessons._script import in_process
 from labkit.lessons.turtlebot.drawing import observed
 from labkit.lessons.turtlebot.drive import (
     EMPTY,
@@ -16,9 +17,9 @@ from labkit.lessons.turtlebot.drive import (
     expect_end,
     expect_rate,
     expect_stop,
-    in_process,
     stands,
 )
+from labkit.lessons.turtlebot.mistakes import int_for_float, own_clock
 from labkit.sim.kinematics import Motion, Pose
 from labkit.views.arena_picture import two
 
@@ -71,14 +72,16 @@ square = lab.spin(Square())
 
 _BY_ODOMETRY = """
 import math
+
 import rclpy
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rclpy.parameter import Parameter
 from std_msgs.msg import Empty
 
-node = rclpy.create_node('by_odometry', parameter_overrides=[
-    Parameter('use_sim_time', value=True)])
+node = rclpy.create_node(
+    'by_odometry', parameter_overrides=[Parameter('use_sim_time', value=True)]
+)
 pub = node.create_publisher(Twist, '/cmd_vel', 10)
 state = {'pose': None, 'todo': []}
 
@@ -91,8 +94,10 @@ def on_odometry(msg):
 def on_go(msg):
     x, y, yaw = state['pose']
     corners = [(0.4, 0.0), (0.4, 0.4), (0.0, 0.4), (0.0, 0.0)]
-    state['todo'] = [(x + a * math.cos(yaw) - b * math.sin(yaw),
-                      y + a * math.sin(yaw) + b * math.cos(yaw)) for a, b in corners]
+    state['todo'] = [
+        (x + a * math.cos(yaw) - b * math.sin(yaw), y + a * math.sin(yaw) + b * math.cos(yaw))
+        for a, b in corners
+    ]
 
 
 def on_timer():
@@ -281,7 +286,7 @@ square = Exercise(
     ),
     styles=[
         Style('by odometry', _BY_ODOMETRY),
-        Style('own process', in_process(_SQUARE, 'Square()'), process=True),
+        Style('own process', in_process(_SQUARE), process=True),
     ],
     wrong=[
         Wrong(
@@ -303,16 +308,7 @@ square = Exercise(
             ),
             'leaves it driving',
         ),
-        Wrong(
-            'its own clock',
-            changed(_SQUARE, (', parameter_overrides=[SIM_TIME]', '')),
-            'The node follows its own clock',
-        ),
-        Wrong(
-            'an int in a float field',
-            changed(_SQUARE, ('(0.0, 1.5708)', '(0, 1.5708)')),
-            'takes values of type float',
-            outcome=Outcome.ERROR,
-        ),
+        own_clock(_SQUARE),
+        int_for_float(_SQUARE, '(0.0, 1.5708)', '(0, 1.5708)'),
     ],
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from labkit.exercises import Exercise, Outcome, Probe, Solution, Style, Wrong, changed, expect
 from labkit.lessons.turtlebot.drive import TWIST
+from labkit.lessons.turtlebot.mistakes import int_for_float
 
 __all__ = ['stop']
 
@@ -30,7 +31,8 @@ class Cruiser(Node):
 
 cruiser = lab.spin(Cruiser())
 """
-_STOP = """    def destroy_node(self):
+_STOP = """
+    def destroy_node(self):
         self.publisher.publish(Twist())
         super().destroy_node()
 """
@@ -131,19 +133,14 @@ stop = Exercise(
                 _CRUISER,
                 (
                     _STOP,
-                    '    def destroy_node(self):\n        super().destroy_node()\n'
+                    '\n    def destroy_node(self):\n        super().destroy_node()\n'
                     '        self.publisher.publish(Twist())\n',
                 ),
             ),
             'The node ends without a word.',
             outcome=Outcome.FAIL,
         ),
-        Wrong(
-            'an int in a float field',
-            changed(_CRUISER, ('= 0.1', '= 1')),
-            'takes values of type float',
-            outcome=Outcome.ERROR,
-        ),
+        int_for_float(_CRUISER, '= 0.1', '= 1'),
         Wrong(
             'publishes before the robot listens',
             changed(

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from labkit.exercises import (
     Exercise,
     Fail,
-    Outcome,
     Probe,
     Solution,
     Style,
@@ -15,6 +14,7 @@ from labkit.exercises import (
     changed,
     expect,
 )
+from labkit.lessons._script import in_process
 from labkit.lessons.turtlebot.drawing import observed
 from labkit.lessons.turtlebot.drive import (
     EMPTY,
@@ -24,9 +24,9 @@ from labkit.lessons.turtlebot.drive import (
     driver,
     expect_end,
     expect_stop,
-    in_process,
     stands,
 )
+from labkit.lessons.turtlebot.mistakes import int_for_float
 from labkit.sim.kinematics import BURGER
 
 if TYPE_CHECKING:
@@ -170,7 +170,7 @@ wall = Exercise(
             'one beam',
             changed(_GUARD, ('min(msg.ranges[:10] + msg.ranges[-10:])', 'msg.ranges[0]')),
         ),
-        Style('own process', in_process(_GUARD, 'Guard()'), process=True),
+        Style('own process', in_process(_GUARD), process=True),
     ],
     wrong=[
         Wrong(
@@ -209,11 +209,6 @@ wall = Exercise(
             changed(_GUARD, ('self.ahead > 0.5', 'self.ahead > 1.0')),
             'It stopped too early',
         ),
-        Wrong(
-            'an int in a float field',
-            changed(_GUARD, ('= 0.2', '= 1')),
-            'takes values of type float',
-            outcome=Outcome.ERROR,
-        ),
+        int_for_float(_GUARD, '= 0.2', '= 1'),
     ],
 )
