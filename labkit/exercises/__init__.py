@@ -3,9 +3,10 @@
 How to write the exercises of a lesson
 ======================================
 
-The exercises of `notebooks/04_odds.ipynb` are in `labkit/lessons/odds.py`, which defines `LESSON`.
-That is all: lessons are found by name. Types of messages are given by name
-(`'std_msgs/msg/Int16'`), so the module needs no ROS to be imported. A small one, complete::
+The exercises of `notebooks/04_odds.ipynb` are in `labkit.lessons.odds`, a module, or a package with
+one an exercise, that defines `LESSON`. That is all: lessons are found by name. Types of messages
+are given by name (`'std_msgs/msg/Int16'`), so it needs no ROS to be imported. A small one,
+complete::
 
     """The exercises of lesson 04."""
 
@@ -102,7 +103,8 @@ which returns what it found or raises the outcome. Rules of thumb:
   value even when the check comes late, because messages are numbered.
 - `expect.replies` sends test messages to a subscription and looks for the answers; `explain` gives
   the misconception behind an answer of this exercise. `expect.logs` looks for a log line.
-- `expect.node` looks for the node's name, `expect.qos` at the profile, `expect.ends_with_node`
+- `expect.node` looks for the node's name, `expect.spun` whether anybody runs its callbacks,
+  `expect.qos` at the profile, `expect.ends_with_node`
   ends the node (then `once=True`). For what is done once, before the check (`ros2 topic pub
   --once`), `records=['/odds']` records from the setup cell on: `probe.recorded['/odds']`.
   A recorder is a subscription, so it is counted by `ros2 topic info` and by publishers that wait.
