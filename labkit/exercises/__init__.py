@@ -3,7 +3,7 @@
 How to write the exercises of a lesson
 ======================================
 
-The exercises of `notebooks/04_odds.ipynb` are in `labkit.lessons.odds`, a module, or a package with
+The exercises of `notebooks/04_odds.ipynb` are in `labkit.lessons.odds`, a module or a package with
 one an exercise, that defines `LESSON`. That is all: lessons are found by name. Types of messages
 are given by name (`'std_msgs/msg/Int16'`), so it needs no ROS to be imported. A small one,
 complete::
