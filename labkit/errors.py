@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
-__all__ = ['LabError', 'LabTimeout', 'SetupError', 'cell_name', 'nearest']
+__all__ = ['LabError', 'LabTimeout', 'SetupError', 'cell_name', 'first_few', 'nearest']
 
 # Characters in a line of a message in a notebook: what a projector shows side by side.
 WIDTH = 88
@@ -101,6 +101,12 @@ def nearest(name: str, names: Iterable[str]) -> str:
             return other
     near = difflib.get_close_matches(name, known, n=1, cutoff=0.7)
     return near[0] if near else ''
+
+
+def first_few(names: Sequence[str]) -> str:
+    """Return names as the beginning of a sentence: three of them, and how many more there are."""
+    shown = ', '.join(names[:3])
+    return f'{shown} and {len(names) - 3} more' if len(names) > 3 else shown
 
 
 def _plain(name: str) -> str:

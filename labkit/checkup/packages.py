@@ -9,8 +9,8 @@ import platform
 import sys
 import sysconfig
 
-from labkit.checkup.lists import inside, some
-from labkit.errors import LabError
+from labkit.errors import LabError, first_few
+from labkit.files import is_inside
 from labkit.setup.environment import ROOT, VENV
 from labkit.setup.machine import VERSIONS, check_platform
 from labkit.setup.requirements import applicable
@@ -40,7 +40,7 @@ def ros_packages() -> str:
     _compare(wanted)
     spec = importlib.util.find_spec('rclpy')
     origin = (spec.origin if spec is not None else None) or ''
-    if not inside(origin, os.path.join(sysconfig.get_path('platlib'), 'rclpy')):
+    if not is_inside(origin, os.path.join(sysconfig.get_path('platlib'), 'rclpy')):
         raise LabError(
             f'Python takes rclpy from {origin!r}, not from its own environment {sys.prefix!r}.',
             todo='Start from a terminal where no ROS 2 has been sourced, and from a folder '
@@ -84,13 +84,13 @@ def _compare(wanted: dict[str, str]) -> None:
             other.append(f'{name} {found} instead of {version}')
     if not missing and not other:
         return
-    texts = [f'Missing: {some(missing)}.'] if missing else []
-    texts += [f'Installed: {some(other)}.'] if other else []
+    texts = [f'Missing: {first_few(missing)}.'] if missing else []
+    texts += [f'Installed: {first_few(other)}.'] if other else []
     raise LabError(' '.join(texts), todo=_renew_environment())
 
 
 def _renew_environment() -> str:
-    if inside(sys.prefix, str(VENV)):
+    if is_inside(sys.prefix, str(VENV)):
         return (
             f'End JupyterLab, delete the folder {VENV}, and run python3 -m labkit lab: that makes '
             'it anew.'

@@ -10,8 +10,7 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from labkit import settings
-from labkit.checkup.lists import some
-from labkit.errors import LabError
+from labkit.errors import LabError, first_few
 from labkit.rosgraph.names import is_hidden
 
 if TYPE_CHECKING:
@@ -198,7 +197,7 @@ def nodes() -> str:
             ' '.join(text for text, _ in found),
             todo=' '.join(dict.fromkeys(todo for _, todo in found)),
         )
-    return some([entry.name for entry in entries]) if entries else 'none'
+    return first_few([entry.name for entry in entries]) if entries else 'none'
 
 
 def _unspun(runtime: Runtime) -> list[tuple[str, str]]:

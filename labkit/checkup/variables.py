@@ -8,8 +8,8 @@ import sysconfig
 from pathlib import Path
 
 from labkit import settings
-from labkit.checkup.lists import inside, some
-from labkit.errors import LabError
+from labkit.errors import LabError, first_few
+from labkit.files import is_inside
 from labkit.setup.machine import clean_environment
 
 __all__ = ['variables']
@@ -34,7 +34,7 @@ def _foreign_entries() -> list[tuple[str, str]]:
     workspaces = [
         entry
         for entry in _entries('AMENT_PREFIX_PATH')
-        if not inside(entry, '/opt/ros') and not os.path.isdir(f'{entry}/share/rclpy')
+        if not is_inside(entry, '/opt/ros') and not os.path.isdir(f'{entry}/share/rclpy')
     ]
     welcome = [sys.prefix, *_libraries(), *workspaces]
     found = []
@@ -43,12 +43,12 @@ def _foreign_entries() -> list[tuple[str, str]]:
         foreign = [
             entry
             for entry in _entries(name)
-            if entry not in kept and not any(inside(entry, folder) for folder in welcome)
+            if entry not in kept and not any(is_inside(entry, folder) for folder in welcome)
         ]
         if foreign:
             found.append(
                 (
-                    f'{name} leads to another ROS 2: {some(foreign)}.',
+                    f'{name} leads to another ROS 2: {first_few(foreign)}.',
                     'Start from a terminal where no ROS 2 has been sourced (look for a line with '
                     '/opt/ros in ~/.bashrc).',
                 )
