@@ -17,11 +17,11 @@ from labkit.background.discovery import alone, asking_node
 from labkit.background.nodes import node_exists
 from labkit.background.runtime import runtime
 from labkit.errors import LabError
-from labkit.ros2.qos_options import match_all
 from labkit.rosgraph.endpoints import Endpoint, publishers
 from labkit.rosgraph.interfaces import message_class, type_name
 from labkit.rosgraph.matching import nobody_publishes, other_type_here, why_silent
 from labkit.rosgraph.names import full_topic_name
+from labkit.rosgraph.qos import match_all
 
 if TYPE_CHECKING:
     from rclpy.node import Node

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from labkit.background.discovery import soon
 from labkit.errors import LabError
 from labkit.rosgraph.snapshot import Graph, GraphNode, is_whole, read_graph
-from labkit.views.live import Live, helper
+from labkit.views.live import STOPPED, Live, helper
 
 if TYPE_CHECKING:
     from IPython.display import DisplayHandle
@@ -79,7 +79,7 @@ class GraphView(Live):
 
     def _say_end(self) -> None:
         # What was shown would go on telling of nodes that are gone.
-        if self._cut_off():
+        if self._ended == STOPPED:
             self._show({'text/plain': self._ended})
 
     def _show(self, bundle: dict[str, str]) -> None:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rclpy.timer import Timer
     from typing_extensions import Self
 
-__all__ = ['Live', 'helper', 'living']
+__all__ = ['STOPPED', 'Live', 'helper', 'living']
 
 STOPPED = 'ROS was stopped. Run this cell to start it again.'
 

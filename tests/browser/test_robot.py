@@ -207,9 +207,10 @@ def test_drives_while_a_cell_is_running(stage):
 
 def test_closed_views_say_so(stage):
     stage.notebook.run_cell('close')
-    arena = stage.page.locator('.labkit-arena')
-    expect(arena.get_by_role('status')).to_contain_text('This arena has ended')
-    expect(stage.teleop.get_by_role('status')).to_contain_text('This teleop has ended')
+    arena_note = stage.page.locator('.labkit-arena .labkit-live-note')
+    teleop_note = stage.teleop.locator('.labkit-live-note')
+    expect(arena_note).to_contain_text('This arena has ended')
+    expect(teleop_note).to_contain_text('This teleop has ended')
     # Running the cells again gives new ones.
     stage.notebook.run_cell('arena')
     stage.notebook.run_cell('teleop')
@@ -218,5 +219,5 @@ def test_closed_views_say_so(stage):
     stage.page.keyboard.up('ArrowUp')
     stage.expect_stop()
     stage.notebook.run_cell('stop')
-    for view in (arena, stage.teleop):
-        expect(view.get_by_role('status')).to_contain_text('ROS was stopped. Run this cell')
+    for note in (arena_note, teleop_note):
+        expect(note).to_contain_text('ROS was stopped. Run this cell')

@@ -206,7 +206,8 @@ def test_thousand_messages_a_second_are_few_updates(run):
     assert int(most) <= 20
     # All are counted, the last one is shown.
     run('page.wait(lambda known: known["count"] > 3000)')
-    assert run('print(page.known["count"] >= 1000 * len(page.sent) / 20)') == 'True'
+    # How many a busy machine publishes in a second is not known, but updates are far fewer.
+    assert run('print(page.known["count"] > 3 * len(page.sent))') == 'True'
 
 
 def test_still_text_is_the_same_each_time(run_still):
