@@ -9,12 +9,15 @@ import shlex
 import sys
 import time
 from argparse import Namespace
-
-from rclpy.node import Node
+from typing import TYPE_CHECKING
 
 from labkit.background.child_processes import end_earlier, environment, start_process
 from labkit.background.discovery import calm
 from labkit.ros2.asking import asking_node
+from labkit.rosgraph.endpoints import publishers, subscriptions
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
 __all__ = ['start']
 
@@ -62,5 +65,4 @@ def _ends(node: Node, topic: str) -> set[bytes]:
     if not topic:
         return set()
     name = topic if topic.startswith('/') else f'/{topic}'
-    infos = node.get_publishers_info_by_topic(name) + node.get_subscriptions_info_by_topic(name)
-    return {bytes(info.endpoint_gid) for info in infos}
+    return {end.gid for end in (*publishers(node, name), *subscriptions(node, name))}

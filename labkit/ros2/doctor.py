@@ -11,14 +11,17 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
-
-from rclpy.node import Node
-from rclpy.qos import QoSCompatibility, qos_check_compatible
-from rclpy.utilities import get_rmw_implementation_identifier
+from typing import TYPE_CHECKING
 
 from labkit.ros2.asking import add_discovery_options, asking_node
 from labkit.ros2.parser import Command, Parser, Verb
-from labkit.rosgraph.names import EVERY_NODE_HAS, is_hidden
+from labkit.rosgraph.endpoints import publishers, subscriptions
+from labkit.rosgraph.listings import own_topics
+from labkit.rosgraph.matching import qos_mismatch
+from labkit.rosgraph.names import split_node_name
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
 __all__ = ['COMMAND']
 
@@ -80,25 +83,24 @@ def _check_network(_: Node) -> Findings:
 
 def _check_topics(node: Node) -> Findings:
     warnings = []
-    for topic in _topics(node):
-        publishers, subscribers = node.count_publishers(topic), node.count_subscribers(topic)
-        if publishers > subscribers == 0:
+    for topic in own_topics(node):
+        sources, sinks = node.count_publishers(topic), node.count_subscribers(topic)
+        if sources > sinks == 0:
             warnings += [f'Publisher without subscriber detected on {topic}.']
-        elif subscribers > publishers == 0:
+        elif sinks > sources == 0:
             warnings += [f'Subscriber without publisher detected on {topic}.']
     return warnings, []
 
 
 def _check_qos(node: Node) -> Findings:
-    errors = []
-    for topic, _, _, state in _pairs(node):
-        if state.startswith('ERROR'):
-            reason = state.removeprefix('ERROR: ')
-            errors += [f"QoS compatibility error found on topic '{topic}': {reason}"]
-    return [], errors
+    return [], [
+        f"QoS compatibility error found on topic '{topic}': {reason};"
+        for topic, _, _, reason in _pairs(node)
+        if reason
+    ]
 
 
-_CHECKS: dict[str, Callable[[Node], Findings]] = {
+_CHECKS: dict[str, Callable[..., Findings]] = {
     'platform': _check_platform,
     'network': _check_network,
     'topic': _check_topics,
@@ -107,6 +109,8 @@ _CHECKS: dict[str, Callable[[Node], Findings]] = {
 
 
 def _report(node: Node) -> list[Section]:
+    from rclpy.utilities import get_rmw_implementation_identifier
+
     network: list[tuple[str, object]] = []
     for name, flag, mtu in _interfaces():
         kinds = [
@@ -116,15 +120,15 @@ def _report(node: Node) -> list[Section]:
         ]
         network += [('device', name), ('flags', f'<{",".join(kinds)}>'), ('mtu', mtu)]
     pairs: list[tuple[str, object]] = []
-    for topic, publisher, subscriber, state in _pairs(node):
+    for topic, publisher, subscriber, reason in _pairs(node):
         pairs += [
             ('topic [type]', topic),
             ('publisher node', publisher),
             ('subscriber node', subscriber),
-            ('compatibility status', state),
+            ('compatibility status', f'ERROR: {reason};' if reason else 'OK'),
         ]
     topics: list[tuple[str, object]] = []
-    for topic in _topics(node):
+    for topic in own_topics(node):
         topics += [
             ('topic', topic),
             ('publisher count', node.count_publishers(topic)),
@@ -155,21 +159,19 @@ def _report(node: Node) -> list[Section]:
     ]
 
 
-def _topics(node: Node) -> list[str]:
-    names = sorted(name for name, _ in node.get_topic_names_and_types())
-    return [name for name in names if name not in EVERY_NODE_HAS and not is_hidden(name)]
-
-
 def _pairs(node: Node) -> list[tuple[str, str, str, str]]:
-    """Return topic, publishing node, subscribing node and whether they match, for each pair."""
-    found = []
-    for topic in _topics(node):
-        for publisher in node.get_publishers_info_by_topic(topic):
-            for subscriber in node.get_subscriptions_info_by_topic(topic):
-                state, reason = qos_check_compatible(publisher.qos_profile, subscriber.qos_profile)
-                text = 'OK' if state == QoSCompatibility.OK else str(reason).strip()
-                found += [(topic, publisher.node_name, subscriber.node_name, text)]
-    return sorted(found)
+    """Return topic, publishing node, subscribing node and why they do not match, for each pair."""
+    return sorted(
+        (
+            topic,
+            split_node_name(publisher.node)[0],
+            split_node_name(subscription.node)[0],
+            qos_mismatch(publisher.qos, subscription.qos),
+        )
+        for topic in own_topics(node)
+        for publisher in publishers(node, topic)
+        for subscription in subscriptions(node, topic)
+    )
 
 
 def _interfaces() -> list[tuple[str, int, int]]:

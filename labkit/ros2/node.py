@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
-
-from rclpy.action.graph import (
-    get_action_client_names_and_types_by_node,
-    get_action_server_names_and_types_by_node,
-)
-from rclpy.node import Node
+from typing import TYPE_CHECKING
 
 from labkit.background.discovery import soon
 from labkit.errors import LabError
 from labkit.ros2.asking import add_discovery_options, asking_node, unknown
 from labkit.ros2.graph_words import node_names
 from labkit.ros2.parser import Command, Parser, Verb
+from labkit.rosgraph.listings import ends_of_node
 from labkit.rosgraph.names import is_hidden
 from labkit.rosgraph.snapshot import node_names as names_of_nodes
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
 __all__ = ['COMMAND']
 
@@ -56,24 +55,18 @@ def show_info(args: Namespace) -> None:
             'information about only one of them.',
             file=sys.stderr,
         )
-    namespace, _, base = name.rpartition('/')
-    whose = (base, namespace or '/')
+    ends = ends_of_node(node, name, include_hidden=args.include_hidden)
     print(name)
     for title, found in (
-        ('Subscribers', node.get_subscriber_names_and_types_by_node(*whose)),
-        ('Publishers', node.get_publisher_names_and_types_by_node(*whose)),
-        ('Service Servers', node.get_service_names_and_types_by_node(*whose)),
-        ('Service Clients', node.get_client_names_and_types_by_node(*whose)),
-        ('Action Servers', get_action_server_names_and_types_by_node(node, *whose)),
-        ('Action Clients', get_action_client_names_and_types_by_node(node, *whose)),
+        ('Subscribers', ends.subscribers),
+        ('Publishers', ends.publishers),
+        ('Service Servers', ends.service_servers),
+        ('Service Clients', ends.service_clients),
+        ('Action Servers', ends.action_servers),
+        ('Action Clients', ends.action_clients),
     ):
         print(f'  {title}:')
-        shown = [
-            f'    {entity}: {", ".join(types)}'
-            for entity, types in sorted(found)
-            if args.include_hidden or not is_hidden(entity)
-        ]
-        print('\n'.join(shown))
+        print('\n'.join(f'    {entity}: {", ".join(types)}' for entity, types in found))
 
 
 def _nodes(node: Node, include_hidden: bool) -> list[str]:

@@ -5,40 +5,39 @@ from __future__ import annotations
 import re
 import sys
 from argparse import Namespace
-from collections.abc import Iterable, Iterator
-from pathlib import Path
-from typing import Any
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
-import yaml
-from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue, SetParametersResult
-from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
-from rclpy.node import Node
-from rclpy.parameter import Parameter as NodeParameter
-from rclpy.parameter import get_parameter_value, parameter_value_to_python
+from rcl_interfaces.msg import Parameter
 
-from labkit.background.service_calls import call_node
+from labkit.background.parameters import (
+    delete_parameter,
+    describe_parameters,
+    get_parameters,
+    has_parameters,
+    parameter_names,
+    set_parameters,
+)
 from labkit.errors import LabError
 from labkit.ros2.asking import add_discovery_options, asking_node, check_node_name, unknown
 from labkit.ros2.graph_words import node_names
 from labkit.ros2.parser import Command, Parser, Usage, Verb, positive_float
 from labkit.rosgraph.names import is_hidden
+from labkit.rosgraph.parameters import (
+    NOT_SET,
+    parameters_in,
+    python_value,
+    to_yaml,
+    type_word,
+    value_from,
+)
 from labkit.rosgraph.snapshot import node_names as names_of_nodes
 
-__all__ = ['COMMAND']
+if TYPE_CHECKING:
+    from rcl_interfaces.msg import SetParametersResult
+    from rclpy.node import Node
 
-# Type of a parameter -> its name, and how `get` introduces its value.
-_TYPES = {
-    ParameterType.PARAMETER_NOT_SET: ('not set', 'Parameter not set.'),
-    ParameterType.PARAMETER_BOOL: ('boolean', 'Boolean value is:'),
-    ParameterType.PARAMETER_INTEGER: ('integer', 'Integer value is:'),
-    ParameterType.PARAMETER_DOUBLE: ('double', 'Double value is:'),
-    ParameterType.PARAMETER_STRING: ('string', 'String value is:'),
-    ParameterType.PARAMETER_BYTE_ARRAY: ('byte array', 'Byte values are:'),
-    ParameterType.PARAMETER_BOOL_ARRAY: ('boolean array', 'Boolean values are:'),
-    ParameterType.PARAMETER_INTEGER_ARRAY: ('integer array', 'Integer values are:'),
-    ParameterType.PARAMETER_DOUBLE_ARRAY: ('double array', 'Double values are:'),
-    ParameterType.PARAMETER_STRING_ARRAY: ('string array', 'String values are:'),
-}
+__all__ = ['COMMAND']
 
 
 def list_parameters(args: Namespace) -> None:
@@ -48,16 +47,15 @@ def list_parameters(args: Namespace) -> None:
     if args.node_name:
         chosen = [check_node_name(node, args.node_name)]
     else:
-        offered = dict(node.get_service_names_and_types())
         chosen = [
             name
             for name in dict.fromkeys(names_of_nodes(node))
             if args.include_hidden_nodes or not is_hidden(name)
-            if f'{name}/list_parameters' in offered
+            if has_parameters(node, name)
         ]
     for name in chosen:
         try:
-            names = list(filter(wanted.match, _names_of(node, name, args.param_prefixes)))
+            names = list(filter(wanted.match, parameter_names(node, name, args.param_prefixes)))
             types = _types_of(node, name, names) if args.param_type else {}
         except LabError as error:
             print(error, file=sys.stderr)
@@ -83,10 +81,10 @@ def get(args: Namespace) -> str | None:
     """Print the value of a parameter."""
     node = asking_node(args)
     name = check_node_name(node, args.node_name)
-    request = GetParameters.Request(names=[args.parameter_name])
-    values = call_node(node, GetParameters, name, 'get_parameters', request).values
-    if not values or values[0].type == ParameterType.PARAMETER_NOT_SET:
-        names = _names_of(node, name)
+    values = get_parameters(node, name, [args.parameter_name])
+    kind = type_word(values[0].type) if values else NOT_SET
+    if kind == NOT_SET:
+        names = parameter_names(node, name)
         if args.parameter_name not in names:
             raise LabError(
                 f"Parameter not set: {name} has no parameter '{args.parameter_name}'.",
@@ -94,12 +92,11 @@ def get(args: Namespace) -> str | None:
             )
     if not values:
         return 'Parameter not set'
-    value = parameter_value_to_python(values[0])
-    label = _TYPES[values[0].type][1]
+    value = python_value(values[0])
     if args.hide_type:
         print(value)
     else:
-        print(label) if value is None else print(label, value)
+        print(_label(kind)) if value is None else print(_label(kind), value)
     return None
 
 
@@ -107,41 +104,32 @@ def set_parameter(args: Namespace) -> str | None:
     """Set a parameter to a value."""
     node = asking_node(args)
     name = check_node_name(node, args.node_name)
-    parameter = Parameter(name=args.parameter_name, value=_value_from(args.value))
-    result = _set(node, name, [parameter])[0]
-    reason = f': {result.reason}' if result.reason else ''
-    if result.successful:
-        print(f'Set parameter successful{reason}')
-        return None
-    return f'Setting parameter failed{reason}'
+    parameter = Parameter(name=args.parameter_name, value=value_from(args.value))
+    result = set_parameters(node, name, [parameter])[0]
+    return _told(result, 'Set parameter successful', 'Setting parameter failed')
 
 
 def delete(args: Namespace) -> str | None:
     """Undeclare a parameter, where the node allows it."""
     node = asking_node(args)
     name = check_node_name(node, args.node_name)
-    nothing = ParameterValue(type=ParameterType.PARAMETER_NOT_SET)
-    result = _set(node, name, [Parameter(name=args.parameter_name, value=nothing)])[0]
-    reason = f': {result.reason}' if result.reason else ''
-    if result.successful:
-        print(f'Deleted parameter successfully{reason}')
-        return None
-    return f'Deleting parameter failed{reason}'
+    result = delete_parameter(node, name, args.parameter_name)
+    return _told(result, 'Deleted parameter successfully', 'Deleting parameter failed')
 
 
 def describe(args: Namespace) -> None:
     """Print what is known of parameters: type, description, what they may be."""
     node = asking_node(args)
     name = check_node_name(node, args.node_name)
-    known = _names_of(node, name)
+    known = parameter_names(node, name)
     for parameter in args.parameter_names:
         if parameter not in known:
             raise LabError(
                 f"{name} has no parameter '{parameter}'.", todo=_other_name(parameter, known)
             )
-    for descriptor in _descriptors(node, name, args.parameter_names):
+    for descriptor in describe_parameters(node, name, args.parameter_names):
         print('Parameter name:', descriptor.name)
-        print('  Type:', _TYPES[descriptor.type][0])
+        print('  Type:', type_word(descriptor.type))
         if descriptor.description:
             print('  Description:', descriptor.description)
         print('  Constraints:')
@@ -160,103 +148,47 @@ def dump(args: Namespace) -> None:
     """Print all parameters of a node as YAML, as `load` and `--params-file` read it."""
     node = asking_node(args)
     name = check_node_name(node, args.node_name)
-    names = _names_of(node, name)
-    request = GetParameters.Request(names=names)
-    values = call_node(node, GetParameters, name, 'get_parameters', request).values
-    tree: dict[str, Any] = {}
-    for parameter, value in zip(names, values, strict=False):
-        *groups, last = parameter.split('.')
-        branch = tree
-        for group in groups:
-            branch = branch.setdefault(group, {})
-        branch[last] = parameter_value_to_python(value)
-    print(yaml.safe_dump({name: {'ros__parameters': tree}}, default_flow_style=False))
+    names = parameter_names(node, name)
+    values = get_parameters(node, name, names)
+    print(to_yaml(name, dict(zip(names, values, strict=False))))
 
 
 def load(args: Namespace) -> int:
     """Set the parameters of a node to those of a file."""
     node = asking_node(args)
     name = check_node_name(node, args.node_name)
-    try:
-        wanted = _parameters_in(args.parameter_file, name, wildcard=not args.no_use_wildcard)
-    except OSError as error:
-        raise LabError(f'{args.parameter_file} can not be read: {error.strerror}') from error
-    except (yaml.YAMLError, AttributeError, TypeError, ValueError, RecursionError) as error:
-        raise LabError(
-            f'{args.parameter_file} is no file of parameters: {str(error).splitlines()[0]}',
-            todo=f'ros2 param dump {name} shows what such a file looks like.',
-        ) from error
+    wanted = parameters_in(args.parameter_file, name, wildcard=not args.no_use_wildcard)
+    results = set_parameters(node, name, list(wanted.values()))
     failed = 0
-    for parameter, result in zip(wanted, _set(node, name, list(wanted.values())), strict=True):
-        reason = f': {result.reason}' if result.reason else ''
-        if result.successful:
-            print(f'Set parameter {parameter} successful{reason}')
-        else:
+    for parameter, result in zip(wanted, results, strict=True):
+        words = f'Set parameter {parameter}'
+        complaint = _told(result, f'{words} successful', f'{words} failed')
+        if complaint:
             failed = 1
-            print(f'Set parameter {parameter} failed{reason}', file=sys.stderr)
+            print(complaint, file=sys.stderr)
     return failed
 
 
-def _parameters_in(path: str, name: str, *, wildcard: bool) -> dict[str, Parameter]:
-    """Return the parameters that a file has for a node.
-
-    Raises:
-        LabError: It has none.
-        OSError: It can't be read.
-        ValueError: It is not a file of parameters; other exceptions too.
-    """
-    nodes = yaml.safe_load(Path(path).read_text(encoding='utf-8'))
-    keys = [key for key in ('/**', name) if key in nodes and (wildcard or key == name)]
-    if not nodes:
-        raise LabError('Param file does not contain selected parameters')
-    if not keys:
-        raise LabError(
-            f'Param file does not contain parameters for {name}, only for nodes: {list(nodes)}'
-        )
-    values: dict[str, Any] = {}
-    for key in keys:
-        if not isinstance(nodes[key], dict) or 'ros__parameters' not in nodes[key]:
-            raise LabError(f'YAML file is not a valid ROS parameter file for node {key}')
-        values.update(_flat(nodes[key]['ros__parameters']))
-    make: Any = NodeParameter
-    return {key: make(key, value=value).to_parameter_msg() for key, value in values.items()}
+def _told(result: SetParametersResult, good: str, bad: str) -> str | None:
+    """Print that a parameter was set; return what to say if it was not."""
+    reason = f': {result.reason}' if result.reason else ''
+    if not result.successful:
+        return f'{bad}{reason}'
+    print(f'{good}{reason}')
+    return None
 
 
-def _flat(tree: dict[str, Any], start: str = '') -> Iterator[tuple[str, Any]]:
-    for key, value in tree.items():
-        if isinstance(value, dict):
-            yield from _flat(value, f'{start}{key}.')
-        else:
-            yield f'{start}{key}', value
-
-
-def _names_of(node: Node, name: str, prefixes: Iterable[str] = ()) -> list[str]:
-    request = ListParameters.Request(prefixes=list(prefixes))
-    response = call_node(node, ListParameters, name, 'list_parameters', request)
-    return sorted(response.result.names)
-
-
-def _descriptors(node: Node, name: str, names: list[str]) -> Any:
-    request = DescribeParameters.Request(names=names)
-    return call_node(node, DescribeParameters, name, 'describe_parameters', request).descriptors
+def _label(kind: str) -> str:
+    """Return how `get` introduces a value of a type."""
+    if kind == NOT_SET:
+        return 'Parameter not set.'
+    word = kind.removesuffix(' array').capitalize()
+    return f'{word} values are:' if kind.endswith('array') else f'{word} value is:'
 
 
 def _types_of(node: Node, name: str, names: list[str]) -> dict[str, str]:
-    found = _descriptors(node, name, names)
-    return {descriptor.name: _TYPES[descriptor.type][0] for descriptor in found}
-
-
-def _set(node: Node, name: str, parameters: list[Parameter]) -> list[SetParametersResult]:
-    request = SetParameters.Request(parameters=parameters)
-    return list(call_node(node, SetParameters, name, 'set_parameters', request).results)
-
-
-def _value_from(text: str) -> ParameterValue:
-    """Return a value of the type that a text looks like; a text that is not YAML is a string."""
-    try:
-        return get_parameter_value(text)
-    except (yaml.YAMLError, AssertionError, ValueError, RecursionError):
-        return ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=text)
+    found = describe_parameters(node, name, names)
+    return {descriptor.name: type_word(descriptor.type) for descriptor in found}
 
 
 def _other_name(name: str, names: list[str]) -> str:
@@ -267,7 +199,7 @@ def _other_name(name: str, names: list[str]) -> str:
 def _parameters(args: Namespace) -> Iterable[str]:
     """Return the parameters to offer for completion."""
     node = asking_node(args)
-    return _names_of(node, check_node_name(node, args.node_name, timeout_sec=0.0))
+    return parameter_names(node, check_node_name(node, args.node_name, timeout_sec=0.0))
 
 
 def _node_arguments(parser: Parser, *, optional: bool = False) -> None:

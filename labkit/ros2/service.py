@@ -7,8 +7,7 @@ import sys
 import time
 from argparse import Namespace
 from collections.abc import Iterable
-
-from rclpy.node import Node
+from typing import TYPE_CHECKING
 
 from labkit import settings
 from labkit.background.discovery import alone, soon
@@ -16,13 +15,16 @@ from labkit.background.runtime import runtime
 from labkit.background.service_calls import ServiceCalls
 from labkit.errors import LabError
 from labkit.ros2.asking import add_discovery_options, asking_node, full_name, unknown
-from labkit.ros2.graph_words import service_names, service_types
+from labkit.ros2.graph_words import service_names, types_of_service
 from labkit.ros2.parser import Command, Parser, Usage, Verb, positive_float
 from labkit.rosgraph import interfaces
 from labkit.rosgraph.interfaces import type_name
+from labkit.rosgraph.listings import service_types, services
 from labkit.rosgraph.message_yaml import fill, prototype, read_yaml
-from labkit.rosgraph.names import is_hidden
 from labkit.rosgraph.refusals import Refusal, Refused
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
 __all__ = ['COMMAND']
 
@@ -32,7 +34,7 @@ WAITING = 'waiting for service to become available...'
 
 def list_services(args: Namespace) -> None:
     """Print the names of the services."""
-    found = _services(asking_node(args), args.include_hidden_services)
+    found = services(asking_node(args), include_hidden=args.include_hidden_services)
     if args.count_services:
         print(len(found))
         return
@@ -56,7 +58,7 @@ def show_info(args: Namespace) -> None:
 
 def find(args: Namespace) -> None:
     """Print the services of a type."""
-    found = _services(asking_node(args), args.include_hidden_services)
+    found = services(asking_node(args), include_hidden=args.include_hidden_services)
     names = [name for name, types in found if args.service_type in types]
     if not names:
         interfaces.check_exists(args.service_type, 'srv')
@@ -92,31 +94,22 @@ def call(args: Namespace) -> None:
 
 def _check_type(node: Node, name: str, wanted: str) -> None:
     """Raise a LabError if a service is there, but of another type: the call would never end."""
-    soon(lambda: name in dict(node.get_service_names_and_types()), 0.0 if alone() else 0.3)
-    types = dict(node.get_service_names_and_types()).get(name, [wanted])
-    if wanted not in types:
+    types = soon(lambda: service_types(node, name), 0.0 if alone() else 0.3)
+    if types and wanted not in types:
         raise Refused(
             f'{name} is a {", ".join(types)}, not a {wanted}.', reason=Refusal.OTHER_TYPE
         )
     if not node.count_services(name):
-        names = [other for other, _ in _services(node, include_hidden=False)]
+        names = [other for other, _ in services(node)]
         hint = unknown(name, names, 'service')
         if hint.startswith('Did you mean'):
             print(hint, file=sys.stderr, flush=True)
 
 
-def _services(node: Node, include_hidden: bool) -> list[tuple[str, list[str]]]:
-    return [
-        (name, types)
-        for name, types in sorted(node.get_service_names_and_types())
-        if include_hidden or not is_hidden(name)
-    ]
-
-
 def _types_of(node: Node, name: str) -> list[str]:
-    types = soon(lambda: dict(node.get_service_names_and_types()).get(name, []))
+    types = soon(lambda: service_types(node, name))
     if not types:
-        names = [other for other, _ in _services(node, include_hidden=False)]
+        names = [other for other, _ in services(node)]
         raise LabError(f"Unknown service '{name}'", todo=unknown(name, names, 'service'))
     return types
 
@@ -187,7 +180,7 @@ def _call_arguments(parser: Parser) -> None:
     parser.add(
         'service_type',
         help="Type of the ROS service (e.g. 'std_srvs/srv/Empty')",
-        complete=service_types,
+        complete=types_of_service,
     )
     parser.add(
         'values',

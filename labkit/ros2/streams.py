@@ -11,18 +11,18 @@ import queue
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
-
-from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
-from rclpy.node import Node
-from rclpy.qos import QoSProfile, qos_policy_name_from_kind
+from typing import TYPE_CHECKING, Any
 
 from labkit import settings
 from labkit.background.compat import RCLError
 from labkit.errors import LabError
 from labkit.ros2.asking import other_type, unknown
 from labkit.ros2.parser import Parser, Usage, positive_float, positive_int
-from labkit.rosgraph.names import is_hidden
+from labkit.rosgraph.listings import topic_types, topics
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+    from rclpy.qos import QoSProfile
 
 __all__ = [
     'MAX_SHOWN',
@@ -152,7 +152,7 @@ def wait_for_type(node: Node, topic: str, stop: Stop, *, typed: str) -> str | No
     """
     said = False
     while True:
-        types = dict(node.get_topic_names_and_types()).get(topic, [])
+        types = topic_types(node, topic)
         if len(types) > 1:
             raise LabError(
                 f"Cannot echo topic '{topic}', as it contains more than one type: "
@@ -163,8 +163,7 @@ def wait_for_type(node: Node, topic: str, stop: Stop, *, typed: str) -> str | No
             return types[0]
         if not said:
             said = True
-            others = [name for name, _ in node.get_topic_names_and_types() if not is_hidden(name)]
-            hint = unknown(topic, others, 'topic')
+            hint = unknown(topic, [name for name, _ in topics(node)], 'topic')
             print(f'WARNING: topic [{typed}] does not appear to be published yet', flush=True)
             if hint.startswith('Did you mean'):
                 print(hint, flush=True)
@@ -200,6 +199,8 @@ def subscribed(
     Raises:
         LabError: Somebody in this process uses the topic with another type.
     """
+    from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
+    from rclpy.qos import qos_policy_name_from_kind
 
     def lost(event: Any) -> None:
         assert say is not None

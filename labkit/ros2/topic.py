@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import argparse
 from argparse import Namespace
-
-from rclpy.node import Node
-from rclpy.topic_endpoint_info import TopicEndpointInfo
+from typing import TYPE_CHECKING
 
 from labkit.background.discovery import soon
 from labkit.errors import LabError
@@ -17,7 +15,12 @@ from labkit.ros2.topic_echo import ECHO
 from labkit.ros2.topic_pub import PUB
 from labkit.ros2.topic_rates import BW, DELAY, HZ
 from labkit.rosgraph import interfaces
-from labkit.rosgraph.names import full_node_name, is_hidden
+from labkit.rosgraph.listings import NamesAndTypes, topic_types, topics
+from labkit.rosgraph.names import full_node_name
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+    from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 __all__ = ['COMMAND']
 
@@ -27,7 +30,7 @@ HIDDEN = '--include-hidden-topics'
 def list_topics(args: Namespace) -> None:
     """Print the names of the topics."""
     node = asking_node(args)
-    found = _topics(node, args.include_hidden_topics)
+    found = topics(node, include_hidden=args.include_hidden_topics)
     if args.count_topics:
         print(len(found))
     elif args.verbose and found:
@@ -42,9 +45,9 @@ def show_info(args: Namespace) -> None:
     """Print a topic's type and its publishers and subscriptions."""
     node = asking_node(args)
     name = args.topic_name
-    types = _types_of(node, name)
+    types = soon(lambda: topic_types(node, name))
     if not types:
-        names = [topic for topic, _ in _topics(node, include_hidden=False)]
+        names = [topic for topic, _ in topics(node)]
         raise LabError(f"Unknown topic '{name}'", todo=unknown(name, names, 'topic'))
     end = '\n\n' if args.verbose else '\n'
     print(f'Type: {types[0] if len(types) == 1 else types}', end=end)
@@ -59,10 +62,12 @@ def show_info(args: Namespace) -> None:
 def show_type(args: Namespace) -> str | int:
     """Print a topic's type."""
     node = asking_node(args)
-    types = soon(lambda: dict(_topics(node, args.include_hidden_topics)).get(args.topic_name))
+    types = soon(
+        lambda: dict(topics(node, include_hidden=args.include_hidden_topics)).get(args.topic_name)
+    )
     if not types:
         # The real one says nothing and ends with code 1; a learner needs a word.
-        names = [topic for topic, _ in _topics(node, include_hidden=False)]
+        names = [topic for topic, _ in topics(node)]
         raise LabError(
             f"Unknown topic '{args.topic_name}'", todo=unknown(args.topic_name, names, 'topic')
         )
@@ -72,31 +77,19 @@ def show_type(args: Namespace) -> str | int:
 
 def find(args: Namespace) -> None:
     """Print the topics of a type."""
-    found = _topics(asking_node(args), args.include_hidden_topics)
+    found = topics(asking_node(args), include_hidden=args.include_hidden_topics)
     names = [name for name, types in found if args.topic_type in types]
     if not names:
         interfaces.check_exists(args.topic_type, 'msg')
     print(len(names)) if args.count_topics else print('\n'.join(names), end='\n' * bool(names))
 
 
-def _topics(node: Node, include_hidden: bool) -> list[tuple[str, list[str]]]:
-    return [
-        (name, types)
-        for name, types in sorted(node.get_topic_names_and_types())
-        if include_hidden or not is_hidden(name)
-    ]
-
-
-def _types_of(node: Node, topic: str) -> list[str]:
-    return soon(lambda: dict(node.get_topic_names_and_types()).get(topic, []))
-
-
-def _ends(node: Node, topics: list[tuple[str, list[str]]], *, publishers: bool) -> str:
+def _ends(node: Node, found: NamesAndTypes, *, publishers: bool) -> str:
     """Return the topics that have publishers, or those that have subscribers, as a list."""
     count_of = node.count_publishers if publishers else node.count_subscribers
     word = 'publisher' if publishers else 'subscriber'
     lines = ['Published topics:' if publishers else 'Subscribed topics:']
-    for name, types in topics:
+    for name, types in found:
         count = count_of(name)
         if count:
             plural = 's' if count > 1 else ''

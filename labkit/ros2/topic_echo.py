@@ -6,16 +6,15 @@ import argparse
 import functools
 from argparse import Namespace
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import yaml
-from rclpy.node import Node
 
 from labkit import settings
 from labkit.background.discovery import soon
 from labkit.errors import LabError, nearest
 from labkit.ros2.asking import add_discovery_options, asking_node, full_name
-from labkit.ros2.graph_words import topic_names, topic_types
+from labkit.ros2.graph_words import topic_names, types_of_topic
 from labkit.ros2.parser import (
     Parser,
     Usage,
@@ -28,8 +27,12 @@ from labkit.ros2.qos_options import add_qos_options, matching_profile
 from labkit.ros2.streams import MAX_SHOWN, Arrivals, Stop, subscribed, tell, wait_for_type
 from labkit.rosgraph import interfaces
 from labkit.rosgraph.interfaces import type_name
+from labkit.rosgraph.listings import topic_types
 from labkit.rosgraph.matching import why_silent
 from labkit.rosgraph.message_yaml import field_paths, to_csv, to_yaml
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
 __all__ = ['ECHO']
 
@@ -93,7 +96,7 @@ def _type_of(node: Node, topic: str, args: Namespace, stop: Stop) -> Any:
     """Return the class of the topic's messages, None if it was time to stop."""
     if args.message_type is not None:
         return interfaces.message_class(args.message_type)
-    soon(lambda: dict(node.get_topic_names_and_types()).get(topic))
+    soon(lambda: topic_types(node, topic))
     name = wait_for_type(node, topic, stop, typed=args.topic_name)
     return None if name is None else interfaces.message_class(name)
 
@@ -147,7 +150,7 @@ def _fields(args: Namespace) -> Iterable[str]:
     """Return the fields to offer for completion."""
     types = [getattr(args, 'message_type', None)]
     if not types[0] and getattr(args, 'topic_name', None):
-        types = list(topic_types(args))
+        types = list(types_of_topic(args))
     return field_paths(interfaces.message_class(types[0])) if len(types) == 1 and types[0] else ()
 
 
@@ -162,7 +165,7 @@ def _arguments(parser: Parser) -> None:
         'message_type',
         nargs='?',
         help="Type of the ROS message (e.g. 'std_msgs/msg/String')",
-        complete=topic_types,
+        complete=types_of_topic,
     )
     add_qos_options(parser, 'sensor_data')
     parser.add(

@@ -9,39 +9,30 @@ import sys
 import time
 from argparse import Namespace
 from collections.abc import Iterable
-from typing import Any
-
-from rclpy.clock import ROSClock
-from rclpy.duration import Duration
-from rclpy.node import Node
-from rclpy.publisher import Publisher
-from rclpy.qos import ReliabilityPolicy
+from typing import TYPE_CHECKING, Any
 
 from labkit import settings
 from labkit.background.compat import RCLError
-from labkit.background.discovery import soon
+from labkit.background.delivery import MATCH_SEC, wait_for_known, wait_until_taken
 from labkit.background.nodes import destroy_node
 from labkit.background.runtime import runtime
 from labkit.errors import LabError, nearest
 from labkit.ros2.asking import add_discovery_options, asking_node, full_name, other_type
-from labkit.ros2.graph_words import topic_names, topic_types
+from labkit.ros2.graph_words import topic_names, types_of_topic
 from labkit.ros2.parser import Parser, Usage, Verb, positive_float, unsigned_int
 from labkit.ros2.qos_options import add_qos_options, profile_from
 from labkit.ros2.streams import MAX_SHOWN, Stop, tell
 from labkit.rosgraph import interfaces
-from labkit.rosgraph.interfaces import type_name
+from labkit.rosgraph.listings import topics
 from labkit.rosgraph.message_yaml import fill, no_dictionary, prototype, read_yaml
-from labkit.rosgraph.names import is_hidden
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+    from rclpy.publisher import Publisher
 
 __all__ = ['PUB']
 
 POLL_SEC = 0.01
-# As long as that, a subscriber that the graph knows may take to match.
-MATCH_SEC = 1.0
-# As long as that, a best effort subscriber may take to find a publisher that has found it.
-FOUND_SEC = 0.5
-# As long as that, a subscriber that has matched may take to get what was sent.
-TAKEN_SEC = 5.0
 
 
 def pub(args: Namespace) -> str | None:
@@ -69,7 +60,7 @@ def pub(args: Namespace) -> str | None:
                 args.max_wait_time_secs,
                 stop,
             )
-            _publish(publisher, message, setters, args, stop)
+            _publish(node, publisher, message, setters, args, stop)
         finally:
             node.destroy_publisher(publisher)
     finally:
@@ -79,18 +70,22 @@ def pub(args: Namespace) -> str | None:
 
 
 def _publish(
-    publisher: Publisher, message: Any, setters: list[Any], args: Namespace, stop: Stop
+    node: Node,
+    publisher: Publisher,
+    message: Any,
+    setters: list[Any],
+    args: Namespace,
+    stop: Stop,
 ) -> None:
     """Publish at the rate that was asked for."""
     tell('publisher: beginning loop')
     period = 1 / args.rate
     start = time.monotonic()
-    clock = ROSClock()
     shown = 0
     most = MAX_SHOWN if settings.in_kernel() else math.inf
     for count in itertools.count(1):
         for set_time in setters:
-            set_time(clock.now().to_msg())
+            set_time(node.get_clock().now().to_msg())
         if args.print and count % args.print == 0 and shown < most:
             shown += 1
             tell(f'publishing #{count}: {message!r}\n')
@@ -103,19 +98,7 @@ def _publish(
         if stop.reached:
             break
     time.sleep(args.keep_alive)  # so that the last message is on its way before the end
-    _wait_until_taken(publisher)
-
-
-def _wait_until_taken(publisher: Publisher) -> None:
-    """Wait a moment for reliable subscribers that have not got everything yet.
-
-    One that has only just found the publisher asks for what it missed. A publisher that has ended
-    by then can't repeat it, and the only message would be lost.
-    """
-    step = Duration(nanoseconds=int(POLL_SEC * 1e9))  # short, so that the stop button is heard
-    end = time.monotonic() + TAKEN_SEC
-    while not publisher.wait_for_all_acked(step) and time.monotonic() < end:
-        pass
+    wait_until_taken(publisher)
 
 
 def _wait_for_subscribers(
@@ -143,33 +126,20 @@ def _wait_for_subscribers(
                 hint = ''
         time.sleep(POLL_SEC)
     if count:
-        _wait_for_others(node, publisher)
-
-
-def _wait_for_others(node: Node, publisher: Publisher) -> None:
-    """Wait a moment, so that a message sent once reaches all who are there, not one only."""
-    wanted = type_name(publisher.msg_type)
-    infos = node.get_subscriptions_info_by_topic(publisher.topic_name)
-    known = [info.qos_profile.reliability for info in infos if info.topic_type == wanted]
-    soon(lambda: publisher.get_subscription_count() >= len(known), MATCH_SEC)
-    if ReliabilityPolicy.BEST_EFFORT in known:
-        # It has to find the publisher too, and does not ask for what it has missed.
-        time.sleep(FOUND_SEC)
+        wait_for_known(node, publisher)
 
 
 def _other_topic(node: Node, topic: str) -> str:
     """Return a word on the topic that was probably meant, '' if this one has subscribers."""
-    heard = [
-        name
-        for name, _ in node.get_topic_names_and_types()
-        if not is_hidden(name) and node.count_subscribers(name)
-    ]
+    heard = [name for name, _ in topics(node) if node.count_subscribers(name)]
     near = '' if topic in heard else nearest(topic, heard)
     return f'Nobody subscribes to {topic}. Did you mean {near!r}?' if near else ''
 
 
 def _node(name: str | None, asking: Node) -> Node:
     """Return the node to publish with: one of its own if it is to have a name."""
+    from rclpy.node import Node
+
     if not name:
         return asking
     if any(entry.name == f'/{name}' for entry in runtime.nodes()):
@@ -222,7 +192,7 @@ def _arguments(parser: Parser) -> None:
     parser.add(
         'message_type',
         help="Type of the ROS message (e.g. 'std_msgs/String')",
-        complete=topic_types,
+        complete=types_of_topic,
     )
     parser.add(
         'values',

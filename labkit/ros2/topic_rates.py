@@ -10,9 +10,6 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from rclpy.qos import qos_profile_sensor_data
-from rclpy.time import Time
-
 from labkit.background.discovery import soon
 from labkit.errors import LabError
 from labkit.ros2.asking import add_discovery_options, asking_node, full_name
@@ -27,7 +24,9 @@ from labkit.ros2.streams import (
 )
 from labkit.rosgraph import interfaces
 from labkit.rosgraph.interfaces import type_name
+from labkit.rosgraph.listings import topic_types
 from labkit.rosgraph.matching import why_silent
+from labkit.rosgraph.qos import make_profile
 
 __all__ = ['BW', 'DELAY', 'HZ']
 
@@ -120,6 +119,8 @@ def bandwidth(args: Namespace) -> str | None:
 
 def delay(args: Namespace) -> str | None:
     """Print how old the messages are when they come, by the time stamp in their header."""
+    from rclpy.time import Time
+
     node = asking_node(args)
     window = Window(args.window_size)
 
@@ -152,7 +153,7 @@ def _measure(
     stop = Stop(args.count, args.timeout)
     node = asking_node(args)
     topic = full_name(topic, node)
-    soon(lambda: dict(node.get_topic_names_and_types()).get(topic))
+    soon(lambda: topic_types(node, topic))
     name = wait_for_type(node, topic, stop, typed=args.topic_name)
     if name is None:
         return f'No message came: {topic} has not appeared.'
@@ -177,11 +178,12 @@ def _measure(
             print(report(), flush=True)
             stop.count_one()
 
-    with subscribed(node, topic, msg_type, qos_profile_sensor_data, arrived, raw=raw):
+    profile = make_profile('sensor_data')
+    with subscribed(node, topic, msg_type, profile, arrived, raw=raw):
         Arrivals().show_until(stop, look)
         if window.total:
             return None
-        return f'No message came. {why_silent(node, topic, msg_type, qos_profile_sensor_data)}'
+        return f'No message came. {why_silent(node, topic, msg_type, profile)}'
 
 
 def _arguments(
