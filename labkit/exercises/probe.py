@@ -126,9 +126,19 @@ class Probe:
         from labkit.background.child_processes import starting_children
 
         new, known = starting_children([bytes(info.endpoint_gid) for info in infos])
-        if self._fresh or new:
+        if self._fresh or new or self._is_half_seen():
             return PROCESS_GRACE_SEC
         return ENDPOINT_GRACE_SEC if known else 0.0
+
+    def _is_half_seen(self) -> bool:
+        """Tell whether a node of another process is in the graph, and nothing yet that it does.
+
+        On a busy machine that may be so long after its process was started.
+        """
+        from labkit.rosgraph.whose import foreign_nodes
+
+        active = {end.node for end in (*self.all_publishers(), *self.all_subscriptions())}
+        return bool(foreign_nodes(self.node).intersection(self.node_names()) - active)
 
     def something_is_starting(self) -> bool:
         """Tell whether a process, or ROS itself, was started a moment ago."""

@@ -26,12 +26,18 @@ lab.start()
 SEES = """
 from labkit.rosgraph.snapshot import node_names
 from labkit.background.runtime import runtime
-def sees_noise():
-    return '/noise' in node_names(runtime.helper)
+def sees(name):
+    return name in node_names(runtime.helper)
 """
 START = f"""
 import subprocess
 process = subprocess.Popen([sys.executable, {str(NODE)!r}, 'ones'])
+"""
+LATE = START.replace("'ones'", "'ones', 'late'")
+# The process counts as one that was started long ago.
+NOT_YOUNG = """
+from labkit.background import child_processes
+child_processes.starting_children = lambda gids: (False, False)
 """
 
 
@@ -43,7 +49,7 @@ def test_other_notebook_is_named(start_kernel: Callable[..., Any]) -> None:
     other.run(f'{SETUP}\nlab.spin(Counter("noise"))')
     mine.run(f'{SETUP}\nlab.spin(Counter("mine"))')
     mine.run(SEES)
-    found = mine.run('lab.wait_until(sees_noise, timeout_sec=30)\nexercise.check()')
+    found = mine.run('lab.wait_until(lambda: sees("/noise"), timeout_sec=30)\nexercise.check()')
     claim.close()
     assert found.error == ''
     assert '/noise in another notebook, 02_talker_listener.ipynb' in ' '.join(found.text.split())
@@ -60,6 +66,21 @@ def test_script_that_was_just_started_is_waited_for(start_kernel: Callable[..., 
     # Slow to start on a busy machine: then the check says so, and the next one sees it.
     while 'run this cell again' in found.text.lower().replace('\n', ' '):
         found = kernel.run('exercise.check()')
+    kernel.run('process.terminate(); process.wait()')
+    claim.close()
+    assert found.text.startswith('PASS')
+
+
+def test_node_that_is_in_the_graph_before_its_publisher_is_waited_for(
+    start_kernel: Callable[..., Any],
+) -> None:
+    claim = claim_domain()
+    kernel = start_kernel(
+        ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST', ROS_DOMAIN_ID=str(claim.domain_id)
+    )
+    kernel.run(f'{SETUP}\n{SEES}\n{NOT_YOUNG}')
+    kernel.run(f'{LATE}\nlab.wait_until(lambda: sees("/ones"), timeout_sec=30)')
+    found = kernel.run('exercise.check()')
     kernel.run('process.terminate(); process.wait()')
     claim.close()
     assert found.text.startswith('PASS')
