@@ -5,17 +5,18 @@ About this course itself, its environment and its notebook, `lab.doctor()` knows
 
 from __future__ import annotations
 
+import itertools
 import os
 import platform
 import sys
 from argparse import Namespace
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from labkit.ros2.asking import add_discovery_options, asking_node
 from labkit.ros2.parser import Command, Parser, Verb
-from labkit.rosgraph.endpoints import publishers, subscriptions
+from labkit.rosgraph.endpoints import Endpoint, publishers, subscriptions
 from labkit.rosgraph.listings import own_topics
 from labkit.rosgraph.matching import qos_mismatch
 from labkit.rosgraph.names import split_node_name
@@ -94,8 +95,8 @@ def _check_topics(node: Node) -> Findings:
 
 def _check_qos(node: Node) -> Findings:
     return [], [
-        f"QoS compatibility error found on topic '{topic}': {reason};"
-        for topic, _, _, reason in _pairs(node)
+        f"QoS compatibility error found on topic '{publisher.topic}': {reason};"
+        for publisher, _, reason in _pairs(node)
         if reason
     ]
 
@@ -120,11 +121,11 @@ def _report(node: Node) -> list[Section]:
         ]
         network += [('device', name), ('flags', f'<{",".join(kinds)}>'), ('mtu', mtu)]
     pairs: list[tuple[str, object]] = []
-    for topic, publisher, subscriber, reason in _pairs(node):
+    for publisher, subscription, reason in _pairs(node):
         pairs += [
-            ('topic [type]', topic),
-            ('publisher node', publisher),
-            ('subscriber node', subscriber),
+            ('topic [type]', f'{publisher.topic} [{publisher.msg_type}]'),
+            ('publisher node', split_node_name(publisher.node)[0]),
+            ('subscriber node', split_node_name(subscription.node)[0]),
             ('compatibility status', f'ERROR: {reason};' if reason else 'OK'),
         ]
     topics: list[tuple[str, object]] = []
@@ -159,19 +160,13 @@ def _report(node: Node) -> list[Section]:
     ]
 
 
-def _pairs(node: Node) -> list[tuple[str, str, str, str]]:
-    """Return topic, publishing node, subscribing node and why they do not match, for each pair."""
-    return sorted(
-        (
-            topic,
-            split_node_name(publisher.node)[0],
-            split_node_name(subscription.node)[0],
-            qos_mismatch(publisher.qos, subscription.qos),
-        )
-        for topic in own_topics(node)
-        for publisher in publishers(node, topic)
-        for subscription in subscriptions(node, topic)
-    )
+def _pairs(node: Node) -> Iterator[tuple[Endpoint, Endpoint, str]]:
+    """Yield each publisher with each subscription of its topic, and why they do not match."""
+    for topic in own_topics(node):
+        for publisher, subscription in itertools.product(
+            publishers(node, topic), subscriptions(node, topic)
+        ):
+            yield publisher, subscription, qos_mismatch(publisher.qos, subscription.qos)
 
 
 def _interfaces() -> list[tuple[str, int, int]]:

@@ -1,0 +1,77 @@
+"""Parameters as data: values from text, files of parameters."""
+
+from __future__ import annotations
+
+import pytest
+
+from labkit.errors import LabError
+from labkit.rosgraph.parameters import (
+    parameters_in,
+    python_value,
+    to_yaml,
+    type_word,
+    value_from,
+)
+
+
+@pytest.mark.parametrize(
+    ('text', 'value', 'kind'),
+    [
+        ('5', 5, 'integer'),
+        ('5.0', 5.0, 'double'),
+        ('true', True, 'boolean'),
+        ('fast', 'fast', 'string'),
+        ('[1, 2]', [1, 2], 'integer array'),
+        ('[a, b]', ['a', 'b'], 'string array'),
+        # What can not be read as YAML is a text.
+        ('{', '{', 'string'),
+        ('&a [*a]', '&a [*a]', 'string'),
+    ],
+)
+def test_a_value_has_the_type_that_its_text_looks_like(text, value, kind):
+    found = value_from(text)
+    assert type_word(found.type) == kind
+    assert (
+        list(python_value(found)) == value if kind.endswith('y') else python_value(found) == value
+    )
+
+
+def test_what_is_dumped_can_be_loaded(tmp_path):
+    values = {'pid.p': value_from('1.5'), 'pid.i': value_from('0.1'), 'name': value_from('a')}
+    path = tmp_path / 'lamp.yaml'
+    path.write_text(to_yaml('/lamp', values))
+    found = parameters_in(str(path), '/lamp')
+    assert {name: parameter.value for name, parameter in found.items()} == values
+
+
+def test_what_is_for_every_node_comes_first(tmp_path):
+    path = tmp_path / 'all.yaml'
+    path.write_text(
+        '/lamp: {ros__parameters: {speed: 2}}\n/**: {ros__parameters: {speed: 1, name: a}}\n'
+    )
+    both = parameters_in(str(path), '/lamp')
+    assert (both['speed'].value.integer_value, both['name'].value.string_value) == (2, 'a')
+    assert set(parameters_in(str(path), '/lamp', wildcard=False)) == {'speed'}
+    assert set(parameters_in(str(path), '/talker')) == {'speed', 'name'}
+    with pytest.raises(LabError, match='does not contain parameters for /talker'):
+        parameters_in(str(path), '/talker', wildcard=False)
+
+
+@pytest.mark.parametrize(
+    ('text', 'sentence'),
+    [
+        ('', 'Param file does not contain selected parameters'),
+        ('- a', 'is no file of parameters'),
+        ('hello', 'is no file of parameters'),
+        ('{', 'is no file of parameters'),
+        ('/lamp: {ros__parameters: 5}', 'is no file of parameters'),
+        ('/lamp: {speed: 5}', 'YAML file is not a valid ROS parameter file for node /lamp'),
+    ],
+)
+def test_what_is_no_file_of_parameters(tmp_path, text, sentence):
+    path = tmp_path / 'lamp.yaml'
+    path.write_text(text)
+    with pytest.raises(LabError, match=sentence):
+        parameters_in(str(path), '/lamp')
+    with pytest.raises(LabError, match='can not be read'):
+        parameters_in(str(tmp_path), '/lamp')
