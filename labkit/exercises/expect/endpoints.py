@@ -7,7 +7,7 @@ from no attempt at all.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from labkit.exercises.probe import Probe
 from labkit.exercises.scope import PUBLISHER, SUBSCRIPTION, near, plain
@@ -173,7 +173,7 @@ def _find(probe: Probe, kind: str, topic: str, by: str) -> Endpoint:
     return matching()[0]
 
 
-def _refuse_type(endpoint: Endpoint, kind: str, msg_type: str) -> None:
+def _refuse_type(endpoint: Endpoint, kind: str, msg_type: str) -> NoReturn:
     raise Fail(
         f'{endpoint.topic} with messages of type {msg_type}',
         f'{endpoint.node} {_KINDS[kind][1]} {endpoint.msg_type} there',
@@ -184,7 +184,7 @@ def _refuse_type(endpoint: Endpoint, kind: str, msg_type: str) -> None:
     )
 
 
-def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str) -> None:
+def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str) -> NoReturn:
     """Raise Fail with the likeliest reason why an endpoint is missing, or NotAttempted."""
     nodes = probe.attempt()
     if not nodes:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from labkit.exercises.expect.timing import hanging, spun
 from labkit.exercises.expect.values import show, text_trouble
@@ -159,7 +159,7 @@ def _refuse(
     came: list[Any],
     field: str,
     explain: Explain | None,
-) -> None:
+) -> NoReturn:
     why, todo = explain(fields, came) if explain is not None else ('', '')
     if not why:
         why, todo = _usual_reason(source, answer, right, came)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import statistics
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from labkit.exercises.expect.endpoints import alone
 from labkit.exercises.probe import Probe
@@ -176,7 +176,7 @@ def _fits(watch: Watch, period: float, tolerance: float) -> bool:
     return abs(statistics.median(watch.intervals) / period - 1.0) <= tolerance
 
 
-def _refuse_rate(probe: Probe, watch: Watch, source: Endpoint, hz: float) -> None:
+def _refuse_rate(probe: Probe, watch: Watch, source: Endpoint, hz: float) -> NoReturn:
     period = 1.0 / hz
     expected = f'a message every {period:.3g} s ({hz:.3g} Hz) on {watch.topic}'
     todo = f'The first argument of create_timer() is the period in seconds: {period:.3g}'
@@ -271,7 +271,7 @@ def _vain_ticks(probe: Probe, node: Any, timer: Any, hz: float | None) -> Callab
     return lambda: (probe.callbacks.count(node, timer) or 0) - before >= due
 
 
-def _explain_silence(probe: Probe, watch: Watch, source: Endpoint) -> None:
+def _explain_silence(probe: Probe, watch: Watch, source: Endpoint) -> NoReturn:
     """Raise Fail with the likeliest reason why messages do not come."""
     hanging(probe)
     waited = time.monotonic() - (watch.last_arrival if len(watch) else watch.started)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from labkit.exercises import (
     Exercise,
@@ -98,7 +98,7 @@ def _expect_two_nodes(probe: Probe, publishers: Sequence[Endpoint]) -> None:
     )
 
 
-def _refuse(names: Sequence[str], texts: Sequence[str]) -> None:
+def _refuse(names: Sequence[str], texts: Sequence[str]) -> NoReturn:
     seen = f'data = {expect.show(texts)}' if texts else 'nothing on /names'
     if len(names) > 1:
         why = (

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise
 from statistics import median
+from typing import NoReturn
 
 from labkit.exercises import (
     Exercise,
@@ -129,7 +130,7 @@ def _expect_rate(run: Sequence[Sample]) -> None:
     )
 
 
-def _refuse(values: Sequence[int], wanted: Sequence[int]) -> None:
+def _refuse(values: Sequence[int], wanted: Sequence[int]) -> NoReturn:
     """Raise Fail with the reason why the numbers go on otherwise."""
     place = next(i for i, pair in enumerate(zip(values, wanted, strict=True)) if len({*pair}) > 1)
     seen, before = values[place], values[max(0, place - 1)]

@@ -12,7 +12,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from labkit.exercises import Fail, Probe, Watch, expect
 from labkit.sim.kinematics import Pose, Twist2, yaw_from_quaternion
@@ -255,7 +255,7 @@ def _expect_nobody_drives(
         )
 
 
-def _explain_no_command(probe: Probe, source: Endpoint) -> None:
+def _explain_no_command(probe: Probe, source: Endpoint) -> NoReturn:
     """Raise Fail with the likeliest reason why no command came."""
     expect.hanging(probe)
     expect.spun(probe, source)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NoReturn
 
 from labkit.exercises import Exercise, Fail, Probe, Solution, Style, Wrong, changed
 from labkit.lessons._script import in_process
@@ -188,7 +189,7 @@ def _refuse_corner(
     number: int,
     corner: tuple[float, float],
     expected: str,
-) -> None:
+) -> NoReturn:
     x, y = min(path, key=lambda point: math.dist(point, corner))
     mirrored = (corner[0], -corner[1])
     if number == 2 and any(math.dist(point, mirrored) <= NEAR for point in path):
