@@ -25,7 +25,8 @@ class Callbacks:
         from labkit.background.runtime import runtime
 
         self._runtime = runtime
-        self._before = {id(error): error.count for error in runtime.console.errors}
+        # With the errors themselves: one that is forgotten may leave its id to another one.
+        self._before = [(error, error.count) for error in runtime.console.errors]
 
     def count(self, node: Any, entity: Any) -> int | None:
         """Return how often the callback of a timer or subscription has been run.
@@ -55,8 +56,9 @@ class Callbacks:
 
     def raise_new_error(self, scope: Scope) -> None:
         """Raise LearnerError if a callback of a node under test has raised during the check."""
-        for error in self._runtime.console.errors:
-            if error.count > self._before.get(id(error), 0) and _is_under_test(error, scope):
+        for error in tuple(self._runtime.console.errors):
+            before = next((count for known, count in self._before if known is error), 0)
+            if error.count > before and _is_under_test(error, scope):
                 raise _learner_error(error)
 
     def raise_old_error(self, scope: Scope) -> None:

@@ -114,7 +114,6 @@ def rate(
         return 1.0 / statistics.median(watch.intervals)
     _refuse_too_early(probe, watch, period)
     _refuse_rate(probe, watch, source, hz)
-    raise AssertionError
 
 
 def ends_with_node(probe: Probe, source: Endpoint) -> Watch:
