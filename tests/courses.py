@@ -45,7 +45,9 @@ class Course:
         (folder / 'uv').mkdir()
         (folder / 'uv' / 'uv').symlink_to(uv)
         self.env.update(PATH=f'{folder / "uv"}:{BARE_PATH}', UV_HTTP_RETRIES='0', PIP_RETRIES='0')
-        for name in ('PYTHONPATH', 'VIRTUAL_ENV', 'LABKIT_REQUIRE_ALL'):
+        # What measures this test is not to measure the course's own tests.
+        measuring = ('COVERAGE_FILE', 'COVERAGE_PROCESS_CONFIG')
+        for name in ('PYTHONPATH', 'VIRTUAL_ENV', 'LABKIT_REQUIRE_ALL', *measuring):
             self.env.pop(name, None)
 
     def wheel(self, name: str, version: str = '1.0', size: int = 0) -> str:
