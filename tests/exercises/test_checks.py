@@ -230,9 +230,7 @@ def test_what_was_said_before_the_check_is_recorded(lab: ModuleType) -> None:
             raise Fail("'once'", repr(said))
         return ''
 
-    asked = exercise(
-        judge, publishes={'/news': STRING}, shared=['/news'], records={'/news': STRING}
-    )
+    asked = exercise(judge, **NEWS)
     asked.begin()
     assert asked.check().outcome is Outcome.NOT_ATTEMPTED
     for said, outcome in ((['once', 'once'], Outcome.FAIL), (['once'], Outcome.PASS)):
@@ -251,9 +249,7 @@ def test_recording_goes_on_after_ros_was_stopped(lab: ModuleType) -> None:
     def judge(probe: Probe) -> None:
         heard.append(probe.recorded['/news'].values('data'))
 
-    asked = exercise(
-        judge, publishes={'/news': STRING}, shared=['/news'], records={'/news': STRING}
-    )
+    asked = exercise(judge, **NEWS)
     asked.begin()
     for text in ('before', 'after'):
         node = rclpy.create_node('teller')
@@ -268,12 +264,7 @@ def test_recording_goes_on_after_ros_was_stopped(lab: ModuleType) -> None:
 
 def test_other_type_on_a_recorded_topic_harms_nobody(lab: ModuleType) -> None:
     node = lab.spin(Counter(topic='news'))
-    asked = exercise(
-        lambda probe: None,
-        publishes={'/news': STRING},
-        shared=['/news'],
-        records={'/news': STRING},
-    )
+    asked = exercise(lambda probe: None, **NEWS)
     asked.begin()
     assert asked.check().passed
     lab.remove(node)
