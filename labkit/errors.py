@@ -30,7 +30,9 @@ class LabError(Exception):
     def _render_traceback_(self) -> list[str]:
         """Return the lines that IPython shows instead of a traceback."""
         place = _calling_line(self)
-        return [place] * bool(place) + _wrapped(f'{type(self).__name__}: {self}')
+        # The name that a learner may know: those made on these have other users.
+        name = next(c.__name__ for c in type(self).__mro__ if c.__module__ == __name__)
+        return [place] * bool(place) + _wrapped(f'{name}: {self}')
 
 
 def _wrapped(text: str) -> list[str]:

@@ -52,6 +52,8 @@ STOP_SEC = 8.0
 # that is lost, others forget it after 20 s (the lease of a participant, DDSI-RTPS 2.5, 8.5.3).
 GONE_SEC = 30.0
 POLL_SEC = 0.05
+# How long the services of a node that has come are waited for. A node may be made without them.
+SERVICES_SEC = 5.0
 # How old a process that this notebook started may be and still count as starting.
 _YOUNG_SEC = 5.0
 
@@ -176,18 +178,21 @@ class Process:
 
         runtime.wait(lambda: not {*node_names(helper)} & {*self.nodes}, GONE_SEC)
 
-    def wait_for_nodes(self, node: Node, before: Collection[str], timeout_sec: float) -> None:
+    def wait_for_nodes(self, node: Node, before: Collection[str], timeout_sec: float) -> bool:
         """Wait until its nodes are in the graph, with all that they have, or it has ended.
 
         What a node has comes into the graph piece by piece. A program that announces what that is
-        is waited for until all of it is there. Any other is known to offer all services of a
-        node's parameters if it offers one, and to answer there once it spins; what else it has is
-        there when the graph is calm.
+        is waited for until all of it is there. Any other is known to offer the services that come
+        with every node, and to answer there once it spins; what else it has is there when the
+        graph is calm.
 
         Args:
             node: The node to ask the graph with.
             before: Full names of the nodes that were there before it was started.
             timeout_sec: Seconds to wait for what is known to come.
+
+        Returns:
+            Whether all that is known to come is there.
         """
         earlier = Counter(before)
 
@@ -202,19 +207,27 @@ class Process:
                 for kind, names in ends.items()
             )
 
+        patient_until = time.monotonic()
+
         def is_there() -> bool:
+            nonlocal patient_until
             if self._announces:
                 return self.announced is not None and is_complete()
-            return bool(appeared()) and has_all_services(node, appeared())
+            names = appeared()
+            if not names:
+                patient_until = time.monotonic() + SERVICES_SEC
+                return False
+            return time.monotonic() > patient_until or has_all_services(node, names)
 
         end = time.monotonic() + timeout_sec
-        while self.running and not is_there() and time.monotonic() < end:
+        while not (complete := is_there()) and self.running and time.monotonic() < end:
             time.sleep(POLL_SEC / 5)
         self.nodes = appeared()
         if self.nodes and not self._announces:
             for name in self.nodes:
                 wait_until_spun(node, name)
             calm(node)
+        return complete
 
     def _hear(self, pipe: int) -> None:
         with open(pipe, encoding='utf-8') as file, contextlib.suppress(ValueError):

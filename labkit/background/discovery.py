@@ -44,6 +44,8 @@ PARAMETER_SERVICES = (
     *('describe_parameters', 'get_parameter_types', 'get_parameters', 'list_parameters'),
     *('set_parameters', 'set_parameters_atomically'),
 )
+# And this one after those, unless its parameter start_type_description_service says otherwise.
+LAST_SERVICE = 'get_type_description'
 
 # Ports of participants, DDSI-RTPS 2.5, 9.6.2.3: 7400 + 250 * domain + 10 + 2 * participant.
 _FIRST_PORT = 7400
@@ -81,16 +83,20 @@ def calm(node: Node) -> None:
 
 
 def has_all_services(node: Node, names: list[str]) -> bool:
-    """Tell whether nodes have none of the services that come with parameters, or all of them.
+    """Tell whether nodes offer all services that come with every node.
 
     Args:
         node: The node to ask the graph with.
         names: Full names of the nodes.
+
+    Returns:
+        Whether each offers the one that is made last, and, of those of its parameters, all or
+        none: a node may be made without them.
     """
     offered = {service for service, _types in node.get_service_names_and_types()}
     for name in names:
         found = [f'{name}/{service}' in offered for service in PARAMETER_SERVICES]
-        if any(found) and not all(found):
+        if f'{name}/{LAST_SERVICE}' not in offered or (any(found) and not all(found)):
             return False
     return True
 

@@ -47,7 +47,8 @@ from rclpy.node import Node
 robot = lab.spin(lab.Turtlebot())
 view = lab.arena()
 display(view)
-assert view._canvas is not None
+assert view._widget is not None
+view._widget._handle_custom_msg({'view': 'seen'}, [])
 driver = lab.spin(Node('driver'))
 commands = driver.create_publisher(Twist, 'cmd_vel', 10)
 curve = Twist()
@@ -219,7 +220,7 @@ def lockstep(count: int) -> list[Row]:
 
 def main() -> None:
     """Print the table."""
-    from labkit.settings import claim_domain
+    from labkit.background.domains import claim_domain
 
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--quick', action='store_true', help='only to see whether it runs')

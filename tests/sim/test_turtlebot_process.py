@@ -71,7 +71,7 @@ rclpy.shutdown()
 def test_from_another_process_it_drives_the_closed_form(
     script: Callable[..., Any], tmp_path: Any
 ) -> None:
-    from labkit.settings import claim_domain
+    from labkit.background.domains import claim_domain
 
     robot_file = tmp_path / 'robot.py'
     robot_file.write_text(ROBOT, encoding='utf-8')

@@ -50,33 +50,21 @@ def open_harbour() -> None:
     global _process
     from labkit.background.child_processes import environment, start_process
     from labkit.background.runtime import runtime
+    from labkit.rosgraph.snapshot import node_names
 
     if _process is not None:
         _process.stop()
     runtime.start()
-    program = f'from {__name__} import main; main()'
-    _process = start_process('harbour', [sys.executable, '-c', program], environment())
-    _process.nodes = list(NODES)
-    if not runtime.wait(_is_open, START_SEC):
+    assert runtime.helper is not None
+    before = node_names(runtime.helper)
+    command = [sys.executable, '-c', f'from {__name__} import main; main()']
+    _process = start_process('harbour', command, environment(), announces=True)
+    if not _process.wait_for_nodes(runtime.helper, before, START_SEC):
         raise LabTimeout(
             f'Waited {START_SEC:.0f} s for the nodes of the harbour, but they did not come.',
             todo='Run the cell again. If that does not help, lab.doctor() looks for the reason.',
         )
     print(f'The harbour is open: {len(NODES)} nodes in a process of their own.')
-
-
-def _is_open() -> bool:
-    """Say whether the whole harbour is in the graph: what its process makes last is there.
-
-    Publishers come in the order in which they were made, and so do subscriptions and services.
-    Which node they belong to is told afterwards, each time for the whole process.
-    """
-    from labkit.background.runtime import runtime
-
-    assert runtime.helper is not None
-    diaries = runtime.helper.get_publishers_info_by_topic(DIARY)
-    known = any(f'/{info.node_name}' == HIDDEN_NODE for info in diaries)
-    return known and runtime.helper.count_services(FOGHORN) > 0
 
 
 def main() -> None:
@@ -92,7 +80,6 @@ def main() -> None:
         name: Node(name.lstrip('/'), start_parameter_services=name == '/lighthouse')
         for name in (*NODES, HIDDEN_NODE)
     }
-    # The fog horn and the diary come last: `_is_open` relies on it.
     _furnish_piers([nodes[name] for name in PIERS])
     _furnish_boats([nodes[name] for name in BOATS])
     _furnish_lighthouse(nodes['/lighthouse'])
