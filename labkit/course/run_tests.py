@@ -21,6 +21,7 @@ _FAST_TESTS = (
     'tests/test_requirements.py',
     'tests/course/test_shards.py',
     'tests/course/test_public_names.py',
+    'tests/lessons/test_answers_style.py',
 )
 # What continuous integration runs beside each other. The last one has what no other has, so that
 # a new test is in exactly one of them.
