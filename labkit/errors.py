@@ -112,4 +112,5 @@ def first_few(names: Sequence[str]) -> str:
 
 
 def _plain(name: str) -> str:
+    """Return the last part of a name, without what is easily mixed up: capitals, underscores."""
     return name.rsplit('/', 1)[-1].lower().replace('_', '')

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 import importlib
 import pkgutil
 import re
 from collections.abc import Sequence
 from dataclasses import replace
 
-from labkit.errors import LabError
+from labkit.errors import LabError, nearest
 from labkit.exercises.exercise import Exercise
 from labkit.exercises.learner_errors import last_cell
 from labkit.exercises.quiz import Quiz
@@ -176,5 +175,5 @@ def all_lessons() -> list[Lesson]:
 
 
 def _suggest(name: str, names: Sequence[str]) -> str:
-    near = difflib.get_close_matches(name.lower(), names, n=1)
-    return f'Did you mean {near[0]!r}?' if near else ''
+    near = nearest(name, names)
+    return f'Did you mean {near!r}?' if near else ''

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from labkit.exercises.callbacks import Callbacks, find_node
 from labkit.exercises.scope import Scope
 from labkit.exercises.verdict import Fail
-from labkit.exercises.watch import Watch, build, message_class
+from labkit.exercises.watch import Watch, build
 from labkit.rosgraph.names import EVERY_NODE_HAS, is_hidden
 
 if TYPE_CHECKING:
@@ -237,6 +237,8 @@ class Probe:
             A function of the fields (see `watch.build`) that publishes one message and returns
             when that was, in seconds of the clock that message stamps use.
         """
+        from labkit.rosgraph.interfaces import message_class
+
         publisher = self.node.create_publisher(message_class(msg_type), topic, 10)
         self._publishers.append(publisher)
         count = len(self.node.get_subscriptions_info_by_topic(topic))

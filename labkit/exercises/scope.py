@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from labkit.errors import nearest
+
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
 
-__all__ = ['PUBLISHER', 'SUBSCRIPTION', 'Role', 'Scope', 'near', 'plain']
+__all__ = ['PUBLISHER', 'SUBSCRIPTION', 'Role', 'Scope']
 
 PUBLISHER, SUBSCRIPTION = 'publisher', 'subscription'
 # What a node does on a topic: one of the two words above, and the topic.
@@ -92,7 +93,7 @@ class Scope:
         ends += [(SUBSCRIPTION, end) for end in subscriptions]
         if not self.roles:
             return frozenset(
-                name for wanted in self.nodes for name in nodes if near(wanted, [name])
+                name for wanted in self.nodes for name in nodes if nearest(wanted, [name])
             )
         exact = frozenset(end.node for kind, end in ends if (kind, end.topic) in self.own)
         return exact or frozenset(end.node for kind, end in ends if self._may_mean(kind, end))
@@ -102,19 +103,4 @@ class Scope:
         if end.topic in self.known:
             return False
         wanted = {topic: name for (other, topic), name in self.own.items() if other == kind}
-        return end.msg_type in wanted.values() or any(near(t, [end.topic]) for t in wanted)
-
-
-def near(name: str, names: Sequence[str]) -> str:
-    """Return the name that was probably meant to be `name`, '' if none looks like it."""
-    last = plain(name.rsplit('/', 1)[-1])
-    for other in names:
-        if plain(other.rsplit('/', 1)[-1]) == last:
-            return other
-    close = difflib.get_close_matches(name, names, n=1, cutoff=0.7)
-    return close[0] if close else ''
-
-
-def plain(name: str) -> str:
-    """Return a name without what is easily mixed up: capitals and underscores."""
-    return name.lower().replace('_', '')
+        return end.msg_type in wanted.values() or any(nearest(t, [end.topic]) for t in wanted)

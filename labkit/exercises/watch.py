@@ -6,7 +6,6 @@ callback of the learner's keeps the background thread busy.
 
 from __future__ import annotations
 
-import importlib
 import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -14,9 +13,7 @@ from functools import reduce
 from itertools import pairwise
 from typing import Any
 
-from labkit.errors import LabError
-
-__all__ = ['Sample', 'Watch', 'build', 'message_class']
+__all__ = ['Sample', 'Watch', 'build']
 
 DEPTH = 1000
 
@@ -51,6 +48,8 @@ class Watch:
         self, node: Any, topic: str, msg_type: str, *, reliable: bool = True, latched: bool = False
     ) -> None:
         from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+        from labkit.rosgraph.interfaces import message_class
 
         self.topic = topic
         self.msg_type = msg_type
@@ -137,25 +136,6 @@ class Watch:
         return self.samples[index].message
 
 
-def message_class(msg_type: str) -> Any:
-    """Return the class of a message type.
-
-    Args:
-        msg_type: Its ROS name, such as `'std_msgs/msg/Int16'`.
-
-    Raises:
-        LabError: There is no such type.
-    """
-    package, _, rest = msg_type.partition('/')
-    try:
-        return getattr(importlib.import_module(f'{package}.msg'), rest.rpartition('/')[2])
-    except (ImportError, AttributeError, ValueError) as error:
-        raise LabError(
-            f'There is no message type {msg_type!r} here.',
-            todo="Its name has three parts, such as 'std_msgs/msg/String'.",
-        ) from error
-
-
 def build(msg_type: str, fields: Mapping[str, Any]) -> Any:
     """Return a message with some of its fields set.
 
@@ -163,6 +143,8 @@ def build(msg_type: str, fields: Mapping[str, Any]) -> Any:
         msg_type: Name of the type.
         fields: Values by the name of the field; dots lead to inner ones: `{'linear.x': 0.1}`.
     """
+    from labkit.rosgraph.interfaces import message_class
+
     message = message_class(msg_type)()
     for path, value in fields.items():
         *outer, last = path.split('.')

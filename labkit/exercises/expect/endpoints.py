@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NoReturn
 
+from labkit.errors import nearest
 from labkit.exercises.probe import Probe
-from labkit.exercises.scope import PUBLISHER, SUBSCRIPTION, near, plain
+from labkit.exercises.scope import PUBLISHER, SUBSCRIPTION
 from labkit.exercises.verdict import Fail, NotAttempted
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ def node(probe: Probe, name: str) -> str:
         if not probe.attempt():
             raise NotAttempted
         names = probe.node_names()
-        other = near(name, names)
+        other = nearest(name, names)
         raise Fail(
             f'a node called {name}',
             f'{_list(names) or "no node"}',
@@ -192,7 +193,7 @@ def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str
     expected = f'{by or "a node"} with a {_KINDS[kind][0]} {topic} ({msg_type})'
     others = probe.all_publishers() if kind == PUBLISHER else probe.all_subscriptions()
     unknown = [other for other in others if other.topic not in probe.scope.known]
-    meant = near(topic, [other.topic for other in unknown])
+    meant = nearest(topic, [other.topic for other in unknown])
     if meant:
         other = next(other for other in unknown if other.topic == meant)
         raise Fail(
@@ -246,7 +247,7 @@ def _name_trouble(wanted: str, seen: str) -> str:
             'The last part is right, but it lies in another namespace: names must be equal from '
             'the first slash to the last letter. A "~" puts the name of the node before it. '
         ).strip()
-    if plain(wanted) == plain(seen):
+    if wanted.lower().replace('_', '') == seen.lower().replace('_', ''):
         return 'The names differ in an underscore; names must be equal to the last character.'
     return f'{seen} is not {wanted}: names must be equal to the last letter. A slip of the pen?'
 
