@@ -21,7 +21,7 @@ from labkit.rosgraph.names import (
     is_hidden,
     split_node_name,
 )
-from labkit.rosgraph.whose import foreign_nodes
+from labkit.rosgraph.whose import foreign_nodes, own_nodes
 
 __all__ = [
     'Graph',
@@ -152,11 +152,10 @@ def read_graph(
     Returns:
         The graph, sorted by name.
     """
-    others = foreign_nodes(node)
+    # A node of another process comes into the graph a moment before what it has.
+    own = own_nodes(node) - foreign_nodes(node)
     names = [name for name in node_names(node) if include_hidden or not is_hidden(name)]
-    nodes = tuple(
-        GraphNode(name, name not in others, names.count(name)) for name in sorted(set(names))
-    )
+    nodes = tuple(GraphNode(name, name in own, names.count(name)) for name in sorted(set(names)))
     topics = []
     for topic, types in sorted(node.get_topic_names_and_types()):
         if include_hidden or not (is_hidden(topic) or topic in EVERY_NODE_HAS):

@@ -16,7 +16,7 @@ from rclpy.node import Node
 from labkit import settings
 from labkit.rosgraph.names import full_node_name
 
-__all__ = ['foreign_nodes', 'is_own', 'participant_of', 'place', 'process_id']
+__all__ = ['foreign_nodes', 'is_own', 'own_nodes', 'participant_of', 'place', 'process_id']
 
 _HOST = slice(2, 4)
 _PROCESS_ID = slice(4, 6)
@@ -53,11 +53,24 @@ def foreign_nodes(node: Node) -> set[str]:
     Args:
         node: A node of this process, to ask the graph with.
     """
+    return _nodes(node, own=False)
+
+
+def own_nodes(node: Node) -> set[str]:
+    """Return the full names of the nodes of this process. They are known from their first moment.
+
+    Args:
+        node: A node of this process, to ask the graph with.
+    """
+    return _nodes(node, own=True)
+
+
+def _nodes(node: Node, *, own: bool) -> set[str]:
     # Every node publishes on this topic.
     return {
         full_node_name(info.node_name, info.node_namespace)
         for info in node.get_publishers_info_by_topic('/parameter_events')
-        if not is_own(bytes(info.endpoint_gid), node)
+        if is_own(bytes(info.endpoint_gid), node) == own
     }
 
 
