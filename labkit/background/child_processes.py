@@ -25,8 +25,9 @@ from labkit.background.program import READY
 from labkit.background.runtime import runtime
 from labkit.background.service_calls import wait_until_spun
 from labkit.errors import LabTimeout
+from labkit.rosgraph.listings import ends_of_node
 from labkit.rosgraph.names import is_hidden
-from labkit.rosgraph.snapshot import ends_of, is_whole, node_names
+from labkit.rosgraph.snapshot import is_whole, node_names
 from labkit.rosgraph.whose import process_id
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ class Process:
 
     Attributes:
         nodes: Full names of the nodes that appeared when it was started.
-        announced: What its nodes have, as `ends_of` tells it, once it has said so.
+        announced: What its nodes have, as `NodeEnds.names` tells it, once it has said so.
     """
 
     def __init__(
@@ -200,9 +201,12 @@ class Process:
             names = (Counter(node_names(node)) - earlier).keys()
             return sorted(name for name in names if not is_hidden(name))
 
+        def known(name: str) -> dict[str, list[str]]:
+            return ends_of_node(node, name, include_hidden=True).names()
+
         def is_complete() -> bool:
             return is_whole(node) and all(
-                set(names) <= set(ends_of(node, name)[kind])
+                set(names) <= set(known(name)[kind])
                 for name, ends in (self.announced or {}).items()
                 for kind, names in ends.items()
             )

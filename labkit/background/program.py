@@ -10,7 +10,7 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.utilities import ok, try_shutdown
 
-from labkit.rosgraph.snapshot import ends_of
+from labkit.rosgraph.listings import ends_of_node
 
 __all__ = ['READY', 'spin_until_interrupted']
 
@@ -51,6 +51,6 @@ def _announce(nodes: tuple[Node, ...]) -> None:
     ends = {}
     for node in nodes:
         name = node.get_fully_qualified_name()
-        ends[name] = ends_of(node, name)
+        ends[name] = ends_of_node(node, name, include_hidden=True).names()
     with contextlib.suppress(OSError), open(int(pipe), 'w', encoding='utf-8') as file:
         json.dump(ends, file)

@@ -8,7 +8,7 @@ from rclpy.action.graph import (
     get_action_client_names_and_types_by_node,
     get_action_server_names_and_types_by_node,
 )
-from rclpy.node import Node
+from rclpy.node import Node, NodeNameNonExistentError
 
 from labkit.rosgraph.names import EVERY_NODE_HAS, is_hidden, split_node_name
 
@@ -37,6 +37,10 @@ class NodeEnds:
     service_clients: NamesAndTypes
     action_servers: NamesAndTypes
     action_clients: NamesAndTypes
+
+    def names(self) -> dict[str, list[str]]:
+        """Return the names alone, by what they are names of."""
+        return {kind: [name for name, _types in found] for kind, found in vars(self).items()}
 
 
 def topics(node: Node, *, include_hidden: bool = False) -> NamesAndTypes:
@@ -73,27 +77,26 @@ def ends_of_node(node: Node, full_name: str, *, include_hidden: bool = False) ->
     """Return what a node publishes, subscribes to, offers and calls.
 
     Args:
-        node: The node to ask with.
+        node: The node to ask with. Of its own process it knows all, of others what has come.
         full_name: Full name of the node that is asked about.
         include_hidden: Whether to include hidden topics, services and actions.
 
-    Raises:
-        NodeNameNonExistentError: There is no such node (any more).
+    Returns:
+        All of it; nothing if there is no such node, or no more.
     """
     whose = split_node_name(full_name)
-    return NodeEnds(
-        *(
-            _sorted(found, include_hidden)
-            for found in (
-                node.get_subscriber_names_and_types_by_node(*whose),
-                node.get_publisher_names_and_types_by_node(*whose),
-                node.get_service_names_and_types_by_node(*whose),
-                node.get_client_names_and_types_by_node(*whose),
-                get_action_server_names_and_types_by_node(node, *whose),
-                get_action_client_names_and_types_by_node(node, *whose),
-            )
+    try:
+        found = (
+            node.get_subscriber_names_and_types_by_node(*whose),
+            node.get_publisher_names_and_types_by_node(*whose),
+            node.get_service_names_and_types_by_node(*whose),
+            node.get_client_names_and_types_by_node(*whose),
+            get_action_server_names_and_types_by_node(node, *whose),
+            get_action_client_names_and_types_by_node(node, *whose),
         )
-    )
+    except NodeNameNonExistentError:
+        return NodeEnds([], [], [], [], [], [])
+    return NodeEnds(*(_sorted(ends, include_hidden) for ends in found))
 
 
 def _sorted(found: NamesAndTypes, include_hidden: bool) -> NamesAndTypes:

@@ -7,19 +7,19 @@ Nothing here prints.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from rclpy.node import Node, NodeNameNonExistentError
+from rclpy.node import Node
 
 from labkit.rosgraph.endpoints import Endpoint, publishers, subscriptions
+from labkit.rosgraph.listings import ends_of_node
 from labkit.rosgraph.matching import why_apart
 from labkit.rosgraph.names import (
     EVERY_NODE_HAS,
     UNKNOWN_NODE,
     full_node_name,
     is_hidden,
-    split_node_name,
 )
 from labkit.rosgraph.whose import foreign_nodes, own_nodes
 
@@ -29,7 +29,6 @@ __all__ = [
     'GraphService',
     'GraphTopic',
     'Mismatch',
-    'ends_of',
     'is_whole',
     'node_names',
     'read_graph',
@@ -179,30 +178,10 @@ def node_names(node: Node) -> list[str]:
     infos = node.get_publishers_info_by_topic('/parameter_events')
     living = Counter(full_node_name(info.node_name, info.node_namespace) for info in infos)
     for name in named.keys() - living.keys():
-        living[name] = named[name] * any(ends_of(node, name).values())
+        living[name] = named[name] * any(
+            ends_of_node(node, name, include_hidden=True).names().values()
+        )
     return sorted((named & living).elements())
-
-
-def ends_of(node: Node, full_name: str) -> dict[str, list[str]]:
-    """Return the names of what a node has at its ends; all of it is empty if there is none.
-
-    Args:
-        node: The node to ask with. Of its own process it knows all, of others what has come.
-        full_name: Full name of the node that is asked about.
-
-    Returns:
-        Sorted names of `'publishers'`, `'subscriptions'`, `'services'` and `'clients'`.
-    """
-    asked = {
-        'publishers': node.get_publisher_names_and_types_by_node,
-        'subscriptions': node.get_subscriber_names_and_types_by_node,
-        'services': node.get_service_names_and_types_by_node,
-        'clients': node.get_client_names_and_types_by_node,
-    }
-    whose = split_node_name(full_name)
-    return {
-        kind: sorted(name for name, _types in _asked(ask, *whose)) for kind, ask in asked.items()
-    }
 
 
 def is_whole(node: Node) -> bool:
@@ -222,12 +201,10 @@ def _services(node: Node, names: list[str], include_hidden: bool) -> tuple[Graph
     servers: dict[str, set[str]] = {}
     clients: dict[str, set[str]] = {}
     for full_name in set(names):
-        for ask, ends in (
-            (node.get_service_names_and_types_by_node, servers),
-            (node.get_client_names_and_types_by_node, clients),
-        ):
-            for service, _types in _asked(ask, *split_node_name(full_name)):
-                ends.setdefault(service, set()).add(full_name)
+        found = ends_of_node(node, full_name, include_hidden=True)
+        for ends, who in ((found.service_servers, servers), (found.service_clients, clients)):
+            for service, _types in ends:
+                who.setdefault(service, set()).add(full_name)
     return tuple(
         GraphService(
             service,
@@ -238,15 +215,6 @@ def _services(node: Node, names: list[str], include_hidden: bool) -> tuple[Graph
         for service, types in sorted(node.get_service_names_and_types())
         if include_hidden or not (is_hidden(service) or types[0].startswith(_EVERY_NODE_OFFERS))
     )
-
-
-def _asked(
-    ask: Callable[[str, str], list[tuple[str, list[str]]]], name: str, namespace: str
-) -> list[tuple[str, list[str]]]:
-    try:
-        return ask(name, namespace)
-    except NodeNameNonExistentError:
-        return []  # it has gone meanwhile
 
 
 def _told(node: GraphNode) -> str:

@@ -27,7 +27,8 @@ import labkit as lab
 from labkit.background import child_processes, service_calls
 from labkit.background.child_processes import environment, start_process
 from labkit.background.runtime import runtime
-from labkit.rosgraph.snapshot import ends_of, node_names
+from labkit.rosgraph.listings import ends_of_node
+from labkit.rosgraph.snapshot import node_names
 
 PROGRAM = '''
 import time
@@ -50,7 +51,7 @@ def start(spin, announces):
         'slow', [sys.executable, '-c', program], environment(), announces=announces
     )
     process.wait_for_nodes(runtime.helper, before, 60)
-    print(process.nodes, ends_of(runtime.helper, '/slow')['subscriptions'])
+    print(process.nodes, ends_of_node(runtime.helper, '/slow').names()['subscribers'])
     return process
 
 lab.start()
