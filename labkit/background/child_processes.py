@@ -55,8 +55,10 @@ GONE_SEC = 30.0
 POLL_SEC = 0.05
 # How long the services of a node that has come are waited for. A node may be made without them.
 SERVICES_SEC = 5.0
-# How old a process that this notebook started may be and still count as starting.
+# How old a process that this notebook started may be and still count as starting; and how much of
+# a processor it may have used: Python and rclpy need 1 s of it until a node is made.
 _YOUNG_SEC = 5.0
+_STARTING_CPU_SEC = 4.0
 
 
 class Process:
@@ -334,10 +336,20 @@ def starting_children(gids: Collection[bytes]) -> tuple[bool, bool]:
 
     appeared = {process_id(gid) for gid in gids}
     oldest = time.time() - _YOUNG_SEC
+
+    def is_starting(child: psutil.Process) -> bool:
+        if child.create_time() > oldest:
+            return bool(child.status() != psutil.STATUS_ZOMBIE)
+        # On a busy machine it may take long to get as far as this. What has not used much of a
+        # processor yet, and wants one, is still starting; a supervisor or shell only waits.
+        at_work = child.status() in (psutil.STATUS_RUNNING, psutil.STATUS_DISK_SLEEP)
+        used = child.cpu_times()
+        return at_work and used.user + used.system < _STARTING_CPU_SEC
+
     found = set()
     for child in psutil.Process().children(recursive=True):
         try:
-            if child.create_time() > oldest and child.status() != psutil.STATUS_ZOMBIE:
+            if is_starting(child):
                 found.add(child.pid & 0xFFFF in appeared)
         except psutil.NoSuchProcess:
             continue

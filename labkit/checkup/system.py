@@ -113,13 +113,16 @@ def _stale_files() -> tuple[int, int]:
     A process keeps the file of a segment or port locked, by a second file whose name ends in
     `_el`. Locks are read off the system's list: trying one would disturb its owner.
     """
+    device = os.stat(SHARED_MEMORY).st_dev
+    # As the list names a file: device in hexadecimal numbers, inode. See proc_locks(5).
+    start = f'{os.major(device):02x}:{os.minor(device):02x}:'
     with open('/proc/locks', encoding='ascii') as file:
-        locked = {line.split()[-3].rpartition(':')[2] for line in file}
+        locked = {line.split()[-3] for line in file}
     count = size = 0
     for lock in SHARED_MEMORY.glob('fastrtps_*_el'):
         name = lock.name[: -len('_el')]
         with contextlib.suppress(OSError):  # another process may remove it just now
-            if str(lock.stat().st_ino) in locked:
+            if f'{start}{lock.stat().st_ino}' in locked:
                 continue
             for path in (lock, SHARED_MEMORY / name, SHARED_MEMORY / f'sem.{name}_mutex'):
                 with contextlib.suppress(FileNotFoundError):

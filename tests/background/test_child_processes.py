@@ -97,3 +97,26 @@ def test_a_program_without_parameter_services_is_not_asked(
     )
     # What else it has, only time can tell.
     assert result.stdout.startswith("['/slow'] "), result.stderr
+
+
+def test_a_process_that_wants_a_processor_is_still_starting(script: Any) -> None:
+    result = script(
+        """
+import subprocess, sys, time
+import psutil
+from labkit.background import child_processes
+
+child_processes._YOUNG_SEC = 0.0  # as if it had been started long ago
+idle = subprocess.Popen([sys.executable, '-S', '-c', 'input()'], stdin=subprocess.PIPE)
+while psutil.Process(idle.pid).status() != psutil.STATUS_SLEEPING:
+    time.sleep(0.01)
+print(child_processes.starting_children([]))
+busy = subprocess.Popen([sys.executable, '-S', '-c', 'while True: pass'])
+while psutil.Process(busy.pid).status() != psutil.STATUS_RUNNING:
+    time.sleep(0.01)
+print(child_processes.starting_children([]))
+busy.kill()
+idle.kill()
+"""
+    )
+    assert result.stdout == '(False, False)\n(True, False)\n', result.stderr

@@ -292,12 +292,14 @@ def test_spin_starts_ros_by_itself(kernel):
 
 def test_wrong_arguments_are_answered_in_words(kernel):
     kernel.run(SETUP + TALKER)
+    here = kernel.run('import os\nprint(os.environ["ROS_DOMAIN_ID"])').text
+    elsewhere = 7 if here != '7\n' else 8
     for code, expected in (
         ('lab.spin(Talker)', 'Make a node of it: lab.spin(Talker())'),
         ('lab.spin(3)', 'lab.spin() expects a node, but got 3.'),
         ('lab.remove("talcer")', "Did you mean '/talker'?"),
         ('lab.start(domain_id=500)', 'domain_id must be a whole number from 0 to 101'),
-        ('lab.start(domain_id=7)', 'it can move to domain 7 only without nodes'),
+        (f'lab.start(domain_id={elsewhere})', f'move to domain {elsewhere} only without nodes'),
         ('lab.remove(talker)\nlab.spin(talker)', 'This Talker exists no more'),
     ):
         result = kernel.run(code)
