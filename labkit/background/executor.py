@@ -69,6 +69,7 @@ class BackgroundExecutor(SingleThreadedExecutor):
         self._owners: WeakKeyDictionary[Task, NodeEntry] = WeakKeyDictionary()
         self._conditions: list[Callable[[], None]] = []
         self._closing = False
+        self._settling: threading.Event | None = None
         self._gathering = False
         # The thread that is looking at a condition of `wait` just now.
         self._looking: int | None = None
@@ -225,6 +226,26 @@ class BackgroundExecutor(SingleThreadedExecutor):
             if done.wait(max(0.0, min(POLL_SEC, left))) or left <= 0 or self._closing:
                 return
 
+    def settle(self, timeout_sec: float) -> bool:
+        """Wait until nothing is left to run, nor has become ready through what was run.
+
+        Within one process a message is in the queue of its subscriptions when `publish` returns.
+        So whatever a message has set off, one callback after the other, has happened then, except
+        for what other threads do.
+
+        Args:
+            timeout_sec: Seconds to wait: a callback may not return, or a timer without a period
+                be ready for ever.
+
+        Returns:
+            Whether it became quiet in time.
+        """
+        done = self._settling = threading.Event()
+        self.wake()
+        quiet = done.wait(timeout_sec)
+        self._settling = None
+        return quiet
+
     def in_callback(self) -> bool:
         """Tell whether the caller is the background thread itself, that is, a callback."""
         return threading.current_thread() is self._thread
@@ -268,16 +289,23 @@ class BackgroundExecutor(SingleThreadedExecutor):
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Wait for one callback and run it. Called by the background thread only."""
         if not self._ready:
+            settling = self._settling
+            stop = self._closed if settling is not None else self._asked
             self._gathering = True
             try:
-                # When woken without work it goes on waiting, unless it is to end.
-                self._ready.extend(compat.ready_callbacks(self, timeout_sec, self._closed))
+                # When woken without work it goes on waiting, unless it is asked for something.
+                self._ready.extend(
+                    compat.ready_callbacks(self, timeout_sec if settling is None else 0, stop)
+                )
             except (TimeoutException, ShutdownException, ConditionReachedException):
                 pass
             finally:
                 self._gathering = False
             self._ready.sort(key=_is_timer)
             if not self._ready:
+                if settling is not None:
+                    settling.set()
+                    self._settling = None
                 return
         task, entity, node = self._ready.pop(0)
         entry = self._owners.get(task) if node is None else self._entries.get(node)
@@ -288,6 +316,9 @@ class BackgroundExecutor(SingleThreadedExecutor):
 
     def _closed(self) -> bool:
         return self._closing
+
+    def _asked(self) -> bool:
+        return self._closing or self._settling is not None
 
     def _run(self, task: Any, entity: Any, entry: NodeEntry) -> None:
         self._console.speak_for(entry.cell)
