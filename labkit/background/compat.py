@@ -7,6 +7,7 @@ ipykernel, those tests say in a minute whether it still fits.
 from __future__ import annotations
 
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -14,8 +15,10 @@ from rclpy._rclpy_pybind11 import RCLError
 from rclpy.impl.implementation_singleton import rclpy_implementation
 
 if TYPE_CHECKING:
+    from rclpy.clock import ROSClock
     from rclpy.executors import Executor
     from rclpy.task import Task
+    from rclpy.timer import Timer
 
 __all__ = [
     'RCLError',
@@ -26,8 +29,10 @@ __all__ = [
     'is_kernel_stream',
     'is_queued',
     'is_shut_down',
+    'rate_is_awaited',
     'ready_callbacks',
     'running_request',
+    'set_ros_time_is_active',
     'set_thread_request',
     'take_logs',
 ]
@@ -72,6 +77,26 @@ def handler_of(task: Task) -> Any:
 def is_shut_down(executor: Executor) -> bool:
     """Tell whether `shutdown()` of an executor has been called."""
     return bool(executor._is_shutdown)
+
+
+def set_ros_time_is_active(clock: ROSClock, active: bool) -> None:
+    """Let a clock show the time that it is given, or the computer's again.
+
+    The parameter `use_sim_time` does it too. But setting it is seen by the callbacks of the node
+    and by everybody in the graph, and adds a subscription to `/clock`.
+    """
+    clock._set_ros_time_is_active(active)
+
+
+def rate_is_awaited(timer: Timer) -> bool | None:
+    """Tell whether a thread sleeps in the `Rate` of a timer, None if the timer is of no rate.
+
+    It is false from the tick on until the thread has done its work and sleeps again.
+    """
+    event = getattr(timer.callback, '__self__', None)
+    if not isinstance(event, threading.Event):
+        return None
+    return not event.is_set() and bool(event._cond._waiters)  # type: ignore[attr-defined]
 
 
 def take_logs(show: Callable[[int, str, str], None]) -> Callable[[], None]:

@@ -6,6 +6,7 @@ callback of the learner's keeps the background thread busy.
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -26,11 +27,14 @@ class Sample:
         message: The message itself.
         stamp: When it was published, by the publisher's clock, in seconds.
         number: The how manieth message of its publisher it is, from 1; 0 if that is not known.
+        at: When it was published in virtual time, in seconds from its beginning; not a number
+            where time was real.
     """
 
     message: Any
     stamp: float
     number: int
+    at: float = math.nan
 
 
 class Watch:

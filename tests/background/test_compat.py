@@ -133,6 +133,58 @@ running.clear()
         pytest.fail('it was not called')
 
 
+def test_a_clock_is_set_without_a_word_to_the_graph(script):
+    result = script(
+        READY
+        + """
+from rclpy.time import Time
+clock = node.get_clock()
+before = len(list(node.subscriptions))
+clock.set_ros_time_override(Time(seconds=5, clock_type=clock.clock_type))
+compat.set_ros_time_is_active(clock, True)
+print(clock.now().nanoseconds, clock.ros_time_is_active)
+compat.set_ros_time_is_active(clock, False)
+print(clock.now().nanoseconds > 10**18, clock.ros_time_is_active)
+print(node.get_parameter('use_sim_time').value, len(list(node.subscriptions)) == before)
+"""
+    )
+    assert result.stdout == '5000000000 True\nTrue False\nFalse True\n', result.stderr
+
+
+def test_a_rate_is_awaited_while_a_thread_sleeps_in_it(script):
+    result = script(
+        READY
+        + """
+import os, threading, time
+rate = node.create_rate(100)
+(timer,) = node.timers
+other = node.create_timer(1.0, lambda: None)
+print(compat.rate_is_awaited(other), compat.rate_is_awaited(timer))
+go, done = threading.Event(), threading.Event()
+
+def work():
+    rate.sleep()
+    done.set()
+    go.wait()
+    while True:
+        rate.sleep()
+
+threading.Thread(target=work, daemon=True).start()
+while not compat.rate_is_awaited(timer):
+    time.sleep(0.001)
+while not done.is_set():
+    executor.spin_once(timeout_sec=0.1)
+print(compat.rate_is_awaited(timer))
+go.set()
+while not compat.rate_is_awaited(timer):
+    time.sleep(0.001)
+print('asleep', flush=True)
+os._exit(0)
+"""
+    )
+    assert result.stdout == 'None False\nFalse\nasleep\n', result.stderr
+
+
 def test_every_private_name_is_here():
     from labkit.background import compat
 

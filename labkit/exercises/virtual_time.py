@@ -1,0 +1,232 @@
+"""Time that a check lets pass by itself: a minute of a node's life in a second, and exactly.
+
+Timers, rates and clocks of a node follow the ROS clock of that node, and that clock can be set. In
+this process the check sets it, from the moment at which a timer is due to the next such moment,
+and waits each time until everything that came of it is done. So nothing depends on how busy the
+machine is, and nothing is rounded. What does not follow ROS time, such as a thread that calls
+`time.sleep()`, goes on in real time meanwhile.
+
+The clock is switched directly and not by the parameter `use_sim_time`: nobody in the graph, and no
+callback of the node's, takes notice of it.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rclpy.executors import Executor
+    from rclpy.node import Node
+    from rclpy.timer import Timer
+
+    from labkit.exercises.remote_time import RemoteTime
+
+__all__ = ['VirtualTime']
+
+NANOSECONDS = 1_000_000_000
+# How long a callback may run before it is looked at what it does, s of real time.
+CALM_SEC = 0.5
+# So many callbacks in one moment are a flood: a timer without a period, nodes that answer each
+# other for ever.
+FLOOD = 2000
+# How long a thread that sleeps in a rate may take for its work, s of real time.
+RATE_SEC = 0.5
+POLL_SEC = 0.0002
+
+
+class VirtualTime:
+    """The ROS time of some nodes of this process, for a `with` block. It stands still at first.
+
+    Args:
+        moving: Nodes for which time passes when `advance` is called.
+        standing: Nodes for which it does not.
+        remote: Nodes of other processes, for which it passes too.
+        tick: How often it is looked at them at least, s: their timers are not known here.
+
+    Attributes:
+        flooded: Whether more callbacks came in one moment than could be run.
+        hanging: Whether a callback has not returned.
+        tick: As above; it may be changed on the way.
+    """
+
+    def __init__(
+        self,
+        moving: Sequence[Node],
+        standing: Sequence[Node] = (),
+        *,
+        remote: RemoteTime | None = None,
+        tick: float = 0.05,
+    ) -> None:
+        from labkit.background.runtime import runtime
+
+        self._runtime = runtime
+        self._moving = list(moving)
+        self._all = [*moving, *(node for node in standing if node not in moving)]
+        self._remote = remote
+        self.tick = tick
+        self._start = self._now = 0
+        self._given_up: set[Timer] = set()
+        self._was_active: list[Node] = []
+        self.flooded = False
+        self.hanging = False
+
+    @property
+    def seconds(self) -> float:
+        """How much time has passed, s."""
+        return (self._now - self._start) / NANOSECONDS
+
+    def __enter__(self) -> VirtualTime:
+        from labkit.background import compat
+
+        # Timers are due at this time by the computer's clock, so none is late or early.
+        self._start = self._now = time.time_ns()
+        for node in self._all:
+            clock: Any = node.get_clock()
+            if clock.ros_time_is_active:
+                self._was_active.append(node)
+            self._set(node)
+            compat.set_ros_time_is_active(clock, True)
+        if self._remote is not None:
+            self._remote.set(self._now)
+        self.settle()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        from labkit.background import compat
+        from labkit.background.nodes import node_exists
+
+        for node in self._all:
+            if node not in self._was_active and node_exists(node):
+                compat.set_ros_time_is_active(node.get_clock(), False)  # type: ignore[arg-type]
+
+    def restart_timers(self) -> None:
+        """Let all timers begin anew, so that they don't depend on when the nodes were made."""
+        for node in self._moving:
+            for timer in node.timers:
+                if not timer.is_canceled():  # type: ignore[no-untyped-call]
+                    timer.reset()  # type: ignore[no-untyped-call]
+
+    def advance(self, seconds: float, look: Callable[[], bool]) -> bool:
+        """Let time pass, from one event to the next.
+
+        Args:
+            seconds: How much, s.
+            look: Called after each event; it says whether to go on.
+
+        Returns:
+            Whether all of the time has passed.
+        """
+        end = self._now + round(seconds * NANOSECONDS)
+        while not (self.flooded or self.hanging):
+            ticked = self._next(end)
+            self._now = min([end, self._next_tick(), *ticked.values()])
+            for node in self._moving:
+                self._set(node)
+            self._settle_all([timer for timer, due in ticked.items() if due <= self._now])
+            if self._remote is not None:
+                self._remote.set(self._now)
+                self._settle()
+            if not look():
+                return False
+            if self._now >= end:
+                return True
+        return False
+
+    def settle(self) -> None:
+        """Wait until everything that has become ready is done."""
+        self._settle_all(self._timers())
+        if self._remote is not None:
+            self._remote.settle()
+            self._settle()
+
+    def _next_tick(self) -> int:
+        if self._remote is None or not self._remote.names:
+            return self._now + NANOSECONDS * 3600
+        return self._now + round(self.tick * NANOSECONDS)
+
+    def _next(self, end: int) -> dict[Timer, int]:
+        """Return the timers that are due before `end`, and when."""
+        found = {}
+        for timer in self._timers():
+            left = timer.time_until_next_call()  # type: ignore[no-untyped-call]
+            # One that is late already is not served at all: its node is not spun, or it hangs.
+            if left is not None and 0 < left <= end - self._now:
+                found[timer] = self._now + left
+        return found
+
+    def _timers(self) -> Iterable[Timer]:
+        from labkit.background.nodes import node_exists
+
+        for node in self._moving:
+            if node_exists(node):
+                clock = node.get_clock()
+                yield from (timer for timer in node.timers if timer.clock is clock)
+
+    def _set(self, node: Node) -> None:
+        from rclpy.time import Time
+
+        from labkit.background.nodes import node_exists
+
+        if node_exists(node):
+            clock: Any = node.get_clock()
+            clock.set_ros_time_override(Time(nanoseconds=self._now, clock_type=clock.clock_type))
+
+    def _settle_all(self, ticked: Iterable[Timer]) -> None:
+        self._settle()
+        if self._wait_for_rates(ticked):
+            self._settle()
+
+    def _settle(self) -> None:
+        for executor in {node.executor for node in self._all}:
+            if executor is self._runtime.executor:
+                self._settle_background()
+            elif executor is not None:
+                _settle_other(executor)
+
+    def _settle_background(self) -> None:
+        executor, before = self._runtime.executor, self._callbacks()
+        seen = before
+        while not executor.settle(CALM_SEC):
+            count = self._callbacks()
+            self.flooded = count - before > FLOOD
+            self.hanging = count == seen
+            if self.flooded or self.hanging or not executor.is_open:
+                return
+            seen = count
+
+    def _callbacks(self) -> int:
+        return sum(entry.callbacks for entry in self._runtime.nodes())
+
+    def _wait_for_rates(self, ticked: Iterable[Timer]) -> bool:
+        """Wait until threads that were woken by a rate sleep again; tell whether there were any.
+
+        One that does not come back has ended, or works for long: it is not waited for again.
+        """
+        from labkit.background.compat import rate_is_awaited
+
+        woken = False
+        for timer in ticked:
+            awaited = rate_is_awaited(timer)
+            if awaited is None:
+                continue
+            woken = True
+            if awaited:
+                self._given_up.discard(timer)
+            end = time.monotonic() + RATE_SEC
+            while not awaited and timer not in self._given_up:
+                if time.monotonic() > end:
+                    self._given_up.add(timer)
+                time.sleep(POLL_SEC)
+                awaited = rate_is_awaited(timer)
+        return woken
+
+
+def _settle_other(executor: Executor) -> None:
+    """Wait until an executor of the learner's own has gone round twice."""
+    for _ in range(2):
+        task: Any = executor.create_task(lambda: None)
+        end = time.monotonic() + CALM_SEC
+        while not task.done() and time.monotonic() < end:
+            time.sleep(POLL_SEC)
