@@ -85,6 +85,8 @@ def explain_error(error: BaseException) -> tuple[str, str]:
     if isinstance(error, LabError):
         return '', error.todo
     text = str(error)
+    if isinstance(error, SyntaxError):
+        text = f'{text}\n{error.text or ""}'
     for types, pattern, why, todo in _KNOWN:
         match = re.search(pattern, text) if type(error).__name__ in types else None
         if match:
@@ -96,6 +98,12 @@ def explain_error(error: BaseException) -> tuple[str, str]:
 # Names of the exception, what its text looks like, the misconception, the next step. The first
 # that fits is taken. The texts are those of Python 3.10 to 3.13, rclpy 7.1 and its messages.
 _KNOWN = (
+    (
+        ('SyntaxError', 'IndentationError'),
+        r'(?m)^\s*[$>]?\s*ros2\b',
+        'A cell holds Python. A line of a cell that is for the command line begins with %.',
+        'Write %ros2 at the beginning of each line with a command.',
+    ),
     (
         ('TypeError',),
         r'Node\.__init__\(\) missing 1 required positional argument: .node_name.',
