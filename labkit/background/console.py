@@ -89,13 +89,16 @@ class Console:
 
     def __init__(self) -> None:
         self.errors: list[CallbackError] = []
-        # Called when a cell ends, as long as what is printed still belongs to it.
-        self.after_cell: Callable[[Cell], None] = lambda cell: None
+        # Called when a cell ends, as long as what is printed still belongs to it, with what the
+        # cell has raised.
+        self.after_cell: Callable[[Cell, BaseException | None], None] = lambda cell, error: None
         # Nodes started by one execution share its Cell, and with it the bound on its output.
         self._running: Cell | None = None
         self._cell: Cell | None = None
         self._thread = 0
         self._waiting = 0
+        # What is counted and not shown, see `holding`.
+        self._held: list[int] | None = None
         self._streams: dict[str, _CellStream] = {}
         self._give_logs_back: Callable[[], None] | None = None
 
@@ -187,8 +190,24 @@ class Console:
         finally:
             end()
 
+    @contextmanager
+    def holding(self) -> Iterator[list[int]]:
+        """Show nothing of what callbacks write meanwhile.
+
+        Yields:
+            A list of one number, how many lines that are.
+        """
+        self._held = lines = [0]
+        try:
+            yield lines
+        finally:
+            self._held = None
+
     def write(self, stream: TextIO, text: str) -> None:
         """Write `text`, which a callback produced, under the cell of its node."""
+        if self._held is not None:
+            self._held[0] += text.count('\n')
+            return
         cell = self._cell
         if cell is None or not cell.parent:
             stream.write(text)
@@ -207,6 +226,9 @@ class Console:
             cell: The execution that started the process.
             text: Whole lines. Each process has a thread of its own that calls this.
         """
+        if self._held is not None:
+            self._held[0] += text.count('\n')
+            return
         if settings.audience().same_each_time:
             return
         if cell.parent and threading.current_thread() is not threading.main_thread():
@@ -221,11 +243,12 @@ class Console:
     def show_error(self, node_name: str, callback: str, error: BaseException) -> None:
         """Show an exception of a callback: in full once a run of its cell, then as a count."""
         place = _place(error)
+        cell = self._cell if self.speaks_in(threading.get_ident()) else self.current_cell()
         for known in self.errors:
             same = known.node_name == node_name and type(known.error) is type(error)
             if not (same and _place(known.error) == place):
                 continue
-            if known.cell is not self._cell:
+            if known.cell is not cell:
                 # The cell was run again, and Jupyter has cleared what it showed before.
                 self.errors.remove(known)
                 break
@@ -235,13 +258,16 @@ class Console:
                 text = f'{name} in {callback} of {node_name}: {known.count} times by now.\n'
                 print(text, end='', file=sys.stderr)
             return
-        text = (
-            f'The callback {callback} of {node_name} failed. The node goes on; '
-            f'if this happens again it is counted, not shown.\n{short_traceback(error)}\n'
-        )
-        seen = CallbackError(node_name, callback, error, short_traceback(error), cell=self._cell)
+        if callback == 'destroy_node':
+            words = f'destroy_node() of {node_name} failed. The node was ended all the same.'
+        else:
+            words = (
+                f'The callback {callback} of {node_name} failed. The node goes on; '
+                'if this happens again it is counted, not shown.'
+            )
+        seen = CallbackError(node_name, callback, error, short_traceback(error), cell=cell)
         self.errors.append(seen)
-        print(text, end='', file=sys.stderr)
+        print(f'{words}\n{seen.text}', file=sys.stderr)
 
     def _write_bounded(self, cell: Cell, stream: TextIO, text: str) -> None:
         if cell.lines >= MAX_LINES:
@@ -262,9 +288,9 @@ class Console:
             self._running.held.clear()
         self._running = None
 
-    def _finish_cell(self, *_: object) -> None:
+    def _finish_cell(self, result: Any = None) -> None:
         if self._running is not None:
-            self.after_cell(self._running)
+            self.after_cell(self._running, getattr(result, 'error_in_exec', None))
 
 
 def _show_log(severity: int, name: str, message: str) -> None:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+import re
 import zlib
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from labkit.errors import LabError
+from labkit.errors import LabError, nearest
+from labkit.exercises import spelling
 
 __all__ = [
     'LETTERS',
@@ -107,17 +110,21 @@ class _Options(Question):
         return [option.text for option in self.options]
 
     def _chosen(self, given: Any) -> list[int]:
-        letters = given.replace(',', '').replace(' ', '') if isinstance(given, str) else given
-        known = LETTERS[: len(self.options)]
-        if not isinstance(letters, Iterable):
-            letters = [letters]
-        chosen = [str(letter).strip().lower() for letter in letters]
-        if not chosen or not all(letter in known and len(letter) == 1 for letter in chosen):
+        if isinstance(given, (list, tuple, set)) and given:
+            return sorted({number for one in given for number in self._chosen(one)})
+        text = spelling.tidy(str(given)).casefold()
+        labels = [spelling.tidy(label).casefold() for label in self.labels()]
+        if text in labels:
+            return [labels.index(text)]
+        known = LETTERS[: len(labels)]
+        # Also 'b)', 'a, c' and 'a and c'.
+        letters = re.sub(r'\band\b|[\s,;.+&()]', '', text)
+        if not letters or not set(letters) <= set(known):
             raise LabError(
                 f'The answer must be a letter, {known[0]} to {known[-1]}, but it is {given!r}.',
                 todo=f'For instance: {self.example()}',
             )
-        return sorted({known.index(letter) for letter in chosen})
+        return sorted({known.index(letter) for letter in letters})
 
     def _explain(self, numbers: Iterable[int]) -> list[tuple[str, str]]:
         return [(LETTERS[number], self.options[number].why) for number in numbers]
@@ -209,19 +216,33 @@ class Number(Question):
 
     def judge(self, given: Any) -> Feedback:
         """Say whether an answer is right, and why."""
-        try:
-            number = float(str(given).strip().replace(',', '.'))
-        except ValueError:
-            number = math.nan
-        if math.isnan(number):
-            raise LabError(f'The answer must be a number, but it is {given!r}.')
+        numbers = self._numbers(given)
         answer = _value(self.answer)
-        if abs(number - answer) <= self.tolerance + 1e-9 * abs(answer):
-            return Feedback(True, [('why', self.why)])
-        for value, why in self.wrong.items():
-            if math.isclose(number, value, rel_tol=1e-9, abs_tol=self.tolerance / 2):
+        for number in numbers:
+            if abs(number - answer) <= self.tolerance + 1e-9 * abs(answer):
+                return Feedback(True, [('why', self.why)])
+        for number, (value, why) in itertools.product(numbers, self.wrong.items()):
+            # Nobody types all decimals of a number that has many.
+            rounded = 1e-9 if float(value).is_integer() else 0.005
+            if math.isclose(number, value, rel_tol=rounded, abs_tol=self.tolerance / 2):
                 return Feedback(False, [('why', why)])
-        return Feedback(False, [('why', self.explain(number) or self.otherwise)])
+        return Feedback(False, [('why', self.explain(numbers[0]) or self.otherwise)])
+
+    def _numbers(self, given: Any) -> list[float]:
+        """Return what an answer may mean.
+
+        Raises:
+            LabError: It is no number, or has another unit.
+        """
+        try:
+            return spelling.numbers(str(given), self.unit)
+        except ValueError as error:
+            if str(error) == 'no number':
+                raise LabError(f'The answer must be a number, but it is {given!r}.') from None
+            raise LabError(
+                f'The answer must be a number in {self.unit}, but the unit of {given!r} is '
+                f'{str(error)!r}.',
+            ) from None
 
 
 @dataclass(frozen=True)
@@ -235,6 +256,9 @@ class Word(Question):
         otherwise: What to think of when it is another one.
         wrong: Typical wrong words, with what is wrong about each.
         explain: Says what is wrong about a word by the live graph, '' if it can't tell.
+        form: Returns the same text for spellings that mean the same, see `spelling`. `explain`
+            gets the word in this form.
+        how: How to answer it, in words.
     """
 
     text: str
@@ -243,7 +267,8 @@ class Word(Question):
     otherwise: str
     wrong: Mapping[str, str] = field(default_factory=dict)
     explain: Callable[[str], str] = lambda word: ''
-    how = 'a word'
+    form: Callable[[str], str] = spelling.name
+    how: str = 'a word'
 
     def example(self) -> str:
         """Return an answer as code."""
@@ -251,12 +276,31 @@ class Word(Question):
 
     def judge(self, given: Any) -> Feedback:
         """Say whether an answer is right, and why."""
-        word = str(given).strip().strip('\'"`')
+        word = self.form(given) if isinstance(given, str) else ''
+        if not word:
+            raise LabError(
+                f'The answer must be {self.how} in quotation marks, but it is {given!r}.',
+                todo=f'For instance: {self.example()}',
+            )
         answer = _value(self.answer)
-        if word in ([answer] if isinstance(answer, str) else answer):
+        rights = [self.form(one) for one in ([answer] if isinstance(answer, str) else answer)]
+        if word in rights:
             return Feedback(True, [('why', self.why)])
-        why = self.wrong.get(word) or self.explain(word) or self.otherwise
+        known = {self.form(one): why for one, why in self.wrong.items()}
+        why = known.get(word) or self.explain(word) or _nearly(word, rights) or self.otherwise
         return Feedback(False, [('why', why)])
+
+
+def _nearly(word: str, rights: Collection[str]) -> str:
+    """Say what is wrong about a word that is nearly right, '' if it is not."""
+    for one in rights:
+        if word.casefold() == one.casefold():
+            return 'Capital and small letters differ in names.'
+        if re.sub(r'[\s_-]', '', word).casefold() == re.sub(r'[\s_-]', '', one).casefold():
+            return 'An underscore is part of the name, and a name has no blanks.'
+    if nearest(word, rights):
+        return 'It is nearly that. Compare the name letter by letter.'
+    return ''
 
 
 def _value(answer: Any) -> Any:

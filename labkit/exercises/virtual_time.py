@@ -108,12 +108,15 @@ class VirtualTime:
                 if not timer.is_canceled():  # type: ignore[no-untyped-call]
                     timer.reset()  # type: ignore[no-untyped-call]
 
-    def advance(self, seconds: float, look: Callable[[], bool]) -> bool:
+    def advance(
+        self, seconds: float, look: Callable[[], bool], begin: Callable[[], None] = lambda: None
+    ) -> bool:
         """Let time pass, from one event to the next.
 
         Args:
             seconds: How much, s.
             look: Called after each event; it says whether to go on.
+            begin: Called before each event.
 
         Returns:
             Whether all of the time has passed.
@@ -122,6 +125,7 @@ class VirtualTime:
         while not (self.flooded or self.hanging):
             ticked = self._next(end)
             self._now = min([end, self._next_tick(), *ticked.values()])
+            begin()
             for node in self._moving:
                 self._set(node)
             self._settle_all([timer for timer, due in ticked.items() if due <= self._now])

@@ -126,6 +126,10 @@ class Watch:
             for earlier, later in pairwise(stream)
         ]
 
+    def clear(self) -> None:
+        """Forget what has come so far."""
+        self.samples.clear()
+
     def close(self) -> None:
         """Stop watching. What has come stays."""
         self._node.destroy_subscription(self._subscription)

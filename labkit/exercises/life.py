@@ -1,0 +1,247 @@
+"""Some seconds of a node's life: what it published while a check let time pass, and sent it tests.
+
+Time is virtual, see `virtual_time`. So half a minute is seen in less than a second, each message
+with the exact time at which it was published, on a calm machine and on a busy one.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import time
+from bisect import bisect_right
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+from labkit.exercises.remote_time import RemoteTime
+from labkit.exercises.virtual_time import VirtualTime
+from labkit.exercises.watch import Sample, Watch
+
+if TYPE_CHECKING:
+    from labkit.exercises.probe import Probe
+
+__all__ = ['LIFE_SEC', 'Life', 'Sent', 'Stimulus', 'live']
+
+# How much of a node's life is looked at, s.
+LIFE_SEC = 30.0
+# So many events are enough, whatever the time: a fast timer is not worth a long wait.
+MAX_EVENTS = 6000
+# After so many messages of one topic nothing new is to be learnt.
+MAX_MESSAGES = 3000
+# How long an answer may take that comes from a thread or another process, s of real time.
+PATIENCE_SEC = 0.8
+POLL_SEC = 0.002
+
+
+@dataclass(frozen=True)
+class Stimulus:
+    """A test message that is to be sent.
+
+    Attributes:
+        at: When, in seconds of virtual time.
+        topic: Full name of the topic.
+        msg_type: Name of the type.
+        fields: Its fields, see `watch.build`.
+        answers: Topics on which an answer is waited for, in real time if need be.
+    """
+
+    at: float
+    topic: str
+    msg_type: str
+    fields: Mapping[str, Any]
+    answers: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Sent:
+    """A test message that was sent: the same as a `Stimulus`, with the time it was sent at."""
+
+    at: float
+    topic: str
+    fields: Mapping[str, Any]
+
+
+@dataclass
+class Life:
+    """What was seen.
+
+    Attributes:
+        seconds: How much time has passed, s.
+        samples: The messages of each topic, in their order, with their times `at`.
+        sent: The tests that were sent.
+        flooded: Whether so many callbacks came in one moment that there was no end to see.
+        hanging: Whether a callback did not return.
+        remote: Full names of the nodes of other processes that followed.
+    """
+
+    seconds: float = 0.0
+    samples: dict[str, list[Sample]] = field(default_factory=dict)
+    sent: list[Sent] = field(default_factory=list)
+    flooded: bool = False
+    hanging: bool = False
+    remote: Sequence[str] = ()
+
+    def on(self, topic: str) -> list[Sample]:
+        """Return the messages of a topic."""
+        return self.samples.get(topic, [])
+
+
+def live(
+    probe: Probe,
+    topics: Mapping[str, str],
+    seconds: float = LIFE_SEC,
+    *,
+    stimuli: Sequence[Stimulus] = (),
+    only: str = '',
+    tick: float = 0.05,
+    fine_sec: float = math.inf,
+    rest: float = 0.2,
+    before: Callable[[VirtualTime], None] | None = None,
+    until: Callable[[float, Mapping[str, Watch]], bool] | None = None,
+) -> Life:
+    """Let time pass for the nodes that have an end on some topics, and write down what they say.
+
+    Args:
+        probe: The probe of the check.
+        topics: The topics, with their types.
+        seconds: How much time, s.
+        stimuli: Tests that are sent meanwhile.
+        only: Full name of the only node for which time passes; it stands still for the others.
+        tick: How exactly time is known for nodes of other processes, s,
+        fine_sec: for so long, s;
+        rest: and how exactly afterwards, s.
+        before: Called when time stands still, before it begins to pass.
+        until: Called after each event with the seconds that have passed, and what has come: it
+            says whether that is enough.
+
+    Returns:
+        What was seen.
+
+    Raises:
+        LearnerError: A callback raised meanwhile.
+    """
+    watches = {topic: probe.watch(topic, name) for topic, name in topics.items()}
+    senders = {
+        stimulus.topic: probe.sender(stimulus.topic, stimulus.msg_type) for stimulus in stimuli
+    }
+    moving, standing, foreign = _nodes(probe, topics, only)
+    life = Life()
+    moments: list[tuple[float, float]] = []
+    with contextlib.ExitStack() as stack:
+        remote = stack.enter_context(RemoteTime(probe.spun_node, foreign)) if foreign else None
+        said = stack.enter_context(probe.hold_output())
+        passing = VirtualTime(moving, standing, remote=remote, tick=tick)
+        stack.enter_context(passing)
+        life.remote = remote.names if remote is not None else ()
+        # What was on its way belongs to the time before.
+        for watch in watches.values():
+            watch.pump()
+            watch.clear()
+        if before is not None:
+            before(passing)
+        course = _Course(probe, passing, watches, moments, until)
+        course.note()
+        for stimulus in sorted(stimuli, key=lambda stimulus: stimulus.at):
+            if not course.go(stimulus.at):
+                break
+            course.send(senders[stimulus.topic], stimulus, life)
+        passing.tick = tick if passing.seconds < fine_sec else rest
+        course.go(min(seconds, max(fine_sec, passing.seconds)))
+        passing.tick = rest
+        course.go(seconds)
+        if life.remote:
+            course.wait_for_late_ones()
+        life.seconds = passing.seconds
+        life.flooded, life.hanging = passing.flooded, passing.hanging
+    probe.note_output(life.seconds, said)
+    starts = [real for real, _ in moments]
+    for topic, watch in watches.items():
+        life.samples[topic] = [
+            replace(sample, at=moments[max(bisect_right(starts, sample.stamp) - 1, 0)][1])
+            for sample in watch.samples
+        ]
+        watch.close()
+    probe.forget(watches.values())
+    return life
+
+
+def _nodes(
+    probe: Probe, topics: Mapping[str, str], only: str
+) -> tuple[list[Any], list[Any], list[str]]:
+    """Return the nodes for which time passes, for which it stands, and those of elsewhere."""
+    names = {
+        end.node
+        for topic in topics
+        for end in (*probe.publishers(topic), *probe.subscriptions(topic))
+    }
+    here = {name: probe.node_object(name) for name in sorted(names)}
+    moving = [node for name, node in here.items() if node is not None and only in ('', name)]
+    standing = [node for name, node in here.items() if node is not None and only not in ('', name)]
+    foreign = [name for name, node in here.items() if node is None and only in ('', name)]
+    return moving, standing, foreign
+
+
+@dataclass
+class _Course:
+    """How time passes for one life."""
+
+    probe: Probe
+    passing: VirtualTime
+    watches: Mapping[str, Watch]
+    moments: list[tuple[float, float]]
+    until: Callable[[float, Mapping[str, Watch]], bool] | None
+    events: int = 0
+    patience: int = 2
+
+    def note(self) -> None:
+        """Write down which real time this moment of virtual time has."""
+        self.moments.append((time.time(), self.passing.seconds))
+
+    def go(self, at: float) -> bool:
+        """Let time pass until a moment."""
+        seconds = at - self.passing.seconds
+        if self.events >= MAX_EVENTS or self.passing.flooded or self.passing.hanging:
+            return False
+        return seconds <= 0 or self.passing.advance(seconds, self._look, self.note)
+
+    def send(self, sender: Callable[..., float], stimulus: Stimulus, life: Life) -> None:
+        """Send a test, and see what comes of it at once."""
+        before = self._count(stimulus.answers)
+        sender(stimulus.fields)
+        life.sent.append(Sent(self.passing.seconds, stimulus.topic, stimulus.fields))
+        self.passing.settle()
+        self._look()
+        if not stimulus.answers or self._count(stimulus.answers) > before:
+            return
+        # A node that keeps what it hears for its timer answers soon in virtual time, one with a
+        # thread in real time.
+        if not self.go(self.passing.seconds + 0.5) or self._count(stimulus.answers) > before:
+            return
+        if self.patience:
+            end = time.monotonic() + PATIENCE_SEC
+            while self._count(stimulus.answers) == before and time.monotonic() < end:
+                time.sleep(POLL_SEC)
+                self._look()
+            self.patience -= self._count(stimulus.answers) == before
+
+    def wait_for_late_ones(self) -> None:
+        """Wait until nothing more comes of other processes."""
+        count = -1
+        while (now := self._count(self.watches)) != count:
+            count = now
+            time.sleep(0.1)
+            self._look()
+
+    def _count(self, topics: Sequence[str] | Mapping[str, Watch]) -> int:
+        return sum(len(self.watches[topic]) for topic in topics)
+
+    def _look(self) -> bool:
+        self.events += 1
+        for watch in self.watches.values():
+            watch.pump()
+        self.probe.look(self.passing.seconds)
+        if self.until is not None and self.until(self.passing.seconds, self.watches):
+            return False
+        most = max((len(watch) for watch in self.watches.values()), default=0)
+        return self.events < MAX_EVENTS and most < MAX_MESSAGES
