@@ -113,7 +113,10 @@ class BackgroundExecutor(SingleThreadedExecutor):
         What a wait holds is destroyed only afterwards. Were a node of the same name made before,
         the graph would take the new one's topics for the old one's, and leave them nameless.
         """
-        self._entries.pop(node, None)
+        known = self._entries.pop(node, None)
+        if known is not None and node.executor is self:
+            # rclpy leaves that as it is. This asks for this method once more.
+            node.executor = None  # type: ignore[assignment]
         seen = self._rounds
         super().remove_node(node)
         # Who looks at a condition keeps the thread from its next round.

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import gc
 import threading
+import traceback
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
-from weakref import WeakSet
+from weakref import WeakKeyDictionary, WeakSet
 
 from rclpy.context import Context
 from rclpy.exceptions import InvalidHandle
@@ -23,6 +24,9 @@ __all__ = [
     'check_node',
     'destroy_node',
     'existing_nodes',
+    'find_half_made',
+    'full_name',
+    'half_made',
     'helper_node',
     'made',
     'node_exists',
@@ -73,6 +77,14 @@ def node_exists(node: Node) -> bool:
         return False
 
 
+def full_name(node: Node) -> str:
+    """Return the full name of a node, such as `/talker`; '' if it exists no more."""
+    try:
+        return node.get_fully_qualified_name()
+    except (InvalidHandle, AttributeError):
+        return ''
+
+
 class _Made:
     """The nodes that were made since `follow`, as long as something holds them."""
 
@@ -119,6 +131,22 @@ def _on_the_heap() -> list[Node]:
     return [thing for thing in gc.get_objects() if issubclass(type(thing), Node)]
 
 
+half_made: WeakKeyDictionary[Node, Cell] = WeakKeyDictionary()
+"""Nodes whose `__init__` has raised, and the execution of the cell that was to make them."""
+
+
+def find_half_made(error: BaseException) -> list[Node]:
+    """Return the nodes whose `__init__` a traceback comes from."""
+    found: list[Node] = []
+    for frame, _ in traceback.walk_tb(error.__traceback__):
+        code = frame.f_code
+        if code.co_name == '__init__' and code.co_argcount:
+            made_here: Any = frame.f_locals.get(code.co_varnames[0])
+            if issubclass(type(made_here), Node):
+                found.append(made_here)
+    return found
+
+
 def check_node(node: object) -> None:
     """Raise a LabError if `node` is no node that can be spun."""
     if isinstance(node, type) and issubclass(node, Node):
@@ -139,14 +167,62 @@ def check_node(node: object) -> None:
         )
 
 
-def destroy_node(node: Node) -> None:
-    """Destroy a node, whatever state it is in."""
+def destroy_node(node: Node) -> BaseException | None:
+    """Destroy a node for certain, whatever its own `destroy_node` does.
+
+    A node whose `__init__` has raised is not asked: it may lack what `destroy_node` uses.
+
+    Args:
+        node: The node, in whatever state it is.
+
+    Returns:
+        What its own `destroy_node` has raised, or a LabError if that does not call the one of
+        `Node`; None if nothing is wrong with it.
+
+    Raises:
+        KeyboardInterrupt: The stop button was pressed meanwhile. The node is destroyed all the
+            same.
+    """
+    error: BaseException | None = None
+    usable = node_exists(node)
     try:
-        node.destroy_node()  # type: ignore[no-untyped-call]
+        if not (node in half_made or _is_destroyed(node)):
+            node.destroy_node()  # type: ignore[no-untyped-call]
+            if not _is_destroyed(node):
+                error = LabError(
+                    f'destroy_node() of {type(node).__name__} does not destroy the node.',
+                    todo='End it with super().destroy_node().',
+                )
+    except KeyboardInterrupt:
+        raise
+    except BaseException as raised:  # by code of a learner's, sys.exit() included
+        error = raised if usable else None  # once ROS is shut down, nothing can be published
+    finally:
+        _destroy_handle(node)
+        for tell in tuple(after_destroy):
+            tell()
+    return error
+
+
+def _is_destroyed(node: Node) -> bool:
+    """Tell whether nothing of a node is left, or its `__init__` did not get as far as ROS."""
+    try:
+        with node.handle:
+            return False
     except (InvalidHandle, AttributeError):
-        pass  # destroyed before, or never finished
-    for tell in tuple(after_destroy):
-        tell()
+        return True
+
+
+def _destroy_handle(node: Node) -> None:
+    """Destroy what a node has in ROS, without asking the node."""
+    if _is_destroyed(node):
+        return
+    try:
+        Node.destroy_node(node)  # type: ignore[no-untyped-call]
+    except Exception:
+        # Its __init__ did not get far enough, or what it looks at was written over.
+        if not _is_destroyed(node):
+            node.handle.destroy_when_not_in_use()
 
 
 def helper_node(

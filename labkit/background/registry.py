@@ -12,7 +12,13 @@ from rclpy.node import Node
 
 from labkit.background.console import Cell, Console
 from labkit.background.executor import BackgroundExecutor
-from labkit.background.nodes import NodeEntry, destroy_node, existing_nodes
+from labkit.background.nodes import (
+    NodeEntry,
+    destroy_node,
+    existing_nodes,
+    full_name,
+    half_made,
+)
 
 __all__ = ['Registry']
 
@@ -53,10 +59,31 @@ class Registry:
         executor.add_entry(entry)
         return entry
 
-    def discard(self, executor: BackgroundExecutor | None, entry: NodeEntry) -> None:
-        """Take a node from its executor and destroy it."""
+    def discard(
+        self, executor: BackgroundExecutor | None, entry: NodeEntry
+    ) -> BaseException | None:
+        """Take a node from its executor and destroy it, see `destroy`."""
         self.release(executor, entry)
-        destroy_node(entry.node)
+        return self.destroy(entry.node, entry.name)
+
+    def destroy(self, node: Node, name: str) -> BaseException | None:
+        """Destroy a node, and show what its own `destroy_node` raises.
+
+        Args:
+            node: The node, spun by whomever or not.
+            name: Its full name.
+
+        Returns:
+            What its `destroy_node` has raised, None if nothing.
+        """
+        # A node whose __init__ did not get far enough has none.
+        executor = getattr(node, 'executor', None)
+        if executor is not None:
+            executor.remove_node(node)
+        error = destroy_node(node)
+        if error is not None:
+            self._console.show_error(name, 'destroy_node', error)
+        return error
 
     def release(self, executor: BackgroundExecutor | None, entry: NodeEntry) -> None:
         """Take a node from its executor and leave it alive."""
@@ -84,19 +111,27 @@ class Registry:
         """Destroy the node of a name before another one of that name is made.
 
         Two nodes of one name in one process share rcl's publisher on /rosout, and the first that
-        goes takes it away. A node whose `__init__` failed half way is found here too.
+        goes takes it away. A node whose `__init__` failed half way is found here too, and one that
+        an executor of the learner's own spins.
 
         Args:
             executor: The background executor, None if ROS is not up.
             name: The full name of the node that is about to be made.
         """
+        self._end_half_made(self._console.current_cell())
         entry = self.get(name)
         if entry is not None:
             self.discard(executor, entry)
             return
         for node in existing_nodes():
-            if node.executor is None and node.get_fully_qualified_name() == name:
-                destroy_node(node)
+            if node.get_fully_qualified_name() == name:
+                self.destroy(node, name)
+
+    def _end_half_made(self, cell: Cell) -> None:
+        """End the nodes of earlier runs of a cell whose `__init__` failed, whatever their name."""
+        for node, made_by in list(half_made.items()):
+            if cell.cell_id and made_by is not cell and made_by.cell_id == cell.cell_id:
+                self.destroy(node, full_name(node))
 
     def left_over(self, cell: Cell) -> list[NodeEntry]:
         """Return the nodes that an earlier run of a cell has started, and this one has not.

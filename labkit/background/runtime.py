@@ -24,8 +24,10 @@ from labkit.background.executor import BackgroundExecutor
 from labkit.background.nodes import (
     NodeEntry,
     check_node,
-    destroy_node,
     existing_nodes,
+    find_half_made,
+    full_name,
+    half_made,
     helper_node,
 )
 from labkit.background.notebook_rclpy import ORIGINALS, install
@@ -73,7 +75,7 @@ class Runtime:
         self._reported: set[str] = set()
         self._executor: BackgroundExecutor | None = None
         self._claim: domains.DomainClaim | None = None
-        self.console.after_cell = self._tell_left_over
+        self.console.after_cell = self._after_cell
 
     @property
     def started(self) -> bool:
@@ -140,8 +142,7 @@ class Runtime:
             if self._executor is not executor:
                 return
             self._executor = self.helper = self.domain_id = None
-        for node in nodes:
-            destroy_node(node)
+        interrupt = self._destroy_all(nodes)
         self._registry.clear()
         self._reported.clear()
         context = executor.context
@@ -151,6 +152,8 @@ class Runtime:
         for thread in self.foreign_threads - {threading.current_thread()}:
             thread.join(JOIN_SEC)
         self.console.close()
+        if interrupt is not None:
+            raise interrupt
 
     # -- nodes ----------------------------------------------------------------------------------
 
@@ -167,9 +170,20 @@ class Runtime:
         check_node(node)
         return self._registry.add(self.executor, node, budget=budget)
 
-    def discard(self, entry: NodeEntry) -> None:
-        """Take a node from the executor and destroy it."""
-        self._registry.discard(self._executor, entry)
+    def discard(self, entry: NodeEntry) -> BaseException | None:
+        """Take a node from the executor and destroy it, see `destroy`."""
+        return self._registry.discard(self._executor, entry)
+
+    def destroy(self, node: Node) -> BaseException | None:
+        """Destroy a node for certain, and show what its own `destroy_node` raises.
+
+        Returns:
+            What that was, None if nothing. Also in `console.errors`, as `destroy_node`.
+        """
+        entry = self.entry_of(node)
+        if entry is not None:
+            return self.discard(entry)
+        return self._registry.destroy(node, full_name(node))
 
     def release(self, entry: NodeEntry) -> None:
         """Take a node from the executor and leave it alive."""
@@ -181,7 +195,8 @@ class Runtime:
         for entry in entries:
             if not entry.alive:
                 self.release(entry)
-        return [entry for entry in entries if entry.alive]
+        # Not one that has gone over to an executor of the learner's own.
+        return [entry for entry in entries if entry.alive and self.entry_of(entry.node) is entry]
 
     def entry_of(self, node: Node) -> NodeEntry | None:
         """Return the entry of a node, None if it does not run in the background."""
@@ -220,6 +235,16 @@ class Runtime:
             self._executor.refuse_in_callback(what)
 
     # -- details --------------------------------------------------------------------------------
+
+    def _destroy_all(self, nodes: list[Node]) -> KeyboardInterrupt | None:
+        """Destroy nodes; the stop button ends what one of them does, and no other one's end."""
+        interrupt = None
+        for node in nodes:
+            try:
+                self._registry.destroy(node, full_name(node))
+            except KeyboardInterrupt as pressed:
+                interrupt = pressed
+        return interrupt
 
     def _is_called_by_a_callback(self) -> bool:
         """Tell whether a callback runs this: its ROS is up, or about to end and not to be begun.
@@ -271,8 +296,10 @@ class Runtime:
         name = self.helper.get_fully_qualified_name()
         executor.add_entry(NodeEntry(self.helper, name, self.console.current_cell()))
 
-    def _tell_left_over(self, cell: Cell) -> None:
+    def _after_cell(self, cell: Cell, error: BaseException | None) -> None:
         """Say so when a cell that was edited has left the node of its earlier run behind."""
+        if error is not None:
+            half_made.update((node, cell) for node in find_half_made(error))
         for entry in self._registry.left_over(cell):
             print(
                 f'{entry.name}, which this cell started before, still runs. '
@@ -343,13 +370,10 @@ def remove(node: Node | str) -> None:
         LabError: No node of that name runs here.
     """
     if isinstance(node, Node):
-        entry = runtime.entry_of(node)
-        if entry is None:
-            destroy_node(node)
-            return
-    else:
-        entry = _find(node)
-    runtime.discard(entry)
+        runtime.destroy(node)
+        return
+    for each in _find(node):
+        runtime.destroy(each)
 
 
 def stop() -> None:
@@ -360,18 +384,21 @@ def stop() -> None:
     runtime.stop()
 
 
-def _find(name: str) -> NodeEntry:
-    entries = {entry.name: entry for entry in runtime.nodes()}
-    full_name = name if name.startswith('/') else f'/{name}'
-    if full_name in entries:
-        return entries[full_name]
-    near = nearest(full_name, entries)
-    if full_name in runtime.foreign_nodes():
+def _find(name: str) -> list[Node]:
+    """Return the nodes of a name: mostly one, spun or not."""
+    running = [entry.node for entry in runtime.nodes()]
+    wanted = name if name.startswith('/') else f'/{name}'
+    found = [node for node in [*running, *runtime.unspun_nodes()] if full_name(node) == wanted]
+    if found:
+        return found
+    names = [full_name(node) for node in running]
+    near = nearest(wanted, names)
+    if wanted in runtime.foreign_nodes():
         todo = 'It runs in another process: end it where that was started.'
     elif near:
         todo = f'Did you mean {near!r}?'
-    elif entries:
-        todo = f'Running here: {", ".join(entries)}.'
+    elif names:
+        todo = f'Running here: {", ".join(names)}.'
     else:
         todo = 'No node runs here.'
     raise LabError(f'No node called {name!r} runs in this notebook.', todo=todo)
