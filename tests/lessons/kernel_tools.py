@@ -1,4 +1,4 @@
-"""What the proof does inside the kernel: run a script, and clean up after an answer."""
+"""What is done inside the kernel: run a script, press stop, clean up after an answer."""
 
 from __future__ import annotations
 
@@ -7,10 +7,13 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import weakref
 from pathlib import Path
+from typing import Any
 
 import psutil
+from IPython import get_ipython
 from rclpy.node import Node
 
 from labkit.background.nodes import existing_nodes
@@ -19,13 +22,16 @@ from labkit.background.runtime import remove, runtime
 _before: weakref.WeakSet[Node] = weakref.WeakSet()
 _foreign_before: set[str] = set()
 _children_before: set[int] = set()
+_names_before: dict[str, Any] = {}
 
 
 def mark() -> None:
-    """Remember which nodes and processes belong to the lesson itself."""
+    """Remember which nodes, processes and names belong to the lesson itself."""
     _before.update(existing_nodes())
     _foreign_before.update(runtime.foreign_nodes())
     _children_before.update(child.pid for child in _children())
+    _names_before.clear()
+    _names_before.update(_names())
 
 
 def run_script(code: str) -> None:
@@ -53,6 +59,38 @@ def clean() -> None:
         if node not in _before and node is not runtime.helper:
             remove(node)
     runtime.wait(_alone, 25.0)
+
+
+def forget_names() -> None:
+    """Take back what an answer has defined, so that the next one can't use it by mistake."""
+    names = get_ipython().user_ns
+    for name in _names().keys() - _names_before.keys():
+        del names[name]
+    names.update(_names_before)
+
+
+def stop_next_cell_after(seconds: float) -> None:
+    """Press the stop button if the next cell runs as long as that."""
+    button = threading.Timer(seconds, signal.pthread_kill, (threading.get_ident(), signal.SIGINT))
+    button.daemon = True
+    events = get_ipython().events
+
+    def begin(_info: object) -> None:
+        events.unregister('pre_run_cell', begin)
+        events.register('post_run_cell', end)
+        button.start()
+
+    def end(_result: object) -> None:
+        events.unregister('post_run_cell', end)
+        button.cancel()
+
+    events.register('pre_run_cell', begin)
+
+
+def _names() -> dict[str, Any]:
+    """Return what cells have defined; IPython's own names begin with `_`, or are its tools."""
+    names = get_ipython().user_ns
+    return {name: value for name, value in names.items() if name.isidentifier() and name[0] != '_'}
 
 
 def _alone() -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import shutil
 import time
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,6 +22,9 @@ HERE = Path(__file__).resolve().parent
 NOTEBOOKS = HERE.parent.parent / 'notebooks'
 # A check may ask to be pressed again when a process has just been started.
 PRESSES = 3
+# Cells of the kernel: before an answer is tried, and between two of them.
+MARK = 'import kernel_tools\nkernel_tools.mark()'
+RESET = 'import kernel_tools\nkernel_tools.clean()\nlesson.{name}.forget()'
 
 
 def lessons() -> list[Lesson]:
@@ -150,64 +153,61 @@ class Proof:
     ) -> int:
         """Put one exercise through its states; return the index of the cell after it."""
         cells = run.notebook.cells
-        _insert(run, starter, 'import kernel_tools\nkernel_tools.mark()')
+        insert(run, starter, MARK)
         starter += 1
         check = [cell.id for cell in cells].index(exercise.check_id)
         for index in range(starter - 1, check):
             run.execute(index)
-        reset = _insert(run, check + 1, '')
-        with _stopwatch() as seconds:
-            run.execute(check)
-        self._note(exercise, 'untouched', cells[check], seconds)
+        reset = insert(run, check + 1, '')
+        self.findings[exercise.name, 'untouched'] = press(run, check, presses=1)
         for state in states_of(exercise)[1:]:
             if (exercise.name, state.name) not in wanted and state.name != 'solution':
                 continue
             if state.code:
-                reset.source = _RESET.format(name=exercise.name)
+                reset.source = RESET.format(name=exercise.name)
                 run.execute(check + 1)
                 script = f'import kernel_tools\nkernel_tools.run_script({state.code!r})'
                 cells[starter].source = script if state.process else state.code
                 with contextlib.suppress(LessonError):  # wrong answers may raise
                     run.execute(starter)
-            for _ in range(PRESSES):
-                with _stopwatch() as seconds:
-                    run.execute(check)
-                self._note(exercise, state.name, cells[check], seconds)
-                if 'un this cell again' not in self.findings[exercise.name, state.name].text:
-                    break
+            self.findings[exercise.name, state.name] = press(run, check)
         reset.source = ''
         run.execute(check + 1)
         return check + 2
 
-    def _note(
-        self, exercise: Exercise, state: str, cell: NotebookNode, seconds: list[float]
-    ) -> None:
-        text = '\n'.join(
-            output['data'].get('text/plain', '')
-            for output in cell.outputs
-            if output.output_type == 'execute_result'
-        )
-        outcome = next((o for o in Outcome if text.startswith(f'{o.value}: ')), None)
-        found = Finding(outcome, ' '.join(text.split()), seconds[0])
-        self.findings[exercise.name, state] = found
+
+def press(run: LessonRun, check: int, presses: int = PRESSES) -> Finding:
+    """Run the cell of a check, again if it asks for it; return what came of it.
+
+    Args:
+        run: The run.
+        check: Index of the cell.
+        presses: How often it is run at most.
+
+    Raises:
+        LessonError: The cell has failed.
+    """
+    for _ in range(presses):
+        start = time.monotonic()
+        cell = run.execute(check)
+        found = _finding(cell, time.monotonic() - start)
+        if 'un this cell again' not in found.text:
+            break
+    return found
 
 
-_RESET = """
-import kernel_tools
-kernel_tools.clean()
-lesson.{name}.forget()
-"""
+def _finding(cell: NotebookNode, seconds: float) -> Finding:
+    text = '\n'.join(
+        output['data'].get('text/plain', '')
+        for output in cell.outputs
+        if output.output_type == 'execute_result'
+    )
+    outcome = next((o for o in Outcome if text.startswith(f'{o.value}: ')), None)
+    return Finding(outcome, ' '.join(text.split()), seconds)
 
 
-def _insert(run: LessonRun, index: int, source: str) -> NotebookNode:
+def insert(run: LessonRun, index: int, source: str) -> NotebookNode:
+    """Put a cell of code into the notebook of a run; return it."""
     cell = new_code_cell(source)
     run.notebook.cells.insert(index, cell)
     return cell
-
-
-@contextlib.contextmanager
-def _stopwatch() -> Iterator[list[float]]:
-    seconds: list[float] = []
-    start = time.monotonic()
-    yield seconds
-    seconds.append(time.monotonic() - start)

@@ -1,0 +1,93 @@
+"""The command line of the mutants."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import threading
+import time
+from collections.abc import Sequence
+from concurrent.futures import CancelledError, ThreadPoolExecutor
+from pathlib import Path
+
+from mutants.generate import Mutant, equivalents, mutants_of
+from mutants.report import as_data, false_passes, report
+from mutants.run import Result, run_mutants
+
+from labkit.exercises import Exercise, Lesson
+from labkit.exercises.lesson import all_lessons
+
+__all__ = ['main']
+
+Part = tuple[Lesson, Exercise, list[Mutant]]
+
+
+def main(description: str | None) -> int:
+    """Run what the command line asks for; return the exit code."""
+    parser = argparse.ArgumentParser(
+        'python tests/mutants',
+        description=description,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        '-k', nargs='+', default=[''], metavar='TEXT', help='only those with one in their id'
+    )
+    parser.add_argument('--jobs', type=int, default=2, metavar='N', help='kernels at a time (2)')
+    parser.add_argument('--sample', type=int, default=1, metavar='N', help='every Nth of them')
+    parser.add_argument('--list', action='store_true', help='show them and run nothing')
+    parser.add_argument('--json', type=Path, metavar='FILE', help='where to write all verdicts')
+    options = parser.parse_args()
+    parts = _chosen(options.k, options.sample)
+    if options.list:
+        for _, _, mutants in parts:
+            for mutant in mutants:
+                reason = equivalents().get(mutant.exercise, {}).get(mutant.diff)
+                print(f'{mutant.id}: {mutant.diff}', *([f'({reason})'] if reason else []))
+        return 0
+    results = _run(parts, options.jobs)
+    if options.json:
+        options.json.write_text(json.dumps(as_data(results), indent=1), encoding='utf-8')
+    print(report(results))
+    no_verdict = any(result.finding.outcome is None for result in results)
+    return 1 if no_verdict or false_passes(results) else 0
+
+
+def _chosen(texts: Sequence[str], sample: int) -> list[Part]:
+    parts, count = [], 0
+    for lesson in all_lessons():
+        for exercise in lesson.exercises:
+            found = mutants_of(lesson, exercise)
+            named = [mutant for mutant in found if any(text in mutant.id for text in texts)]
+            chosen = [m for i, m in enumerate(named, start=count) if i % sample == 0]
+            count += len(named)
+            if chosen:
+                parts.append((lesson, exercise, chosen))
+    return parts
+
+
+def _run(parts: Sequence[Part], jobs: int) -> list[Result]:
+    """Run all parts, the long ones first, `jobs` at a time; return the results in their order."""
+    total, done, start = sum(len(mutants) for *_, mutants in parts), 0, time.monotonic()
+
+    stopping = threading.Event()
+
+    def say(result: Result) -> None:
+        nonlocal done
+        if stopping.is_set():
+            raise CancelledError
+        done += 1
+        outcome = result.finding.outcome.value if result.finding.outcome else 'no verdict'
+        minutes = (time.monotonic() - start) / 60
+        line = f'{done} of {total}, {minutes:.1f} min: {outcome} {result.mutant.id}'
+        print(line, file=sys.stderr, flush=True)
+
+    with ThreadPoolExecutor(max_workers=jobs) as pool:
+        order = sorted(range(len(parts)), key=lambda i: -len(parts[i][2]))
+        found = {i: pool.submit(lambda part: run_mutants(*part, say), parts[i]) for i in order}
+        try:
+            return [result for i in range(len(parts)) for result in found[i].result()]
+        except KeyboardInterrupt:
+            stopping.set()
+            pool.shutdown(cancel_futures=True)
+            raise
