@@ -7,12 +7,14 @@ from dataclasses import dataclass, field, replace
 
 from labkit.errors import LabError
 from labkit.exercises.attempts import progress_store
+from labkit.exercises.clauses.base import Clause
 from labkit.exercises.expect.endpoints import alone
 from labkit.exercises.learner_errors import explain_error, last_cell
 from labkit.exercises.probe import Probe
 from labkit.exercises.recorder import Recorder
 from labkit.exercises.scope import Scope
 from labkit.exercises.verdict import Fail, LearnerError, NotAttempted, Outcome, Verdict
+from labkit.exercises.watch import Watch
 from labkit.views.card import Card
 
 __all__ = ['Exercise', 'Solution', 'Style', 'Wrong', 'changed']
@@ -100,7 +102,8 @@ class Exercise:
     Attributes:
         name: Its name as a Python name: `lesson.count_up`.
         task: The task in a sentence or two.
-        judge: Looks at the graph and at messages, with a probe and the matchers of `expect`.
+        clauses: What the task asks for, clause by clause; the check looks at each of them.
+        judge: Looks at what no clause has words for, with a probe and the matchers of `expect`.
             It raises what is wrong, and returns a sentence on what was seen, or None.
         publishes: Topics on which the learner's nodes publish, by full name, with their types.
         subscribes: Topics to which they subscribe, with their types.
@@ -122,9 +125,10 @@ class Exercise:
 
     name: str
     task: str
-    judge: Callable[[Probe], str | None]
     hints: Sequence[str]
     answer: Solution
+    clauses: Sequence[Clause] = ()
+    judge: Callable[[Probe], str | None] | None = None
     publishes: Mapping[str, str] = field(default_factory=dict)
     subscribes: Mapping[str, str] = field(default_factory=dict)
     nodes: Sequence[str] = ()
@@ -221,22 +225,7 @@ class Exercise:
         recorded = self._recorder.watches() if self._recorder is not None else {}
         try:
             with Probe(self.name, self.scope, recorded=recorded) as probe:
-                new = any(map(len, recorded.values()))
-                if self._before is not None and not new:
-                    # If the same nodes run, it is the same attempt.
-                    nodes, earlier = self._before
-                    if nodes == probe.fingerprint():
-                        # Without nodes there may be other evidence, as of a refused command.
-                        if nodes or earlier.passed:
-                            return earlier
-                        verdict = self._judge(probe)
-                        return earlier if verdict.outcome is Outcome.NOT_ATTEMPTED else verdict
-                verdict = self._judge(probe)
-                new = any(map(len, recorded.values()))
-                if (self.once or new) and verdict.outcome is not Outcome.NOT_ATTEMPTED:
-                    self.forget()
-                    self._before = (probe.fingerprint(), verdict)
-                return verdict
+                return self._with_note(self._verdict(probe, recorded), probe)
         except LabError as error:  # ROS can't be started here, for one
             return Verdict(
                 Outcome.ERROR,
@@ -248,12 +237,41 @@ class Exercise:
         except Exception as error:  # a check never raises, whatever is wrong with it
             return self._own_fault(error)
 
+    def _with_note(self, verdict: Verdict, probe: Probe) -> Verdict:
+        if not probe.held_lines:
+            return verdict
+        lines = f'{probe.held_lines} line{"s" * (probe.held_lines != 1)}'
+        return verdict.with_note(
+            f'The check let {probe.lived_sec:.0f} s of the time of your nodes pass. They wrote '
+            f'{lines} meanwhile, not shown here.'
+        )
+
+    def _verdict(self, probe: Probe, recorded: Mapping[str, Watch]) -> Verdict:
+        new = any(map(len, recorded.values()))
+        if self._before is not None and not new:
+            # If the same nodes run, it is the same attempt.
+            nodes, earlier = self._before
+            if nodes == probe.fingerprint():
+                # Without nodes there may be other evidence, as of a refused command.
+                if nodes or earlier.passed:
+                    return earlier
+                verdict = self._judge(probe)
+                return earlier if verdict.outcome is Outcome.NOT_ATTEMPTED else verdict
+        verdict = self._judge(probe)
+        new = any(map(len, recorded.values()))
+        if (self.once or new) and verdict.outcome is not Outcome.NOT_ATTEMPTED:
+            self.forget()
+            self._before = (probe.fingerprint(), verdict)
+        return verdict
+
     def _judge(self, probe: Probe) -> Verdict:
         try:
             try:
-                text = self.judge(probe)
+                text = self._apply(probe)
                 _look_again(probe)
-            except (Fail, NotAttempted):
+            except (Fail, NotAttempted) as outcome:
+                if isinstance(outcome, Fail) and outcome.came_first:
+                    raise
                 # Consequences look like another mistake, so their cause is the better answer.
                 _look_again(probe)
                 probe.callbacks.raise_old_error(probe.scope)
@@ -274,8 +292,16 @@ class Exercise:
                 seen=fail.seen,
                 why=fail.why,
                 todo=fail.todo,
+                clause=fail.clause,
             )
         return Verdict(Outcome.PASS, self.name, text or 'It does what the task asks for.')
+
+    def _apply(self, probe: Probe) -> str | None:
+        if self.judge is not None:
+            return self.judge(probe)
+        from labkit.exercises.clauses import judge
+
+        return judge(probe, self.clauses)
 
     def _learner_error(self, error: LearnerError) -> Verdict:
         why, todo = explain_error(error.error)

@@ -10,11 +10,13 @@ import contextlib
 import math
 import time
 from bisect import bisect_right
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from labkit.exercises.remote_time import RemoteTime
+from labkit.exercises.verdict import LearnerError
 from labkit.exercises.virtual_time import VirtualTime
 from labkit.exercises.watch import Sample, Watch
 
@@ -73,6 +75,7 @@ class Life:
         flooded: Whether so many callbacks came in one moment that there was no end to see.
         hanging: Whether a callback did not return.
         remote: Full names of the nodes of other processes that followed.
+        error: What a callback of the learner's has raised, if one has: then time stopped there.
     """
 
     seconds: float = 0.0
@@ -81,6 +84,7 @@ class Life:
     flooded: bool = False
     hanging: bool = False
     remote: Sequence[str] = ()
+    error: LearnerError | None = None
 
     def on(self, topic: str) -> list[Sample]:
         """Return the messages of a topic."""
@@ -93,21 +97,24 @@ def live(
     seconds: float = LIFE_SEC,
     *,
     stimuli: Sequence[Stimulus] = (),
-    only: str = '',
+    also: Mapping[str, str] = MappingProxyType({}),
+    nodes: Collection[str],
     tick: float = 0.05,
     fine_sec: float = math.inf,
     rest: float = 0.2,
     before: Callable[[VirtualTime], None] | None = None,
     until: Callable[[float, Mapping[str, Watch]], bool] | None = None,
 ) -> Life:
-    """Let time pass for the nodes that have an end on some topics, and write down what they say.
+    """Let time pass for some nodes, and write down what comes on some topics.
 
     Args:
         probe: The probe of the check.
         topics: The topics, with their types.
         seconds: How much time, s.
         stimuli: Tests that are sent meanwhile.
-        only: Full name of the only node for which time passes; it stands still for the others.
+        also: Topics that are written down too, whoever has an end there.
+        nodes: Full names of the nodes for which time passes. It stands still for all others of
+            this process that have an end on one of the topics.
         tick: How exactly time is known for nodes of other processes, s,
         fine_sec: for so long, s;
         rest: and how exactly afterwards, s.
@@ -117,15 +124,12 @@ def live(
 
     Returns:
         What was seen.
-
-    Raises:
-        LearnerError: A callback raised meanwhile.
     """
-    watches = {topic: probe.watch(topic, name) for topic, name in topics.items()}
+    watches = {topic: probe.watch(topic, name) for topic, name in {**topics, **also}.items()}
     senders = {
         stimulus.topic: probe.sender(stimulus.topic, stimulus.msg_type) for stimulus in stimuli
     }
-    moving, standing, foreign = _nodes(probe, topics, only)
+    moving, standing, foreign = _nodes(probe, topics, nodes)
     life = Life()
     moments: list[tuple[float, float]] = []
     with contextlib.ExitStack() as stack:
@@ -142,16 +146,19 @@ def live(
             before(passing)
         course = _Course(probe, passing, watches, moments, until)
         course.note()
-        for stimulus in sorted(stimuli, key=lambda stimulus: stimulus.at):
-            if not course.go(stimulus.at):
-                break
-            course.send(senders[stimulus.topic], stimulus, life)
-        passing.tick = tick if passing.seconds < fine_sec else rest
-        course.go(min(seconds, max(fine_sec, passing.seconds)))
-        passing.tick = rest
-        course.go(seconds)
-        if life.remote:
-            course.wait_for_late_ones()
+        try:
+            for stimulus in sorted(stimuli, key=lambda stimulus: stimulus.at):
+                if not course.go(stimulus.at):
+                    break
+                course.send(senders[stimulus.topic], stimulus, life)
+            passing.tick = tick if passing.seconds < fine_sec else rest
+            course.go(min(seconds, max(fine_sec, passing.seconds)))
+            passing.tick = rest
+            course.go(seconds)
+            if life.remote:
+                course.wait_for_late_ones()
+        except LearnerError as error:
+            life.error = error
         life.seconds = passing.seconds
         life.flooded, life.hanging = passing.flooded, passing.hanging
     probe.note_output(life.seconds, said)
@@ -167,7 +174,7 @@ def live(
 
 
 def _nodes(
-    probe: Probe, topics: Mapping[str, str], only: str
+    probe: Probe, topics: Mapping[str, str], wanted: Collection[str]
 ) -> tuple[list[Any], list[Any], list[str]]:
     """Return the nodes for which time passes, for which it stands, and those of elsewhere."""
     names = {
@@ -175,11 +182,11 @@ def _nodes(
         for topic in topics
         for end in (*probe.publishers(topic), *probe.subscriptions(topic))
     }
-    here = {name: probe.node_object(name) for name in sorted(names)}
-    moving = [node for name, node in here.items() if node is not None and only in ('', name)]
-    standing = [node for name, node in here.items() if node is not None and only not in ('', name)]
-    foreign = [name for name, node in here.items() if node is None and only in ('', name)]
-    return moving, standing, foreign
+    here = {name: probe.node_object(name) for name in sorted({*names, *wanted})}
+    found = [(name, node) for name, node in here.items() if node is not None]
+    moving = [node for name, node in found if name in wanted]
+    standing = [node for name, node in found if name not in wanted]
+    return moving, standing, [name for name in sorted(wanted) if here[name] is None]
 
 
 @dataclass

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 import re
 import zlib
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import product, zip_longest
 from typing import Any
 
 from labkit.errors import LabError, nearest
@@ -221,7 +221,7 @@ class Number(Question):
         for number in numbers:
             if abs(number - answer) <= self.tolerance + 1e-9 * abs(answer):
                 return Feedback(True, [('why', self.why)])
-        for number, (value, why) in itertools.product(numbers, self.wrong.items()):
+        for number, (value, why) in product(numbers, self.wrong.items()):
             # Nobody types all decimals of a number that has many.
             rounded = 1e-9 if float(value).is_integer() else 0.005
             if math.isclose(number, value, rel_tol=rounded, abs_tol=self.tolerance / 2):
@@ -298,8 +298,9 @@ def _nearly(word: str, rights: Collection[str]) -> str:
             return 'Capital and small letters differ in names.'
         if re.sub(r'[\s_-]', '', word).casefold() == re.sub(r'[\s_-]', '', one).casefold():
             return 'An underscore is part of the name, and a name has no blanks.'
-    if nearest(word, rights):
-        return 'It is nearly that. Compare the name letter by letter.'
+        parts = zip_longest(word.split('/'), one.split('/'), fillvalue='')
+        if all(nearest(part, [other]) for part, other in parts):
+            return 'It is nearly that. Compare the name letter by letter.'
     return ''
 
 

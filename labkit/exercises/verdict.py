@@ -15,6 +15,10 @@ from labkit.views.card import Card
 __all__ = ['Fail', 'LearnerError', 'NotAttempted', 'Outcome', 'Verdict']
 
 
+# A longer line of a verdict is cut: a message may be of any length.
+LONGEST = 800
+
+
 class Outcome(enum.Enum):
     """The four answers of a check."""
 
@@ -46,6 +50,7 @@ class Verdict:
         todo: The next step.
         trace: The learner's lines of a traceback, and the message of the error.
         note: Something beside the point, such as a progress file that can't be written.
+        clause: What of the task is not fulfilled, in its words; `''` if no clause says so.
     """
 
     outcome: Outcome
@@ -57,6 +62,7 @@ class Verdict:
     todo: str = ''
     trace: str = ''
     note: str = ''
+    clause: str = ''
 
     @property
     def passed(self) -> bool:
@@ -68,21 +74,38 @@ class Verdict:
         return dataclasses.replace(self, note=note)
 
     def _card(self) -> Card:
-        rows = (
-            ('Expected', self.expected),
-            ('Seen', self.seen),
-            ('Why', self.why),
-            ('Next', self.todo),
-            ('Note', self.note),
-        )
+        rows = [
+            (label, _bounded(text))
+            for label, text in (
+                ('Expected', self.expected),
+                ('Seen', self.seen),
+                ('Why', self.why),
+                ('Next', self.todo),
+                ('Note', self.note),
+            )
+        ]
         word, tone = self.outcome.value, _TONES[self.outcome]
-        return Card(tone, word, self.name, text=self.text, rows=rows, code=self.trace)
+        return Card(
+            tone,
+            word,
+            self.name,
+            text=_bounded(self.text),
+            rows=rows,
+            code=_bounded(self.trace, 4 * LONGEST),
+        )
 
     def __repr__(self) -> str:
         return repr(self._card())
 
     def _repr_html_(self) -> str:
         return self._card()._repr_html_()
+
+
+def _bounded(text: str, longest: int = LONGEST) -> str:
+    """Return a text, cut in the middle if nobody would read all of it."""
+    if len(text) <= longest:
+        return text
+    return f'{text[: longest // 2]} ... {text[-longest // 2 :]}'
 
 
 class Fail(Exception):
@@ -93,6 +116,10 @@ class Fail(Exception):
         seen: What was observed; values with `!r`.
         why: The misconception that leads there, in a sentence a beginner understands.
         todo: The next step.
+
+    Attributes:
+        clause: What of the task is not fulfilled, in its words; `''` if no clause says so.
+        came_first: Whether it was so before a callback raised, and is no consequence of that.
     """
 
     def __init__(self, expected: str, seen: str, *, why: str = '', todo: str = '') -> None:
@@ -101,6 +128,8 @@ class Fail(Exception):
         self.seen = seen
         self.why = why
         self.todo = todo
+        self.clause = ''
+        self.came_first = False
 
 
 class NotAttempted(Exception):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -10,12 +10,12 @@ from labkit.exercises.expect.timing import hanging, spun
 from labkit.exercises.expect.values import show, text_trouble
 from labkit.exercises.probe import Probe
 from labkit.exercises.verdict import Fail
-from labkit.exercises.watch import Watch
+from labkit.exercises.watch import Sample, Watch
 
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
 
-__all__ = ['Reply', 'logs', 'replies']
+__all__ = ['Reply', 'lines_of', 'logs', 'replies']
 
 # How long an answer may take; asked again after this it is looked at what the node is busy with.
 PATIENCE_SEC = 0.6
@@ -98,6 +98,21 @@ def replies(
     return results
 
 
+def lines_of(node: str, samples: Iterable[Sample]) -> list[tuple[float, str]]:
+    """Return the lines of a node's logger and of the loggers below it, with their times `at`.
+
+    Args:
+        node: Full name of the node.
+        samples: Messages of /rosout.
+    """
+    logger = node.strip('/').replace('/', '.')
+    return [
+        (sample.at, sample.message.msg)
+        for sample in samples
+        if sample.message.name == logger or sample.message.name.startswith(f'{logger}.')
+    ]
+
+
 def logs(probe: Probe, node: str, source: Endpoint, fields: Mapping[str, Any], text: str) -> str:
     """Send a test message, and expect that the node logs it.
 
@@ -114,13 +129,11 @@ def logs(probe: Probe, node: str, source: Endpoint, fields: Mapping[str, Any], t
     Raises:
         Fail: Nothing is logged, or something else.
     """
-    logger = node.strip('/').replace('/', '.')
     before = len(probe.logs)
     send = probe.sender(source.topic, source.msg_type)
 
     def lines() -> list[str]:
-        records = [sample.message for sample in probe.logs.samples[before:]]
-        return [record.msg for record in records if record.name == logger]
+        return [line for _, line in lines_of(node, probe.logs.samples[before:])]
 
     def logged() -> bool:
         return any(text in line for line in lines())

@@ -4,24 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from labkit.exercises.verdict import Fail
-from labkit.exercises.watch import Watch
+
+if TYPE_CHECKING:
+    from labkit.exercises.clauses.base import Stream
+    from labkit.exercises.watch import Watch
 
 __all__ = ['each', 'equal', 'first', 'increasing', 'show', 'steps', 'text_trouble']
 
 SHOWN = 6
+# Longer texts are shown in part.
+LONGEST = 120
 
 
 def show(values: Sequence[Any]) -> str:
-    """Return values for people: the first few, with `!r`."""
-    text = ', '.join(repr(value) for value in values[:SHOWN])
+    """Return values for people: the first few, with `!r`, and of a long text both ends."""
+    text = ', '.join(map(_short, values[:SHOWN]))
     return f'{text}, ...' if len(values) > SHOWN else text
 
 
+def _short(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= LONGEST else f'{text[: LONGEST // 2]} ... {text[-LONGEST // 4 :]}'
+
+
 def each(
-    watch: Watch,
+    watch: Watch | Stream,
     field: str,
     rule: Callable[[Any], bool],
     *,
@@ -47,7 +57,9 @@ def each(
         raise Fail(expected, f'{field} = {show(values)} on {watch.topic}', why=why, todo=todo)
 
 
-def equal(watch: Watch, field: str, wanted: Any, *, why: str = '', todo: str = '') -> None:
+def equal(
+    watch: Watch | Stream, field: str, wanted: Any, *, why: str = '', todo: str = ''
+) -> None:
     """Expect one value in every message. For a text it is said where it differs.
 
     Raises:
@@ -64,7 +76,7 @@ def equal(watch: Watch, field: str, wanted: Any, *, why: str = '', todo: str = '
             )
 
 
-def increasing(watch: Watch, field: str, *, why: str = '', todo: str = '') -> None:
+def increasing(watch: Watch | Stream, field: str, *, why: str = '', todo: str = '') -> None:
     """Expect a field to grow from message to message.
 
     Raises:
@@ -81,7 +93,7 @@ def increasing(watch: Watch, field: str, *, why: str = '', todo: str = '') -> No
             )
 
 
-def steps(watch: Watch, field: str, step: Any, *, why: str = '', todo: str = '') -> None:
+def steps(watch: Watch | Stream, field: str, step: Any, *, why: str = '', todo: str = '') -> None:
     """Expect a number to grow by the same step from each message to the next.
 
     Args:
@@ -107,7 +119,7 @@ def steps(watch: Watch, field: str, step: Any, *, why: str = '', todo: str = '')
 
 
 def first(
-    watch: Watch, field: str, start: Any, step: Any, *, why: str = '', todo: str = ''
+    watch: Watch | Stream, field: str, start: Any, step: Any, *, why: str = '', todo: str = ''
 ) -> None:
     """Expect where a count started, seen from where it is now.
 

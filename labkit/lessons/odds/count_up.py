@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Exercise, Probe, Solution, Style, Watch, Wrong, changed, expect
+from collections.abc import Sequence
+
+from labkit.exercises import Exercise, Solution, Style, Wrong, changed, expect
+from labkit.exercises.clauses import Messages, Publishes, Stream
 from labkit.lessons._script import in_process, two_copies
 
 __all__ = ['count_up']
@@ -34,38 +37,35 @@ odds = lab.spin(Odds())
 """
 
 
-def _judge_count_up(probe: Probe) -> str:
-    source = expect.publisher(probe, '/odds')
-    watch = expect.messages(probe, source, count=4, hz=5.0)
+def _odd_numbers(stream: Stream) -> str:
     expect.each(
-        watch,
+        stream,
         'data',
         lambda value: value % 2 == 1,
         expected='odd numbers on /odds: 1, 3, 5, ...',
-        why=_why_even(watch),
+        why=_why_even(stream.values('data')),
         todo='Start with 1, and add 2 each time.',
     )
     expect.steps(
-        watch,
+        stream,
         'data',
         2,
         todo='Keep the number in the node (self.number = 1 in __init__), and add 2 in the '
         'callback.',
     )
-    if watch.samples[0].number < BEFORE_THE_LIMIT:
+    if stream.samples[0].number < BEFORE_THE_LIMIT:
         expect.first(
-            watch,
+            stream,
             'data',
             1,
             2,
             why='The count does not start with 1. Is the number changed before it is published '
             'for the first time?',
         )
-    return f'{source.node} publishes {expect.show(watch.values("data"))} on /odds.'
+    return f'The numbers are {expect.show(stream.values("data"))}.'
 
 
-def _why_even(watch: Watch) -> str:
-    values = watch.values('data')
+def _why_even(values: Sequence[int]) -> str:
     if len(set(values[1:])) == 1:
         return f'Every message says {values[1]}: the number is not changed after each message.'
     if any(value % 2 for value in values):
@@ -77,7 +77,10 @@ count_up = Exercise(
     name='count_up',
     task='Publish the odd numbers 1, 3, 5, ... on /odds as `Int16`, five a second.',
     publishes={'/odds': INT16},
-    judge=_judge_count_up,
+    clauses=(
+        Publishes('/odds', 5.0, INT16),
+        Messages('/odds', 'the odd numbers 1, 3, 5, ..., one a message', _odd_numbers),
+    ),
     hints=[
         'The callback runs again and again. What must outlive one run, so that the next one can '
         'go on from there?',

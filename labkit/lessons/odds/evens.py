@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Sequence
 
-from labkit.exercises import Exercise, Outcome, Probe, Solution, Style, Wrong, changed, expect
+from labkit.exercises import Exercise, Outcome, Solution, Style, Wrong, changed
+from labkit.exercises.clauses import Answers
+from labkit.exercises.draws import draw_int16s
 from labkit.lessons._script import in_process
-from labkit.lessons._stage import find_stage
 
 __all__ = ['evens']
 
 INT16 = 'std_msgs/msg/Int16'
-# Nobody who counts upwards from 1 sends these.
-TESTS = (-41, -4001, -7)
 
 _EVENS = """
 from rclpy.node import Node
@@ -36,22 +34,7 @@ evens = lab.spin(Evens())
 """
 
 
-def _judge_evens(probe: Probe) -> str:
-    hears, says = find_stage(probe, '/odds', '/evens', {'data': TESTS[0]})
-    found = expect.replies(
-        probe,
-        hears,
-        [{'data': number} for number in TESTS],
-        says,
-        lambda sent: sent['data'] + 1,
-        explain=_explain,
-    )
-    pairs = ', '.join(f'{reply.sent["data"]} -> {reply.sent["data"] + 1}' for reply in found)
-    return f'{hears.node} makes even numbers of odd ones: {pairs}.'
-
-
-def _explain(sent: Mapping[str, Any], came: list[Any]) -> tuple[str, str]:
-    number = sent['data']
+def _explain(number: int, came: Sequence[int]) -> tuple[str, str]:
     if number in came:
         return (
             'The number is passed on as it came.',
@@ -75,7 +58,17 @@ evens = Exercise(
     task='Subscribe to /odds, add 1 to each number and publish the result on /evens (`Int16`).',
     subscribes={'/odds': INT16},
     publishes={'/evens': INT16},
-    judge=_judge_evens,
+    clauses=(
+        Answers(
+            '/odds',
+            '/evens',
+            'for each number on `/odds`, publish that number plus 1 on `/evens` '
+            '(both `std_msgs/msg/Int16`), once, within a second',
+            answer=lambda number: number + 1,
+            draw=lambda: draw_int16s(-32767, 32765, 2),
+            explain=_explain,
+        ),
+    ),
     hints=[
         'One node may have a publisher and a subscription. Make both in __init__.',
         'The callback of the subscription gets the odd number, in msg.data. There the even one is '

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from labkit.exercises import Exercise, Outcome, Probe, Solution, Style, Wrong, changed, expect
+from labkit.exercises import Exercise, Outcome, Solution, Style, Wrong, changed
+from labkit.exercises.clauses import Publishes, Says
 from labkit.lessons._script import in_process
 
 __all__ = ['ones']
@@ -32,21 +33,6 @@ ones = lab.spin(Ones())
 """
 
 
-def _judge_ones(probe: Probe) -> str:
-    source = expect.publisher(probe, '/ones')
-    watch = expect.messages(probe, source, count=4, hz=10.0)
-    values = watch.values('data')
-    why, todo = _explain(values)
-    expect.that(
-        set(values) == {1},
-        expected='data = 1 in every message on /ones',
-        seen=f'data = {expect.show(values)}',
-        why=why,
-        todo=todo,
-    )
-    return f'{source.node} publishes 1 at {expect.describe_rate(watch)}.'
-
-
 def _explain(values: Sequence[int]) -> tuple[str, str]:
     if not any(values):
         return (
@@ -65,7 +51,10 @@ ones = Exercise(
     name='ones',
     task='Publish the `Int16` 1 on /ones ten times a second, without end.',
     publishes={'/ones': INT16},
-    judge=_judge_ones,
+    clauses=(
+        Publishes('/ones', 10.0, INT16),
+        Says('/ones', 1, words='the number is always 1', explain=_explain),
+    ),
     hints=[
         'The talker of the lesson "Talker and listener" does nearly the same. Its type is String, '
         'and its text changes.',
@@ -172,7 +161,7 @@ threading.Thread(target=work, daemon=True).start()
         Wrong(
             'rate for period',
             changed(_ONES, ('create_timer(0.1,', 'create_timer(10,')),
-            'its period is 10 s',
+            'A rate in Hz and a period in seconds were mixed up',
         ),
         Wrong(
             'ten times too fast',

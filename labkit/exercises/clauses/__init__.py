@@ -1,0 +1,29 @@
+"""What a task asks for, clause by clause: the words of the task and the check are two faces of it.
+
+A clause is data. Its `text` stands in the notebook; `find` looks for what has to be in the graph,
+`tests` says what is sent to the nodes, and `judge` looks at half a minute of their lives.
+"""
+
+from __future__ import annotations
+
+from labkit.exercises.clauses.answering import Answers, Logs, find_stage
+from labkit.exercises.clauses.base import Clause, Evidence, Stream, Test, judge
+from labkit.exercises.clauses.nodes import Named, Subscribes
+from labkit.exercises.clauses.publishing import Messages, Publishes, Says, often
+
+__all__ = [
+    'Answers',
+    'Clause',
+    'Evidence',
+    'Logs',
+    'Messages',
+    'Named',
+    'Publishes',
+    'Says',
+    'Stream',
+    'Subscribes',
+    'Test',
+    'find_stage',
+    'judge',
+    'often',
+]

@@ -1,0 +1,307 @@
+"""Clauses on what a node does with each message that it hears: answers it, or logs it.
+
+Each message is answered once, and nothing is answered that did not come. Other nodes may talk on
+the same topics meanwhile: what they send has to be answered as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from labkit.exercises.clauses.base import Clause, Evidence, Test
+from labkit.exercises.expect.replies import lines_of
+from labkit.exercises.expect.timing import hanging, spun
+from labkit.exercises.expect.values import show, text_trouble
+from labkit.exercises.verdict import Fail
+from labkit.exercises.watch import Sample
+
+if TYPE_CHECKING:
+    from labkit.exercises.probe import Probe
+    from labkit.rosgraph.endpoints import Endpoint
+
+__all__ = ['Answers', 'Logs', 'find_stage']
+
+# How soon an answer has to come, s. A node may keep what it hears until its timer ticks.
+WITHIN_SEC = 1.0
+# How long the first answer of a node may take, if it makes its publisher only then, s.
+FIRST_ANSWER_SEC = 0.6
+# So many topics more, which a node hears though nobody has asked for it, get a test, too.
+MAX_OTHERS = 3
+
+Explain = Callable[[Any, Sequence[Any]], tuple[str, str]]
+
+
+@dataclass(frozen=True, eq=False)
+class Answers(Clause):
+    """A node answers each message on one topic with one message on another topic.
+
+    Attributes:
+        inner: Full name of the topic that it hears.
+        outer: Full name of the topic that it publishes on.
+        words: What is asked for, in words of the task.
+        answer: The value that an answer has, from the value that was heard.
+        draw: Draws the values that are sent as tests.
+        field: Name of the field of both messages.
+        by: Full name of the node; any node if empty.
+        explain: Gets a value that was heard, and the values that came upon it (maybe none);
+            returns the misconception and the next step, or two empty texts.
+    """
+
+    inner: str
+    outer: str
+    words: str
+    answer: Callable[[Any], Any]
+    draw: Callable[[], Sequence[Any]]
+    field: str = 'data'
+    by: str = ''
+    explain: Explain | None = None
+    judges_parts = True
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return self.words
+
+    def find(self, evidence: Evidence) -> None:
+        """Look for the subscription and the publisher of one node."""
+        hears, says = find_stage(
+            evidence.probe, self.inner, self.outer, {self.field: self.draw()[0]}, by=self.by
+        )
+        evidence.ends['subscription', self.inner, self.by] = hears
+        evidence.ends['publisher', self.outer, self.by] = says
+
+    def tests(self, evidence: Evidence) -> Sequence[Test]:
+        """Return messages to be answered, and some on topics that are none of its business."""
+        hears = evidence.subscription(self.inner, self.by)
+        spun(evidence.probe, hears)
+        tests = [
+            Test(self.inner, hears.msg_type, {self.field: value}, (self.outer,))
+            for value in self.draw()
+        ]
+        for other in _others(evidence.probe, hears)[:MAX_OTHERS]:
+            tests.append(Test(other.topic, other.msg_type, {self.field: self.draw()[1]}))
+        return tests
+
+    def judge(self, evidence: Evidence) -> str:
+        """Judge the answers."""
+        life = evidence.life
+        heard = [(s.at, _get(s, self.field)) for s in life.on(self.inner)]
+        came = [(s.at, _get(s, self.field)) for s in life.on(self.outer)]
+        left = list(came)
+        missing = []
+        for at, value in heard:
+            right = self.answer(value)
+            found = next((i for i, (t, v) in enumerate(left) if t >= at and v == right), None)
+            if found is not None:
+                del left[found]
+            elif at < life.seconds - WITHIN_SEC:
+                missing.append((at, value))
+        if missing:
+            self._refuse_missing(evidence, missing, left, len(heard))
+        if left:
+            self._refuse_extra(evidence, heard, left)
+        examples = [value for _, value in heard[:2]]
+        pairs = ', '.join(f'{show([v])} -> {show([self.answer(v)])}' for v in examples)
+        hears = evidence.subscription(self.inner, self.by)
+        return f'{hears.node} has answered {len(heard)} messages, each once: {pairs}.'
+
+    def _refuse_missing(
+        self,
+        evidence: Evidence,
+        missing: Sequence[tuple[float, Any]],
+        left: Sequence[tuple[float, Any]],
+        count: int,
+    ) -> NoReturn:
+        hears = evidence.subscription(self.inner, self.by)
+        at, value = missing[0]
+        came = [v for t, v in left if at <= t < at + WITHIN_SEC]
+        if not left:
+            hanging(evidence.probe)
+        right = self.answer(value)
+        why, todo = self.explain(value, came) if self.explain is not None else ('', '')
+        if not why and came:
+            why = text_trouble(came[-1], right)
+            todo = 'Compare the value that is wanted with the one seen.'
+        if not why and len(missing) < count:
+            why = f'{count - len(missing)} of {count} messages were answered rightly, others not.'
+        if not why:
+            why = f'The message reached {hears.node}, but its callback did not publish.'
+            todo = f'Publish on {self.outer} in the callback of the subscription to {self.inner}.'
+        raise Fail(
+            f'{self.field} = {show([right])} on {self.outer} when {self.field} = {show([value])} '
+            f'comes on {self.inner}',
+            f'{self.field} = {show(came)}' if came else f'nothing on {self.outer}',
+            why=why,
+            todo=todo,
+        )
+
+    def _refuse_extra(
+        self,
+        evidence: Evidence,
+        heard: Sequence[tuple[float, Any]],
+        left: Sequence[tuple[float, Any]],
+    ) -> NoReturn:
+        at, value = left[0]
+        expected = f'one message on {self.outer} for each one on {self.inner}, and no other'
+        others = {
+            self.answer(sent.fields[self.field]): sent.topic
+            for sent in evidence.life.sent
+            if sent.topic != self.inner
+        }
+        answered = [v for t, v in heard if self.answer(v) == value and t <= at]
+        before = [v for t, v in heard if t <= at]
+        why, todo = '', f'Publish on {self.outer} only in the callback for {self.inner}, and once.'
+        if value in others:
+            why = f'What comes on {others[value]} is answered, too. Nobody asked for that.'
+        elif answered and len(left) >= 3 and len({v for _, v in left}) == 1:
+            why = 'The answer is repeated, again and again: a timer or a loop publishes it.'
+        elif answered:
+            why = 'A message is answered more than once.'
+        elif before and value == before[-1]:
+            why = 'What came in goes out as well, as it is, beside the answer.'
+        elif not before:
+            why = 'It publishes although nothing has come.'
+        else:
+            why = 'More is published than answers.'
+        raise Fail(
+            expected,
+            f'{len(left)} more on {self.outer}: {self.field} = {show([v for _, v in left])}',
+            why=why,
+            todo=todo,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Logs(Clause):
+    """A node logs a line for each message, and the line holds its text.
+
+    Attributes:
+        topic: Full name of the topic that it hears.
+        words: What is asked for, in words of the task.
+        draw: Draws the texts that are sent as tests.
+        field: Name of the field that holds the text.
+    """
+
+    topic: str
+    words: str
+    draw: Callable[[], Sequence[str]]
+    field: str = 'data'
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return self.words
+
+    def find(self, evidence: Evidence) -> None:
+        """Look for the subscription."""
+        evidence.subscription(self.topic)
+
+    def tests(self, evidence: Evidence) -> Sequence[Test]:
+        """Return messages to be logged."""
+        hears = evidence.subscription(self.topic)
+        spun(evidence.probe, hears)
+        return [
+            Test(self.topic, hears.msg_type, {self.field: text}, ('/rosout',))
+            for text in self.draw()
+        ]
+
+    def judge(self, evidence: Evidence) -> str:
+        """Judge the lines."""
+        source = evidence.subscription(self.topic)
+        lines = lines_of(source.node, evidence.life.on('/rosout'))
+        heard = [(s.at, str(_get(s, self.field))) for s in evidence.life.on(self.topic)]
+        last = ''
+        for number, (at, text) in enumerate(heard):
+            later = [t for t, _ in heard[number + 1 :] if t > at]
+            end = min([at + WITHIN_SEC, *later])
+            here = [line for t, line in lines if at <= t < end]
+            same = [t for t, other in heard if at <= t < end and other == text]
+            holding = [line for line in here if text in line]
+            if len(holding) < len(same):
+                self._refuse(evidence, text, here, bool(last))
+            if len(holding) > len(same):
+                raise Fail(
+                    f'one line of {source.node} for each message on {self.topic}',
+                    f'{len(holding)} lines: {show(holding)}',
+                    why='The same message is logged more than once.',
+                    todo='Call get_logger().info(...) once in the callback.',
+                )
+            last = holding[0]
+        quiet = [line for t, line in lines if not any(a <= t < a + WITHIN_SEC for a, _ in heard)]
+        if quiet:
+            raise Fail(
+                f'lines of {source.node} when a message comes, and none otherwise',
+                f'{len(quiet)} lines when none had come: {show(quiet)}',
+                why='A timer or a loop logs, too.',
+                todo='Log in the callback of the subscription only.',
+            )
+        return f'{source.node} logged each of {len(heard)} texts in a line.'
+
+    def _refuse(self, evidence: Evidence, text: str, here: Sequence[str], some: bool) -> NoReturn:
+        source = evidence.subscription(self.topic)
+        if not here:
+            hanging(evidence.probe)
+        why = 'The callback runs, but its line does not hold what the message says.'
+        if not here:
+            why = (
+                'The callback does not log. print() shows a text here; the logger also tells all '
+                'other nodes of it.'
+            )
+        if some:
+            why = 'Some messages are logged as they came, and this one is not.'
+        raise Fail(
+            f'{source.node} logs a line with {show([text])} when that comes on {self.topic}',
+            f'{source.node} logged {show(here)}' if here else f'{source.node} logged nothing',
+            why=why,
+            todo="In the callback: self.get_logger().info(f'...{msg.data}')",
+        )
+
+
+def find_stage(
+    probe: Probe, inner: str, outer: str, test: dict[str, Any], *, by: str = ''
+) -> tuple[Endpoint, Endpoint]:
+    """Expect a node of the learner's that subscribes to one topic and publishes on another one.
+
+    Args:
+        probe: The probe of the check.
+        inner: Full name of the topic that it hears.
+        outer: Full name of the topic that it publishes on.
+        test: Fields of a message to send, should the node not have a publisher yet.
+        by: Full name of the node; any node if empty.
+
+    Returns:
+        Its subscription and its publisher.
+
+    Raises:
+        NotAttempted: Nothing of the learner's is there.
+        Fail: One of the two is missing, misnamed, of another type, or not the only one.
+    """
+    from labkit.exercises import expect
+
+    found = probe.publishers(outer)
+    if not by and found:
+        by = expect.publisher(probe, outer).node
+    hears = expect.subscription(probe, inner, by=by)
+    echoes = {endpoint.node for endpoint in probe.publishers(inner)}
+    if not found and hears.node not in echoes:
+        probe.sender(inner, hears.msg_type)(test)
+        probe.wait(lambda: probe.publishers(outer), FIRST_ANSWER_SEC)
+    return hears, expect.publisher(probe, outer, by=hears.node)
+
+
+def _others(probe: Probe, hears: Endpoint) -> list[Endpoint]:
+    """Return what else the node hears, of the same type, though nobody has asked for it."""
+    return [
+        end
+        for end in probe.all_subscriptions()
+        if end.node == hears.node
+        and end.topic not in probe.scope.subscribes
+        and end.msg_type == hears.msg_type
+    ]
+
+
+def _get(sample: Sample, path: str) -> Any:
+    return reduce(getattr, path.split('.'), sample.message)

@@ -1,0 +1,238 @@
+"""A task as clauses: each has its words, and knows how to check them."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from labkit.exercises import expect
+from labkit.exercises.life import LIFE_SEC, Life, Sent, Stimulus, live
+from labkit.exercises.verdict import Fail
+from labkit.exercises.watch import Sample
+
+if TYPE_CHECKING:
+    from labkit.exercises.probe import Probe
+    from labkit.rosgraph.endpoints import Endpoint
+
+__all__ = ['Clause', 'Evidence', 'Stream', 'Test', 'judge']
+
+# The first test is sent after this time, and the others with so much time in between, s.
+TEST_EVERY_SEC = 1.0
+LOG = 'rcl_interfaces/msg/Log'
+
+
+@dataclass(frozen=True)
+class Test:
+    """A test message, see `Stimulus`; when it is sent, the evidence says."""
+
+    topic: str
+    msg_type: str
+    fields: dict[str, Any]
+    answers: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Stream:
+    """The messages of one publisher.
+
+    Attributes:
+        topic: Full name of the topic.
+        samples: The messages, in their order.
+        exact: Whether their times are exact, because the node follows ROS time. Else time was
+            real, and `at` is not known.
+        seconds: How long it was watched, s.
+    """
+
+    topic: str
+    samples: Sequence[Sample]
+    exact: bool
+    seconds: float
+
+    def values(self, field_name: str) -> list[Any]:
+        """Return a field of each message; dots lead to inner ones."""
+        from functools import reduce
+
+        path = field_name.split('.')
+        return [reduce(getattr, path, sample.message) for sample in self.samples]
+
+    def __len__(self) -> int:
+        return len(self.samples)
+
+
+@dataclass
+class Evidence:
+    """What a check has found out so far.
+
+    Attributes:
+        probe: The probe of the check.
+        ends: The publishers and subscriptions that clauses have found, by kind, topic and node.
+        life: What was seen while time passed. Before `gather`, nothing.
+        streams: The messages of each publisher, by topic and node; `Publishes` puts them there.
+        tests: The tests that each clause has asked for, as they were sent.
+    """
+
+    probe: Probe
+    ends: dict[tuple[str, str, str], Endpoint] = field(default_factory=dict)
+    life: Life = field(default_factory=Life)
+    streams: dict[tuple[str, str], Stream] = field(default_factory=dict)
+    tests: dict[Clause, list[Sent]] = field(default_factory=dict)
+
+    def publisher(self, topic: str, by: str = '') -> Endpoint:
+        """Return the learner's publisher on a topic; see `expect.publisher` for what it raises."""
+        key = ('publisher', topic, by)
+        if key not in self.ends:
+            self.ends[key] = expect.publisher(self.probe, topic, by=by)
+        return self.ends[key]
+
+    def subscription(self, topic: str, by: str = '') -> Endpoint:
+        """Return the learner's subscription to a topic, likewise."""
+        key = ('subscription', topic, by)
+        if key not in self.ends:
+            self.ends[key] = expect.subscription(self.probe, topic, by=by)
+        return self.ends[key]
+
+    def gather(self, clauses: Sequence[Clause]) -> None:
+        """Let time pass, and send what the clauses want to be sent."""
+        scope = self.probe.scope
+        topics = {**scope.publishes, **scope.subscribes}
+        stimuli: list[Stimulus] = []
+        asked: list[tuple[Clause, int]] = []
+        for clause in clauses:
+            for test in clause.tests(self):
+                at = TEST_EVERY_SEC * (len(stimuli) + 1)
+                stimuli.append(Stimulus(at, test.topic, test.msg_type, test.fields, test.answers))
+                asked.append((clause, len(stimuli) - 1))
+        self.life = self.live(
+            topics, max(LIFE_SEC, stimuli[-1].at + 5.0 if stimuli else 0.0), clauses, stimuli
+        )
+        for clause, number in asked:
+            if number < len(self.life.sent):
+                self.tests.setdefault(clause, []).append(self.life.sent[number])
+        if self.life.error is not None:
+            # What was wrong before is the better answer: the error may be its consequence.
+            for clause in clauses:
+                if clause.judges_parts:
+                    with naming(clause, came_first=True):
+                        clause.judge(self)
+            raise self.life.error
+        if self.life.hanging:
+            expect.hanging(self.probe)
+        if self.life.flooded:
+            raise Fail(
+                'callbacks that come to an end',
+                f'so many callbacks within one moment that the check stopped counting, after '
+                f'{self.life.seconds:.1f} s of time',
+                why='A timer has no period, or a message sets off another one, which sets off the '
+                'next one, without an end.',
+                todo='Give the timer a period in seconds, and publish on a topic that the node '
+                'does not hear itself.',
+            )
+
+    def live(
+        self,
+        topics: dict[str, str],
+        seconds: float,
+        clauses: Sequence[Clause],
+        stimuli: Sequence[Stimulus] = (),
+        nodes: Collection[str] = (),
+    ) -> Life:
+        """Let time pass for some nodes, as exactly as the clauses need it.
+
+        Time passes for the nodes that clauses have found, if none are named. What else has an end
+        on these topics, such as a node of an earlier exercise, stands still.
+        """
+        also = {'/rosout': LOG} if any('/rosout' in s.answers for s in stimuli) else {}
+        period = min((clause.period for clause in clauses if clause.period), default=0.5)
+        return live(
+            self.probe,
+            topics,
+            seconds,
+            stimuli=stimuli,
+            also=also,
+            nodes=nodes or {end.node for end in self.ends.values()},
+            tick=period / 5,
+            # So 100 ticks tell a rate to one percent.
+            fine_sec=20 * period,
+            rest=max(period, 0.1),
+        )
+
+
+class Clause(ABC):
+    """One thing that a task asks for.
+
+    Attributes:
+        period: The shortest time between two messages that it is about, s; 0 if there is none.
+        judges_parts: Whether it can judge a life that an error has ended early.
+    """
+
+    period: float = 0.0
+    judges_parts = False
+
+    @property
+    @abstractmethod
+    def text(self) -> str:
+        """What is asked for, in words of the task. The notebook says it in the same words."""
+
+    def find(self, evidence: Evidence) -> None:
+        """Look for what has to be in the graph.
+
+        Raises:
+            NotAttempted: Nothing of the learner's shows an attempt.
+            Fail: It is missing, or otherwise.
+        """
+        return
+
+    def tests(self, evidence: Evidence) -> Sequence[Test]:
+        """Return the test messages that are to be sent."""
+        return ()
+
+    def judge(self, evidence: Evidence) -> str:
+        """Judge what was seen.
+
+        Returns:
+            What was seen, in a sentence; `''` if there is nothing to say.
+
+        Raises:
+            Fail: It is not what the clause asks for.
+        """
+        return ''
+
+
+def judge(probe: Probe, clauses: Sequence[Clause]) -> str:
+    """Look for each clause in the graph, let time pass, and judge each clause.
+
+    Args:
+        probe: The probe of the check.
+        clauses: What the task asks for.
+
+    Returns:
+        What was seen, in a sentence for each clause that has something to say.
+
+    Raises:
+        NotAttempted: Nothing of the learner's shows an attempt.
+        Fail: A clause is not fulfilled; the exception names it.
+    """
+    evidence = Evidence(probe)
+    said = []
+    for clause in clauses:
+        with naming(clause):
+            clause.find(evidence)
+    evidence.gather(clauses)
+    for clause in clauses:
+        with naming(clause):
+            said.append(clause.judge(evidence))
+    return '\n'.join(filter(None, said))
+
+
+@contextmanager
+def naming(clause: Clause, *, came_first: bool = False) -> Iterator[None]:
+    """Let a Fail say which clause is not fulfilled."""
+    try:
+        yield
+    except Fail as fail:
+        fail.clause = fail.clause or clause.text
+        fail.came_first = came_first
+        raise

@@ -1,0 +1,280 @@
+"""Clauses on what is published: how often, without an end, and what the messages say."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, NoReturn
+
+from labkit.exercises.clauses.base import Clause, Evidence, Stream
+from labkit.exercises.expect import timing
+from labkit.exercises.expect.values import show, text_trouble
+from labkit.exercises.life import LIFE_SEC, Life
+from labkit.exercises.verdict import Fail
+from labkit.exercises.watch import Sample
+
+__all__ = ['Messages', 'Publishes', 'Says', 'often']
+
+# How far a rate may be off, as a part of it, where time is exact. Where a node keeps a time of its
+# own, `timing.TOLERANCE` holds.
+TOLERANCE = 0.02
+# How far a single gap may be off: a node may look at the clock in steps of its own.
+GAP_TOLERANCE = 0.5
+# Gaps that differ by less than this are equal, s: that is what a timer of ROS makes.
+REGULAR_SEC = 1e-6
+# So much a rate in real time may differ from that in virtual time if both are one.
+SAME_RATE = 0.3
+_WORDS: dict[float, str] = {
+    1: 'once',
+    2: 'twice',
+    3: 'three times',
+    4: 'four times',
+    5: 'five times',
+    8: 'eight times',
+    10: 'ten times',
+    20: 'twenty times',
+}
+
+
+def often(hz: float) -> str:
+    """Return a rate in words: `'ten times a second (10 Hz)'`."""
+    if hz < 1:
+        return f'every {1 / hz:g} seconds ({hz:g} Hz)'
+    return f'{_WORDS.get(hz, f"{hz:g} times")} a second ({hz:g} Hz)'
+
+
+@dataclass(frozen=True)
+class Publishes(Clause):
+    """A node publishes on a topic at a rate, and goes on.
+
+    Attributes:
+        topic: Full name of the topic. Its type is in the `publishes` of the exercise.
+        hz: Messages a second.
+        msg_type: Name of the type, for the words of the task.
+        by: Full name of the node; any node if empty.
+        at_least: Whether more are right, too.
+        ends: Whether it may end. What it publishes until then comes at that rate.
+    """
+
+    topic: str
+    hz: float
+    msg_type: str
+    by: str = ''
+    at_least: bool = False
+    ends: bool = False
+
+    @property
+    def period(self) -> float:  # type: ignore[override]
+        """Seconds from one message to the next."""
+        return 1.0 / self.hz
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        who = f'`{self.by.lstrip("/")}` publishes' if self.by else 'publish'
+        least = 'at least ' if self.at_least else ''
+        return f'{who} `{self.msg_type}` on `{self.topic}`, {least}{often(self.hz)}'
+
+    def find(self, evidence: Evidence) -> None:
+        """Look for the publisher."""
+        evidence.publisher(self.topic, self.by)
+
+    def judge(self, evidence: Evidence) -> str:
+        """Judge the rate, and whether it goes on."""
+        source = evidence.publisher(self.topic, self.by)
+        life = self._life(evidence)
+        samples = life.on(self.topic)
+        trouble = self._trouble(samples, life)
+        exact = trouble is None
+        if trouble is not None:
+            if _is_regular(samples):
+                self._refuse(trouble)
+            watch = self._in_real_time(evidence, trouble, samples)
+            stream = Stream(self.topic, tuple(watch.samples), False, 0.0)
+        else:
+            stream = Stream(self.topic, tuple(samples), True, life.seconds)
+        evidence.streams[self.topic, self.by] = stream
+        if not exact:
+            return f'{source.node} publishes {timing.describe_rate(watch)} on {self.topic}.'
+        rate = _rate(samples)
+        return f'{source.node} publishes {rate:.3g} Hz on {self.topic}, {life.seconds:.0f} s long.'
+
+    def _life(self, evidence: Evidence) -> Life:
+        scope = evidence.probe.scope
+        if not self.by or self.topic in scope.sole:
+            return evidence.life
+        # A message does not say who has sent it. So time passes for one node alone.
+        topics = {self.topic: scope.publishes[self.topic]}
+        return evidence.live(topics, LIFE_SEC, [self], nodes=[self.by])
+
+    def _in_real_time(self, evidence: Evidence, trouble: tuple[str, str], samples: Any) -> Any:
+        """Watch in real time: the node may keep a time of its own, such as a sleeping thread.
+
+        Raises:
+            Fail: It does not.
+        """
+        source = evidence.publisher(self.topic, self.by)
+        try:
+            watch = timing.messages(
+                evidence.probe, source, count=3, hz=self.hz, at_least=self.at_least
+            )
+        except Fail:
+            # What was seen exactly is the better reason, if it is about the same messages.
+            if len(samples) > 2 and trouble[0]:
+                self._refuse(trouble)
+            raise
+        real, seen = statistics.median(watch.intervals), _period(samples)
+        if seen and abs(seen / real - 1.0) < SAME_RATE:
+            self._refuse(trouble)
+        return watch
+
+    def _trouble(self, samples: Sequence[Sample], life: Life) -> tuple[str, str] | None:
+        """Return what was seen and why, if it is not what the clause asks for."""
+        if len(samples) < 2:
+            count = len(samples)
+            seen = f'{"one message" if count else "no message"} in {life.seconds:.0f} s'
+            return seen, 'The messages come much too slowly, or have stopped coming.'
+        rate, period = _rate(samples), self.period
+        # Times of other processes are known to a tick.
+        margin = TOLERANCE + (period / 5 / (samples[-1].at - samples[0].at) if life.remote else 0)
+        late = life.seconds - samples[-1].at
+        if late > (1 + GAP_TOLERANCE) * max(period, 1 / rate) and not self.ends:
+            return (
+                f'{len(samples)} messages, the last one after {samples[-1].at:.1f} s, and then '
+                f'none until {life.seconds:.0f} s',
+                'They stop coming.',
+            )
+        too_fast = rate * period > 1 + margin and not self.at_least
+        if too_fast or rate * period < 1 - margin:
+            return self._off(rate)
+        gaps = [later.at - earlier.at for earlier, later in pairwise(samples)]
+        longest, shortest = max(gaps), min(gaps)
+        if longest > (1 + GAP_TOLERANCE) * period + 1e-9 or (
+            shortest < (1 - GAP_TOLERANCE) * period - 1e-9 and not self.at_least
+        ):
+            return (
+                f'{len(samples)} messages in {life.seconds:.0f} s, with {shortest:.3g} s to '
+                f'{longest:.3g} s in between',
+                'They come in bursts, or with pauses.',
+            )
+        return None
+
+    def _off(self, rate: float) -> tuple[str, str]:
+        period = 1 / rate
+        factor = period * self.hz
+        off = f'{factor:.3g} times too slow' if factor > 1 else f'{1 / factor:.3g} times too fast'
+        why = 'The rate is set by the period of the timer, or by the time the loop sleeps.'
+        if abs(period / self.hz - 1.0) < 0.02 and abs(self.hz - self.period) > 0.3 * self.hz:
+            why = 'A rate in Hz and a period in seconds were mixed up: the period is 1 / rate.'
+        elif abs(factor - 0.5) < 0.01:
+            why = (
+                'Twice as many messages come as were asked for: is publish() called twice, or '
+                'is the period half as long?'
+            )
+        return f'a message every {period:.3g} s ({rate:.3g} Hz): {off}', why
+
+    def _refuse(self, trouble: tuple[str, str]) -> NoReturn:
+        least = 'at least ' if self.at_least else ''
+        raise Fail(
+            f'{least}a message every {self.period:.3g} s ({self.hz:.3g} Hz) on {self.topic}',
+            trouble[0],
+            why=trouble[1],
+            todo=f'The first argument of create_timer() is the period in seconds: '
+            f'{self.period:.3g}',
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Messages(Clause):
+    """What the messages of a publisher say, all of them, from the first to the last that came.
+
+    Attributes:
+        topic: Full name of the topic. A clause on its rate stands before this one.
+        words: What is asked for, in words of the task.
+        rule: Gets the messages, and raises Fail if they say something else.
+        by: Full name of the node; any node if empty.
+    """
+
+    topic: str
+    words: str
+    rule: Callable[[Stream], str | None]
+    by: str = ''
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return self.words
+
+    def judge(self, evidence: Evidence) -> str:
+        """Judge the messages."""
+        return self.rule(evidence.streams[self.topic, self.by]) or ''
+
+
+@dataclass(frozen=True)
+class Says(Clause):
+    """A field has one value, in each message.
+
+    Attributes:
+        topic: Full name of the topic.
+        value: The value.
+        field: Name of the field.
+        by: Full name of the node; any node if empty.
+        todo: The next step for who has another value.
+        explain: Gets the values that came; returns the misconception and the next step.
+        words: In words of the task; made of the value if empty.
+    """
+
+    topic: str
+    value: Any
+    field: str = 'data'
+    by: str = ''
+    todo: str = ''
+    explain: Callable[[Sequence[Any]], tuple[str, str]] | None = None
+    words: str = ''
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return self.words or f'each message says `{self.value!r}`'
+
+    def judge(self, evidence: Evidence) -> str:
+        """Judge the values."""
+        stream = evidence.streams[self.topic, self.by]
+        values = stream.values(self.field)
+        for number, value in enumerate(values):
+            if value != self.value:
+                why, todo = self.explain(values) if self.explain is not None else ('', '')
+                after = f', after {number} that were right' if number else ''
+                raise Fail(
+                    f'{self.field} = {self.value!r} in each message on {self.topic}',
+                    f'{self.field} = {show(values[number:])}{after}',
+                    why=why or text_trouble(value, self.value),
+                    todo=todo or self.todo,
+                )
+        return ''
+
+
+def _rate(samples: Sequence[Sample]) -> float:
+    """Return the messages a second."""
+    period = _period(samples)
+    return 1 / period if period else float('inf')
+
+
+def _period(samples: Sequence[Sample]) -> float:
+    """Return the mean time from one message to the next, s; 0 if there are too few.
+
+    Messages are numbered by their publisher, so one that was lost on the way does no harm.
+    """
+    if len(samples) < 2:
+        return 0.0
+    first, last = samples[0], samples[-1]
+    count = last.number - first.number if first.number else len(samples) - 1
+    return (last.at - first.at) / max(count, len(samples) - 1)
+
+
+def _is_regular(samples: Sequence[Sample]) -> bool:
+    """Tell whether messages come as evenly in virtual time as only a timer of ROS can."""
+    gaps = [later.at - earlier.at for earlier, later in pairwise(samples)]
+    return len(gaps) >= 4 and max(gaps) - min(gaps) < REGULAR_SEC
