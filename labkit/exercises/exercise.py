@@ -211,7 +211,8 @@ class Exercise:
 
     def _card(self) -> Card:
         text = f'`lesson.{self.name}.check()`, `.hint()`, `.solution()`'
-        return Card('info', 'EXERCISE', self.name, text=f'{self.task}\n{text}')
+        asked = ''.join(f'- {clause.text}\n' for clause in self.clauses)
+        return Card('info', 'EXERCISE', self.name, text=f'{self.task}\n{asked}{text}')
 
     def __repr__(self) -> str:
         return repr(self._card())

@@ -77,6 +77,7 @@ class Verdict:
         rows = [
             (label, _bounded(text))
             for label, text in (
+                ('Task', self.clause),
                 ('Expected', self.expected),
                 ('Seen', self.seen),
                 ('Why', self.why),

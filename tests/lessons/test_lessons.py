@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -67,8 +68,18 @@ def test_exercise_is_complete(lesson: Lesson, exercise: Exercise) -> None:
     for wrong in exercise.wrong:
         assert len(wrong.says) >= 8
     if lesson is not demo.LESSON:
-        assert len(exercise.wrong) >= 3
-        assert len(exercise.styles) >= 2
+        assert exercise.clauses
+        assert len(exercise.wrong) >= 8
+        assert len(exercise.styles) >= 4  # with the shown solution, five right ones
+
+
+@pytest.mark.parametrize(('lesson', 'exercise'), EXERCISES)
+def test_task_in_the_notebook_says_what_is_checked_and_nothing_else(
+    lesson: Lesson, exercise: Exercise
+) -> None:
+    task = cells_of(lesson)[exercise.starter_id.replace('-starter', '-task')]
+    bullets = re.findall(r'^- (.*)$', task, flags=re.MULTILINE)
+    assert bullets == [f'{clause.text}' for clause in exercise.clauses]
 
 
 @pytest.mark.parametrize('question', QUESTIONS)

@@ -8,7 +8,8 @@ from concurrent.futures import Future, ThreadPoolExecutor
 import pytest
 from proof import Finding, State, lessons, prove, states_of
 
-from labkit.exercises import Lesson
+from labkit.exercises import Exercise, Lesson
+from labkit.exercises.clauses import Clause
 
 # A check ends within 5 s by its own clock; the rest is for a busy machine and the kernel's reply.
 MAX_CHECK_SEC = 10.0
@@ -35,6 +36,10 @@ def findings_of(
         if isinstance(params.get('state'), State):
             state = params['state']
             wanted.setdefault(params['lesson'].name, set()).add((state.exercise, state.name))
+        elif isinstance(params.get('clause'), Clause):
+            exercise = params['exercise']
+            states = {(exercise.name, wrong.name) for wrong in exercise.wrong}
+            wanted.setdefault(params['lesson'].name, set()).update(states)
     # The kernels mostly wait for messages, so there may be more of them than cores.
     with ThreadPoolExecutor(max_workers=4) as pool:
         for lesson in sorted(lessons(), key=lambda lesson: -len(wanted.get(lesson.name, ()))):
@@ -51,3 +56,29 @@ def test_verdict(lesson: Lesson, state: State, findings_of: Callable[[Lesson], F
     assert found.outcome is state.outcome, found.text
     assert ' '.join(state.says.split()) in found.text
     assert found.seconds < MAX_CHECK_SEC
+
+
+CLAUSES = [
+    pytest.param(lesson, exercise, clause, id=f'{lesson.name}-{exercise.name}-{number}')
+    for lesson in lessons()
+    for exercise in lesson.exercises
+    for number, clause in enumerate(exercise.clauses, start=1)
+]
+
+
+@pytest.mark.parametrize(('lesson', 'exercise', 'clause'), CLAUSES)
+def test_each_clause_of_a_task_refuses_some_wrong_answer(
+    lesson: Lesson,
+    exercise: Exercise,
+    clause: Clause,
+    findings_of: Callable[[Lesson], Findings],
+) -> None:
+    found = findings_of(lesson)
+    texts = [found[exercise.name, wrong.name].text for wrong in exercise.wrong]
+    # Lines of a verdict are broken where there is no space, too.
+    asked = _without_spaces(f'Task: {clause.text}')
+    assert any(asked in _without_spaces(text) for text in texts), clause.text
+
+
+def _without_spaces(text: str) -> str:
+    return ''.join(text.split())

@@ -39,10 +39,11 @@ _WORDS: dict[float, str] = {
 
 
 def often(hz: float) -> str:
-    """Return a rate in words: `'ten times a second (10 Hz)'`."""
+    """Return a rate in words: `'ten times a second (10 Hz, up to 2 % off)'`."""
+    off = f'up to {100 * TOLERANCE:.0f} % off'
     if hz < 1:
-        return f'every {1 / hz:g} seconds ({hz:g} Hz)'
-    return f'{_WORDS.get(hz, f"{hz:g} times")} a second ({hz:g} Hz)'
+        return f'every {1 / hz:g} seconds ({off})'
+    return f'{_WORDS.get(hz, f"{hz:g} times")} a second ({hz:g} Hz, {off})'
 
 
 @dataclass(frozen=True)
@@ -74,8 +75,11 @@ class Publishes(Clause):
     def text(self) -> str:
         """What is asked for."""
         who = f'`{self.by.lstrip("/")}` publishes' if self.by else 'publish'
-        least = 'at least ' if self.at_least else ''
-        return f'{who} `{self.msg_type}` on `{self.topic}`, {least}{often(self.hz)}'
+        rate = often(self.hz)
+        if self.at_least:
+            rate = f'at least {rate.partition(" (")[0]}'
+        end = '' if self.ends else ', without end'
+        return f'{who} `{self.msg_type}` on `{self.topic}`, {rate}{end}'
 
     def find(self, evidence: Evidence) -> None:
         """Look for the publisher."""
