@@ -46,14 +46,23 @@ reliability = ask('topic info -v /camera', r'Reliability: (\\w+)')
 foghorn = ask('service type /foghorn')
 opposite = {'RELIABLE': 'BEST_EFFORT', 'BEST_EFFORT': 'RELIABLE'}[reliability]
 
-right = [(1, tide), (1, f'/{tide}'), (2, water), (3, field), (4, round(hz)), (5, boats),
-         (6, range_km), (7, reliability), (7, reliability.lower().replace('_', ' ')), (8, foghorn)]
+right = [(1, tide), (1, f'/{tide}'), (1, f'Node name: {tide}.'), (2, water),
+         (2, water.replace('/msg', '')), (3, field), (3, f'{field}: 12.5'), (4, round(hz)),
+         (4, f'{round(hz)},0 Hz'), (5, boats), (5, f' {boats} subscriptions'), (6, range_km),
+         (6, f'{range_km} km'), (7, reliability), (7, reliability.lower().replace('_', ' ')),
+         (7, reliability.title()), (8, foghorn), (8, foghorn.replace('/srv', ''))]
 wrong = [
     (1, f'/{other}', 'does not publish on /tide'),
     (1, '/wind', 'is a topic'),
     (1, f'/{tide}'.title(), 'Capital and small letters'),
     (2, water.rsplit('/')[-1], 'Its name has three parts'),
-    (2, water.replace('/', '.'), 'it is a name in Python'),
+    (2, water.replace('/', '.'), 'So it is called in a program.'),
+    (2, water.replace('/msg/', '/srv/'), 'The word in the middle says what it is: msg.'),
+    (2, water.lower(), 'Capital and small letters'),
+    (2, 'sensor_msgs/Imu', 'copy what it says'),
+    (2, 'std_msgs/String', 'type of the messages on /radio'),
+    (3, field[:-1], 'letter by letter'),
+    (3, field.title(), 'Capital and small letters' if '_' in field else 'That is '),
     (2, 'std_msgs/msg/String', 'type of the messages on /radio'),
     (3, 'data', 'The types of std_msgs have'),
     (3, water, 'That is the type.'),
@@ -65,10 +74,16 @@ wrong = [
     (6, height_m, 'That is height_m.'),
     (7, 'VOLATILE', 'That is the durability.'),
     (7, opposite, 'It is the other one.'),
-    (8, foghorn.replace('/srv', ''), 'the word srv'),
+    (7, 'Volatile', 'That is the durability.'),
+    (7, 'fast', 'It is one of two words'),
+    (8, foghorn.rsplit('/')[-1], 'the word srv'),
+    (8, foghorn.replace('/srv/', '/msg/'), 'The word in the middle says what it is: srv.'),
 ]
-print(json.dumps([closed, [[w[:2], answer(*w)] for w in right],
-                  [[list(w), answer(*w[:2])] for w in wrong]]))
+rights = [[w[:2], answer(*w)] for w in right]
+wrongs = [[list(w), answer(*w[:2])] for w in wrong]
+lab.stop()  # the harbour goes on
+rights += [[['again', *w[:2]], answer(*w)] for w in right[::3]]
+print(json.dumps([closed, rights, wrongs]))
 lab.processes().stop()
 """
 

@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from statistics import median
 from typing import TYPE_CHECKING
 
 from labkit.errors import LabError
-from labkit.exercises import Number, Probe, Quiz, Word
-from labkit.lessons.command_line.harbour import BOATS, MEASURES, NODES
+from labkit.exercises import Number, Probe, Quiz, Word, spelling
+from labkit.lessons.command_line.harbour import (
+    BOATS,
+    FOGHORN,
+    MEASURES,
+    NODES,
+    RATES_HZ,
+)
 
 if TYPE_CHECKING:
     from rclpy.node import Node
+
+    from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['HARBOUR']
 
@@ -24,18 +34,30 @@ def _graph() -> Node:
     Raises:
         LabError: The harbour is closed.
     """
-    from labkit.background.runtime import runtime
+    from labkit.background.discovery import asking_node, soon
     from labkit.rosgraph.snapshot import node_names
 
-    runtime.start()
-    assert runtime.helper is not None
-    if LIGHTHOUSE not in node_names(runtime.helper):
-        raise LabError('The harbour is closed.', todo='Run the cell with open_harbour() first.')
-    return runtime.helper
+    node = asking_node()
+    # After lab.stop() the harbour is still open, and has to be discovered again.
+    if not soon(lambda: set(NODES) <= set(node_names(node))):
+        raise _closed()
+    return node
 
 
-def _publishers(topic: str) -> list[str]:
-    return [f'/{info.node_name}' for info in _graph().get_publishers_info_by_topic(topic)]
+def _closed() -> LabError:
+    return LabError('The harbour is closed.', todo='Run the cell with open_harbour() first.')
+
+
+def _publishers(topic: str) -> Sequence[Endpoint]:
+    """Return the publishers of a topic of the harbour; there is one at least."""
+    from labkit.background.discovery import soon
+    from labkit.rosgraph.endpoints import publishers
+
+    node = _graph()
+    found = soon(lambda: [end for end in publishers(node, topic) if end.is_known])
+    if not found:
+        raise _closed()
+    return found
 
 
 def _topics() -> dict[str, list[str]]:
@@ -46,17 +68,15 @@ def _topics() -> dict[str, list[str]]:
 
 
 def _node_of_tide() -> list[str]:
-    return [form for name in _publishers('/tide') for form in (name, name.lstrip('/'))]
+    return [end.node for end in _publishers('/tide')]
 
 
 def _no_node_of_tide(word: str) -> str:
-    name = f'/{word.lstrip("/")}'
+    name = f'/{word}'
     if name in NODES:
         return f'{name} does not publish on /tide. ros2 node info {name} shows what it does.'
     if name in _topics():
         return f'{name} is a topic. The name of a node is asked for.'
-    if name.lower() in NODES:
-        return 'Capital and small letters differ in names.'
     return ''
 
 
@@ -64,24 +84,26 @@ def _no_node_of_tide(word: str) -> str:
 
 
 def _type_of_water() -> list[str]:
-    return _topics()['/water']
+    found = {end.msg_type for end in _publishers('/water')}
+    return sorted(found & MEASURES.keys())
 
 
 def _no_type_of_water(word: str) -> str:
-    (name,) = _type_of_water()
-    return _explain_type(word, name, 'msg')
+    return _explain_type(word, _type_of_water()[0], 'msg')
 
 
 def _explain_type(word: str, name: str, kind: str) -> str:
     """Say what is wrong about the name of a type, given the right one."""
-    if word in (name.rsplit('/', 1)[-1], name.replace(f'/{kind}/', '/')):
-        return f'Its name has three parts: the package, the word {kind}, and {word!r}.'
-    if word.replace('.', '/') == name:
-        return 'With dots it is a name in Python. The command line writes it with slashes.'
-    if word.lower() == name.lower():
-        return 'Capital and small letters differ in names.'
+    package, _, last = name.split('/')
+    parts = re.split(r'[/.:]+', word)
+    if parts in ([last], [kind, last]):
+        return f'Its name has three parts: the package, the word {kind}, and {last!r}.'
+    if parts == [package, kind, last]:
+        return 'So it is called in a program. The command line writes it with slashes.'
+    if parts[0] == package and parts[-1] == last:
+        return f'The word in the middle says what it is: {kind}.'
     for topic, types in sorted(_topics().items()):
-        if word in types and '/_' not in topic:
+        if '/_' not in topic and word in map(spelling.type_name('msg'), types):
             return f'That is the type of the messages on {topic}.'
     return ''
 
@@ -91,11 +113,9 @@ def _field_of_water() -> str:
 
 
 def _no_field_of_water(word: str) -> str:
-    field = _field_of_water()
-    if word in (*_type_of_water(), _type_of_water()[0].rsplit('/', 1)[-1]):
+    name = _type_of_water()[0]
+    if word in (name, spelling.type_name('msg')(name), name.rsplit('/', 1)[-1]):
         return 'That is the type. A field is a part of a message: interface show lists them.'
-    if word.lower() == field:
-        return 'Names of fields are written with small letters.'
     if word in MEASURES.values():
         return 'That is a field of another type. Which type has /water this time?'
     return ''
@@ -113,7 +133,9 @@ def _rate_of_beacon() -> float:
         probe.wait(lambda: len(watch) >= 5, MEASURE_SEC)
         if len(watch) < 2:
             raise LabError('/beacon is silent.', todo='Open the harbour again: open_harbour()')
-        return 1 / median(watch.intervals)
+        measured = 1 / median(watch.intervals)
+        # The harbour chose one of these; a busy machine is not asked which.
+        return min(RATES_HZ, key=lambda hz: abs(hz - measured))
 
 
 def _no_rate_of_beacon(number: float) -> str:
@@ -141,6 +163,8 @@ def _parameter(name: str) -> int:
 
     request = GetParameters.Request(names=[name])
     response = call_node(_graph(), GetParameters, LIGHTHOUSE, 'get_parameters', request)
+    if not response.values:
+        raise _closed()
     return int(response.values[0].integer_value)
 
 
@@ -151,19 +175,28 @@ def _no_range(number: float) -> str:
 # -- quality of service, services ---------------------------------------------------------------
 
 
-def _reliability() -> list[str]:
-    (info,) = _graph().get_publishers_info_by_topic('/camera')
-    name = info.qos_profile.reliability.name
-    return [name, name.lower(), name.replace('_', ' '), name.replace('_', ' ').lower()]
+def _reliability() -> str:
+    return str(_publishers('/camera')[0].qos.reliability.name)
+
+
+def _no_reliability(word: str) -> str:
+    if word in map(spelling.constant, ('RELIABLE', 'BEST_EFFORT')):
+        return 'It is the other one. Use ros2 topic info --verbose /camera.'
+    return ''
 
 
 def _service_type() -> list[str]:
-    return dict(_graph().get_service_names_and_types())['/foghorn']
+    from labkit.background.discovery import soon
+
+    node = _graph()
+    found = soon(lambda: dict(node.get_service_names_and_types()).get(FOGHORN))
+    if not found:
+        raise _closed()
+    return found
 
 
 def _no_service_type(word: str) -> str:
-    (name,) = _service_type()
-    return _explain_type(word, name, 'srv')
+    return _explain_type(word, _service_type()[0], 'srv')
 
 
 HARBOUR = Quiz(
@@ -181,6 +214,7 @@ HARBOUR = Quiz(
         'topic type, topic info and topic list -t all say so.',
         'Use ros2 topic type /water, and copy what it says.',
         explain=_no_type_of_water,
+        form=spelling.type_name('msg'),
     ),
     Word(
         'Which field of the messages on /water holds the measured number 12.5?',
@@ -196,6 +230,7 @@ HARBOUR = Quiz(
             '12.5': 'That is the value. What is the field called?',
         },
         explain=_no_field_of_water,
+        form=spelling.field_name,
     ),
     Number(
         'How many messages a second come on /beacon?',
@@ -224,12 +259,15 @@ HARBOUR = Quiz(
         'Which reliability does the publisher of /camera offer?',
         _reliability,
         'topic info --verbose shows the QoS profile of each publisher and subscription.',
-        'It is the other one. Use ros2 topic info --verbose /camera.',
+        'It is one of two words, RELIABLE and BEST_EFFORT. Use ros2 topic info --verbose /camera.',
         wrong={
             'VOLATILE': 'That is the durability. The reliability stands two lines above it.',
             'UNKNOWN': 'That is the history, which is not sent. Reliability stands above it.',
+            'TRANSIENT_LOCAL': 'That is a durability. The reliability stands above it.',
             'AUTOMATIC': 'That is the liveliness. Reliability is the first line of the profile.',
         },
+        explain=_no_reliability,
+        form=spelling.constant,
     ),
     Word(
         'Which type does the service /foghorn have?',
@@ -237,5 +275,6 @@ HARBOUR = Quiz(
         'service type and service list -t say so. A service has a type, as a topic has.',
         'Use ros2 service type /foghorn, and copy what it says.',
         explain=_no_service_type,
+        form=spelling.type_name('srv'),
     ),
 )

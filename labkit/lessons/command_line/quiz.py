@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Choice, Quiz, Several, Word, right, wrong
+from labkit.exercises import Choice, Quiz, Several, Word, right, spelling, wrong
 
 __all__ = ['QUIZ']
 
@@ -12,7 +12,8 @@ QUIZ = Quiz(
         'Older lessons ask for three or four terminals. Why?',
         right(
             'A command that goes on keeps its terminal until it ends.',
-            'echo, hz, pub without --once and every node go on. Here they run in the background.',
+            'echo, hz, pub without --once and every node go on. Here & sends a command to the '
+            'background, and ros2 run starts a node there.',
         ),
         wrong(
             'ROS 2 allows one node in each terminal.',
@@ -42,7 +43,7 @@ QUIZ = Quiz(
     Word(
         'rosmsg show std_msgs/String showed the fields of a message. Which two words after ros2 '
         'do it now?',
-        ['interface show', 'ros2 interface show', '%ros2 interface show'],
+        'interface show',
         'Messages, services and actions are interfaces, so one command shows all three.',
         'Look into the table: it is not called msg any more.',
         wrong={
@@ -50,7 +51,16 @@ QUIZ = Quiz(
             'topic type': 'topic type names the type of a topic, and does not show its fields.',
             'topic info': 'topic info names the type of a topic, and does not show its fields.',
             'interface list': 'That lists the names of all types.',
+            'interface proto': 'That shows an empty message to copy. show lists the fields.',
+            'interface': 'That is one of the two words. Which verb shows what is in a type?',
+            'show': 'That is one of the two words. Which command has this verb?',
+            'show interface': 'The command comes first, then its verb.',
+            'rosmsg show': 'That is ROS 1. Messages are interfaces now.',
+            'message show': 'ros2 has no command message. Messages are interfaces.',
+            'interfaces show': 'Nearly: the command has no s at its end.',
         },
+        form=spelling.ros2_command,
+        how='two words',
     ),
     Several(
         'What is true of a node whose name begins with an underscore?',

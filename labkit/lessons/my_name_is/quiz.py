@@ -7,11 +7,18 @@ from labkit.exercises import Choice, Number, Quiz, Several, right, wrong
 __all__ = ['QUIZ']
 
 
-def _listeners_of_incomplete() -> float:
-    from labkit.background.runtime import runtime
+def _listeners_of_incomplete() -> int:
+    """Count the subscriptions to /incomplete at this moment."""
+    from labkit.background.discovery import asking_node
 
-    assert runtime.helper is not None
-    return runtime.helper.count_subscribers('/incomplete')
+    return asking_node().count_subscribers('/incomplete')
+
+
+def _nobody_listens(number: float) -> str:
+    """Say which cell makes a listener, if there is none."""
+    if _listeners_of_incomplete():
+        return ''
+    return 'At this moment it has none. Run the cell with your StageTwo, and ask the graph again.'
 
 
 QUIZ = Quiz(
@@ -24,7 +31,7 @@ QUIZ = Quiz(
         ),
         wrong(
             'It ends with an error, because the topic does not exist.',
-            'A topic is a name. Whoever uses it first, as publisher or as subscriber, is right.',
+            'A topic is a name. It is there as soon as somebody publishes or subscribes.',
         ),
         wrong(
             'It has to be restarted once stage one is there.',
@@ -74,5 +81,6 @@ QUIZ = Quiz(
         _listeners_of_incomplete,
         'Each node that hears the topic has one.',
         'lab.graph() shows them, and %ros2 topic info /incomplete counts them.',
+        explain=_nobody_listens,
     ),
 )

@@ -8,11 +8,18 @@ from labkit.lessons.odds.stadium import VISITORS
 __all__ = ['QUIZ']
 
 
-def _publishers_of_visitors() -> float:
-    from labkit.background.runtime import runtime
+def _publishers_of_visitors() -> int:
+    """Count the publishers of the stadium's topic at this moment."""
+    from labkit.background.discovery import asking_node
 
-    assert runtime.helper is not None
-    return runtime.helper.count_publishers(VISITORS)
+    return asking_node().count_publishers(VISITORS)
+
+
+def _stadium_is_closed(number: float) -> str:
+    """Say which cell opens the stadium, if nobody publishes there."""
+    if _publishers_of_visitors():
+        return ''
+    return 'At this moment there is none. Run the cell with open_stadium(), and count again.'
 
 
 QUIZ = Quiz(
@@ -81,5 +88,6 @@ QUIZ = Quiz(
         _publishers_of_visitors,
         'The graph says so too: each gate has one publisher there.',
         f"Count the entries of get_publishers_info_by_topic('{VISITORS}').",
+        explain=_stadium_is_closed,
     ),
 )

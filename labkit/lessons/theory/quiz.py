@@ -7,11 +7,16 @@ from labkit.exercises import Choice, Number, Quiz, Several, Word, right, wrong
 
 def publishers_of_sight() -> int:
     """Count the publishers of /sight at this moment."""
-    from labkit.background.runtime import runtime
+    from labkit.background.discovery import asking_node
 
-    runtime.start()
-    assert runtime.helper is not None
-    return runtime.helper.count_publishers('/sight')
+    return asking_node().count_publishers('/sight')
+
+
+def _no_eye(number: float) -> str:
+    """Say which cell makes an Eye, if none runs."""
+    if publishers_of_sight():
+        return ''
+    return 'At this moment it has none. Run the cell with the class Eye, and count again.'
 
 
 QUIZ = Quiz(
@@ -100,12 +105,18 @@ QUIZ = Quiz(
         publishers_of_sight,
         'Each node Eye that runs has one.',
         'Draw the graph with lab.graph() and count the arrows that lead to /sight.',
+        explain=_no_eye,
     ),
     Word(
         'Which topic do the legs of this lesson listen to?',
-        ('/move', 'move'),
+        '/move',
         'Inside the node it is move; the graph shows the full name, /move.',
         'Draw the graph with lab.graph() and follow the arrows to the legs.',
-        {'/sight': 'That is what the brain listens to.', 'sight': 'The brain listens to it.'},
+        wrong={
+            '/sight': 'That is what the brain listens to.',
+            '/sneeze': 'That is a service: somebody asks, and one node answers.',
+            'left_leg': 'That is a leg, a node. The topic that it listens to is asked for.',
+            'right_leg': 'That is a leg, a node. The topic that it listens to is asked for.',
+        },
     ),
 )

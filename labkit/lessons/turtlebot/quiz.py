@@ -29,7 +29,12 @@ QUIZ = Quiz(
         1.0,
         'Angle = turning rate times time: 0.5 rad/s times 2 s.',
         'Multiply the turning rate by the time.',
-        wrong={57.3: 'That is the angle in degrees; the question asks for radians.'},
+        wrong={
+            57.3: 'That is the angle in degrees; the question asks for radians.',
+            0.5: 'That is the turning rate: what it turns in one second.',
+            0.25: 'You divided. The robot turns for 2 s: multiply.',
+            4.0: 'You divided. The robot turns for 2 s: multiply.',
+        },
     ),
     Choice(
         'The goal lies at -3.0 rad, the robot looks at 3.0 rad. Which way does it turn?',
