@@ -56,7 +56,8 @@ class Simulator:
         target: The last command, cut to what the drive can do.
         odometry: Where it believes to be, from its wheels.
         wheels: How far the left and the right wheel have turned by their encoders, rad.
-        collisions: All contacts into which it drove, with the time in which they happened.
+        collisions: All contacts into which it drove since it was placed, with the time in which
+            they happened.
 
     Raises:
         LabError: An argument makes no sense, or there is no room at `start`.
@@ -84,9 +85,7 @@ class Simulator:
         self.noise = noise
         self.name = name
         self.time = 0.0
-        self.wheels = (0.0, 0.0)
-        self.collisions: list[Contact] = []
-        self._random = np.random.default_rng(seed)
+        self._seed = seed
         self.place(start)
 
     def __repr__(self) -> str:
@@ -95,6 +94,9 @@ class Simulator:
 
     def place(self, start: Pose | tuple[float, float, float]) -> None:
         """Put the robot somewhere, standing; its odometry agrees.
+
+        All but the time is as it was at the very start: what follows does not depend on what the
+        robot did before.
 
         Raises:
             LabError: There is no room for it.
@@ -112,7 +114,10 @@ class Simulator:
             )
         self.pose = self.odometry = Pose(x, y, wrap_angle(yaw))
         self.twist = self.target = Twist2()
+        self.wheels = (0.0, 0.0)
+        self.collisions: list[Contact] = []
         self._command_left = math.inf
+        self._random = np.random.default_rng(self._seed)
         self._show()
 
     def close(self) -> None:
@@ -177,6 +182,10 @@ class Simulator:
 
     def _advance(self, dt: float) -> float:
         """Move until something changes: a speed is reached, a contact, the command ends."""
+        if self.twist == self.target == Twist2():
+            # However long it stands, this is one piece.
+            self._pass(dt)
+            return dt
         acceleration, change = ramp(self.twist, self.target, self.robot.limits)
         longest = min(dt, self._command_left, LONGEST_PIECE)
         used = min(longest, change)

@@ -10,15 +10,17 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 import rclpy.utilities
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
+from rclpy.clock import ROSClock
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_sensor_data
+from rclpy.timer import Timer
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, LaserScan
 
@@ -126,6 +128,7 @@ class Turtlebot(Node):
         self._prefix = f'{space}/' if space else ''
         self._lock = threading.RLock()
         self._scan_due = 0.0
+        self._owed = 0.0
         self._said: set[str] = set()
         self._reported = 0
         self._lockstep = lockstep
@@ -133,8 +136,11 @@ class Turtlebot(Node):
         if lockstep is not None or speed != 1.0:
             self._clock_publisher = self.create_publisher(Clock, '/clock', QUEUE_DEPTH)
         self._open_topics()
+        self._stopwatch = _Stopwatch(cast(ROSClock, self.get_clock()))
+        self._speed = speed
+        self._timer: Timer | None = None
         if lockstep is None:
-            self._start_time(speed)
+            self._start_timer()
 
     def _open_topics(self) -> None:
         self._odom = self.create_publisher(
@@ -175,11 +181,14 @@ class Turtlebot(Node):
 
     @property
     def collisions(self) -> list[Contact]:
-        """All contacts into which the robot drove."""
+        """All contacts into which the robot drove since it was placed."""
         return list(self.simulator.collisions)
 
     def place(self, x: float = 0.0, y: float = 0.0, yaw: float = 0.0) -> None:
-        """Put the robot somewhere, standing. Its odometry agrees.
+        """Put the robot somewhere, standing, and `restart` its rounds. Its odometry agrees.
+
+        Where it drives from there depends on the commands and their times alone, not on what it
+        did before. Only simulated time goes on.
 
         Args:
             x: m.
@@ -191,28 +200,44 @@ class Turtlebot(Node):
         """
         with self._lock:
             self.simulator.place((x, y, yaw))
+            self._reported = 0
+            self.restart()
+
+    def restart(self) -> None:
+        """Begin the rounds anew: the next one is a full period from now, and has a scan.
+
+        The robot does not move for the time since its last round. Its speed and its command stay.
+        """
+        with self._lock:
+            self._scan_due = self.simulator.time
+            self._owed = 0.0
+            self._stopwatch.restart()
+            if self._timer is not None:
+                # Not `reset`: that keeps the time of the last call, and if this lies ahead, since
+                # the clock was set back, the next step of the clock would shift the rounds.
+                self.destroy_timer(self._timer)
+                self._start_timer()
 
     def destroy_node(self) -> None:
         """Destroy the node, and take the robot out of its world."""
+        self._timer = None
         self.simulator.close()
         super().destroy_node()  # type: ignore[no-untyped-call]
 
     # -- time -----------------------------------------------------------------------------------
 
-    def _start_time(self, speed: float) -> None:
-        if speed == 1.0:
-            self._last = self.get_clock().now()
-            self.create_timer(1 / ODOM_RATE, self._on_timer)
+    def _start_timer(self) -> None:
+        if self._speed == 1.0:
+            self._timer = self.create_timer(1 / ODOM_RATE, self._on_timer)
             return
-        period = max(1 / (ODOM_RATE * speed), SHORTEST_PERIOD)
-        self._owed = 0.0
-        self._rounds = period * speed * ODOM_RATE
-        self.create_timer(period, self._on_fast_timer)
+        period = max(1 / (ODOM_RATE * self._speed), SHORTEST_PERIOD)
+        self._rounds = period * self._speed * ODOM_RATE
+        self._timer = self.create_timer(period, self._on_fast_timer)
 
     def _on_timer(self) -> None:
         """Real time: catch up with the clock, then tell."""
         with self._lock:
-            self._catch_up()
+            self._step(self._stopwatch.passed())
             self._publish_all()
 
     def _on_fast_timer(self) -> None:
@@ -224,13 +249,6 @@ class Turtlebot(Node):
                 self._owed -= 1
                 self._step(1 / ODOM_RATE)
                 self._publish_all()
-
-    def _catch_up(self) -> None:
-        now = self.get_clock().now()
-        passed = (now - self._last).nanoseconds * 1e-9
-        self._last = now
-        # A clock that is set back does not make time run backwards.
-        self._step(max(0.0, passed))
 
     def _step(self, seconds: float) -> None:
         self.simulator.step(seconds)
@@ -249,7 +267,7 @@ class Turtlebot(Node):
         with self._lock:
             if self._clock_publisher is None:
                 # What was commanded before holds until this moment.
-                self._catch_up()
+                self._step(self._stopwatch.passed())
             self._obey(message)
             if self._lockstep is not None:
                 self._step(self._lockstep)
@@ -320,6 +338,40 @@ class Turtlebot(Node):
         if self._clock_publisher is None:
             return self.get_clock().now().to_msg()
         return time_message(self.simulator.time)
+
+
+class _Stopwatch:
+    """How much time of a node's clock passes.
+
+    ROS time may be switched on or off at any moment (the parameter `use_sim_time`). What lies
+    between the times of two sources has not passed.
+    """
+
+    def __init__(self, clock: ROSClock) -> None:
+        self._clock = clock
+        self.restart()
+
+    def restart(self) -> None:
+        """Count from now."""
+        self._source, self._last = self._look()
+
+    def passed(self) -> float:
+        """Return the time since this was asked last, s.
+
+        0 if the time comes from another source now, or was set back.
+        """
+        source, last = self._source, self._last
+        self.restart()
+        return max(0, self._last - last) * 1e-9 if self._source == source else 0.0
+
+    def _look(self) -> tuple[tuple[bool, bool], int]:
+        """Return what the time comes from, and the time, ns."""
+        while True:
+            active, now = self._clock.ros_time_is_active, self._clock.now().nanoseconds
+            # Another thread may switch the source between the two.
+            if active == self._clock.ros_time_is_active:
+                # ROS time is 0 until somebody tells it.
+                return (active, now == 0), now
 
 
 def _check_time(speed: float, lockstep: float | None, use_sim_time: bool) -> None:
