@@ -17,6 +17,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 if TYPE_CHECKING:
     from rclpy.clock import ROSClock
     from rclpy.executors import Executor
+    from rclpy.node import Node
     from rclpy.task import Task
     from rclpy.timer import Timer
 
@@ -24,6 +25,7 @@ __all__ = [
     'RCLError',
     'add_task',
     'call_in_kernel',
+    'forget_executor',
     'handler_of',
     'has_tasks',
     'is_kernel_stream',
@@ -77,6 +79,14 @@ def handler_of(task: Task) -> Any:
 def is_shut_down(executor: Executor) -> bool:
     """Tell whether `shutdown()` of an executor has been called."""
     return bool(executor._is_shutdown)
+
+
+def forget_executor(node: Node) -> None:
+    """Let `node.executor` be None: an executor that a node was removed from leaves it as it was.
+
+    To set it in public asks the executor once more to remove the node.
+    """
+    node._Node__executor_weakref = None  # type: ignore[attr-defined]
 
 
 def set_ros_time_is_active(clock: ROSClock, active: bool) -> None:

@@ -115,8 +115,7 @@ class BackgroundExecutor(SingleThreadedExecutor):
         """
         known = self._entries.pop(node, None)
         if known is not None and node.executor is self:
-            # rclpy leaves that as it is. This asks for this method once more.
-            node.executor = None  # type: ignore[assignment]
+            compat.forget_executor(node)
         seen = self._rounds
         super().remove_node(node)
         # Who looks at a condition keeps the thread from its next round.
@@ -253,8 +252,13 @@ class BackgroundExecutor(SingleThreadedExecutor):
         """Tell whether the caller is the background thread itself, that is, a callback."""
         return threading.current_thread() is self._thread
 
-    def refuse_in_callback(self, what: str) -> None:
-        """Raise a LabError when a callback or a condition calls: it would wait for itself."""
+    def refuse_in_callback(self, what: str, todo: str = '') -> None:
+        """Raise a LabError when a callback or a condition calls: it would wait for itself.
+
+        Args:
+            what: What can't be done there, such as `'Waiting'`.
+            todo: What to do instead in a callback.
+        """
         if self._looking == threading.get_ident():
             raise LabError(
                 f'{what} inside the condition of a wait can not work: a condition is looked at '
@@ -266,9 +270,17 @@ class BackgroundExecutor(SingleThreadedExecutor):
             raise LabError(
                 f'{what} inside a callback would wait for ever: the answer can come only when '
                 'this callback has returned.',
-                todo='Return from the callback. For a service, use call_async() and '
+                todo=todo
+                or 'Return from the callback. For a service, use call_async() and '
                 'add_done_callback().',
             )
+
+    def caller(self) -> tuple[NodeEntry, str] | None:
+        """Return the node whose callback calls this, and the callback's name."""
+        running = self._running
+        if running is None or not self.in_callback():
+            return None
+        return running[0], _callback_name(running[1])
 
     def running_callback(self) -> tuple[str, str] | None:
         """Return the node and the name of the callback that runs at this moment, or None."""
@@ -278,7 +290,8 @@ class BackgroundExecutor(SingleThreadedExecutor):
     # -- the background thread ------------------------------------------------------------------
 
     def _spin(self) -> None:
-        while not self._closing:
+        # A callback may have shut down this executor, or ROS past labkit: `is_open` tells.
+        while not (self._closing or compat.is_shut_down(self)):
             try:
                 self.spin_once()
             except ExternalShutdownException:
@@ -287,6 +300,8 @@ class BackgroundExecutor(SingleThreadedExecutor):
                 # A node was destroyed between waiting and taking: there is nothing to run.
                 continue
             except BaseException as error:  # a fault of labkit's own must not silence every node
+                if not self.context.ok():
+                    return
                 self._console.show_error('labkit itself', 'spin_once', error)
 
     def spin_once(self, timeout_sec: float | None = None) -> None:

@@ -11,13 +11,15 @@ from __future__ import annotations
 import functools
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Protocol
 
 import rclpy
 import rclpy.client
 import rclpy.executors
 import rclpy.node
+import rclpy.timer
 from rclpy.utilities import get_default_context
 from rclpy.validate_node_name import validate_node_name
 
@@ -47,11 +49,13 @@ GONE_SEC = 0.2
 REPLACED: tuple[tuple[Any, str, str], ...] = (
     (rclpy, 'init', 'init'),
     (rclpy, 'shutdown', 'shutdown'),
+    (rclpy, 'try_shutdown', 'try_shutdown'),
     (rclpy, 'spin', 'spin'),
     (rclpy, 'spin_once', 'spin_once'),
     (rclpy, 'spin_until_future_complete', 'spin_until_future_complete'),
     (rclpy.client.Client, 'call', 'call'),
     (rclpy.executors.Executor, 'spin', 'spin_executor'),
+    (rclpy.timer.Rate, 'sleep', 'sleep'),
     (rclpy.node.Node, '__init__', 'make_node'),
     (rclpy.node.Node, 'create_publisher', 'create_publisher'),
     (rclpy.node.Node, 'create_subscription', 'create_subscription'),
@@ -78,6 +82,9 @@ class Background(Protocol):
     def stop(self) -> None:
         """Destroy all nodes, and shut ROS down."""
 
+    def end_caller(self) -> bool:
+        """End the node whose callback calls this; return False when none does."""
+
     def add(self, node: Node, *, budget: int | None = None) -> NodeEntry:
         """Run a node in the background."""
 
@@ -93,7 +100,7 @@ class Background(Protocol):
     def wait(self, condition: Callable[[], object], timeout_sec: float | None) -> bool:
         """Wait until a condition is true."""
 
-    def refuse_in_callback(self, what: str) -> None:
+    def refuse_in_callback(self, what: str, todo: str = '') -> None:
         """Raise a LabError when called by a callback."""
 
 
@@ -155,14 +162,26 @@ class _NotebookSafe:
     def shutdown(
         self, *, context: Context | None = None, uninstall_handlers: bool | None = None
     ) -> None:
+        """End ROS in the notebook; in a callback, as in a program of its own, only its node."""
         if context is not None and context is not get_default_context():
             ORIGINALS['shutdown'](context=context, uninstall_handlers=uninstall_handlers)
-        elif self._background.started:
-            self._background.stop()
-        else:
+        elif not self._background.started:
             ORIGINALS['shutdown']()
+        elif not self._background.end_caller():
+            self._background.stop()
+
+    def try_shutdown(self, *, context: Context | None = None) -> None:
+        if context is not None or not self._background.started:
+            ORIGINALS['try_shutdown'](context=context)
+        else:
+            self.shutdown()
 
     def spin(self, node: Node, executor: Executor | None = None) -> None:
+        """Spin a node until it is destroyed, ROS is shut down or the stop button is pressed.
+
+        Afterwards it is as before: a node that `lab.spin` has started runs on in the background,
+        any other one is spun no more.
+        """
         if executor is not None:
             executor.add_node(node)
             try:
@@ -170,14 +189,11 @@ class _NotebookSafe:
             finally:
                 executor.remove_node(node)
             return
-        entry, borrowed = self._borrow('rclpy.spin()', node)
         try:
-            self._background.wait(lambda: not entry.alive, None)
+            with self._spun('rclpy.spin()', node) as entry:
+                self._background.wait(lambda: not entry.alive, None)
         except KeyboardInterrupt:
             pass  # the stop button: the rest of the cell goes on, as a script does after Ctrl-C
-        finally:
-            if borrowed:
-                self._background.release(entry)
 
     def spin_once(
         self, node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None
@@ -185,16 +201,12 @@ class _NotebookSafe:
         if executor is not None:
             ORIGINALS['spin_once'](node, executor=executor, timeout_sec=timeout_sec)
             return
-        entry, borrowed = self._borrow('rclpy.spin_once()', node, budget=1)
-        before = entry.callbacks
         if timeout_sec is not None and 0 <= timeout_sec < SLICE_SEC / 5:
             # "Don't wait" still means: run what is ready. The background needs a moment for it.
             timeout_sec = SLICE_SEC / 5
-        try:
+        with self._spun('rclpy.spin_once()', node, budget=1) as entry:
+            before = entry.callbacks
             self._background.wait(lambda: entry.callbacks > before, timeout_sec)
-        finally:
-            if borrowed:
-                self._background.release(entry)
 
     def spin_until_future_complete(
         self,
@@ -206,12 +218,8 @@ class _NotebookSafe:
         if executor is not None:
             ORIGINALS['spin_until_future_complete'](node, future, executor, timeout_sec)
             return
-        entry, borrowed = self._borrow('rclpy.spin_until_future_complete()', node)
-        try:
+        with self._spun('rclpy.spin_until_future_complete()', node):
             self._background.wait(lambda: _is_over(future), timeout_sec)
-        finally:
-            if borrowed:
-                self._background.release(entry)
 
     def spin_executor(self, executor: Executor) -> None:
         """Spin an executor of the learner's own so that the stop button is heard."""
@@ -228,6 +236,14 @@ class _NotebookSafe:
     def call(self, client: Any, *args: Any, **kwargs: Any) -> Any:
         self._background.refuse_in_callback(f'Calling the service {client.srv_name!r} with call()')
         return ORIGINALS['call'](client, *args, **kwargs)
+
+    def sleep(self, rate: Any) -> None:
+        self._background.refuse_in_callback(
+            'sleep() of a rate',
+            'Return from the callback. A timer calls one again and again: '
+            'self.create_timer(0.1, self.on_timer).',
+        )
+        ORIGINALS['sleep'](rate)
 
     def make_node(self, node: Node, node_name: str, *args: Any, **kwargs: Any) -> None:
         if isinstance(node_name, str):
@@ -278,15 +294,19 @@ class _NotebookSafe:
             time.sleep(GONE_SEC / 20)
         return ''
 
-    def _borrow(
-        self, what: str, node: Node, *, budget: int | None = None
-    ) -> tuple[NodeEntry, bool]:
-        """Return the node's entry, and whether it came to the background only for this call."""
+    @contextmanager
+    def _spun(self, what: str, node: Node, *, budget: int | None = None) -> Iterator[NodeEntry]:
+        """Let the background spin a node for a while, whenever the stop button ends that."""
         self._background.refuse_in_callback(what)
-        entry = self._background.entry_of(node)
-        if entry is not None:
-            return entry, False
-        return self._background.add(node, budget=budget), True
+        entry = known = self._background.entry_of(node)
+        try:
+            if entry is None:
+                entry = self._background.add(node, budget=budget)
+            yield entry
+        finally:
+            borrowed = entry or self._background.entry_of(node)
+            if known is None and borrowed is not None:
+                self._background.release(borrowed)
 
 
 def _is_over(future: Any) -> bool:

@@ -59,6 +59,7 @@ class Runtime:
         domain_id: The ROS domain, None while ROS is not started.
         started_at: When ROS was started, as `time.monotonic()` tells it.
         helper: A hidden node for labkit's own subscriptions and questions to the graph.
+        ended: Nodes that have called `rclpy.shutdown()`, and in which callback, by full name.
         foreign_threads: Threads that spin an executor of the learner's own, see `notebook_rclpy`.
     """
 
@@ -67,6 +68,7 @@ class Runtime:
         self.domain_id: int | None = None
         self.started_at = 0.0
         self.helper: Node | None = None
+        self.ended: dict[str, str] = {}
         self.foreign_threads: set[threading.Thread] = set()
         # Held for as long as a start takes. No callback asks for it, see `start`.
         self._starting = threading.RLock()
@@ -145,6 +147,7 @@ class Runtime:
         interrupt = self._destroy_all(nodes)
         self._registry.clear()
         self._reported.clear()
+        self.ended.clear()
         context = executor.context
         executor.shutdown(timeout_sec=0)
         if context is get_default_context():
@@ -156,6 +159,24 @@ class Runtime:
             raise interrupt
 
     # -- nodes ----------------------------------------------------------------------------------
+
+    def end_caller(self) -> bool:
+        """End the node whose callback wants to shut ROS down: the others are none of its business.
+
+        Returns:
+            Whether a callback calls this.
+        """
+        caller = self._executor.caller() if self._executor is not None else None
+        if caller is None or caller[0].node is self.helper:
+            return False
+        entry, callback = caller
+        self.ended[entry.name] = callback
+        print(
+            f'{callback} of {entry.name} has called rclpy.shutdown(). In a program of its own '
+            f'that ends all of its nodes; in a notebook it ends {entry.name} alone.'
+        )
+        self.discard(entry)
+        return True
 
     def add(self, node: Node, *, budget: int | None = None) -> NodeEntry:
         """Put a node on the background executor; one of the same name is destroyed.
@@ -212,6 +233,7 @@ class Runtime:
 
     def make_room(self, name: str) -> None:
         """Destroy the node of a name before another one of that name is made."""
+        self.ended.pop(name, None)
         self._registry.make_room(self._executor, name)
 
     def foreign_nodes(self) -> set[str]:
@@ -229,10 +251,10 @@ class Runtime:
         self.refuse_in_callback('Waiting')
         return self.executor.wait(condition, timeout_sec)
 
-    def refuse_in_callback(self, what: str) -> None:
-        """Raise a LabError when called by a callback."""
+    def refuse_in_callback(self, what: str, todo: str = '') -> None:
+        """Raise a LabError when called by a callback, see `BackgroundExecutor`."""
         if self._executor is not None:
-            self._executor.refuse_in_callback(what)
+            self._executor.refuse_in_callback(what, todo)
 
     # -- details --------------------------------------------------------------------------------
 

@@ -79,6 +79,19 @@ print(compat.is_shut_down(executor))
     assert result.stdout == 'False\nTrue True\ndone\nTrue False\nTrue\n', result.stderr
 
 
+def test_a_node_forgets_its_executor(script):
+    result = script(
+        READY
+        + """
+executor.remove_node(node)
+print(node.executor is executor)
+compat.forget_executor(node)
+print(node.executor, executor.add_node(node), node.executor is executor)
+"""
+    )
+    assert result.stdout == 'True\nNone True True\n', result.stderr
+
+
 def test_logs_are_shown_and_given_back(script):
     result = script(
         READY

@@ -51,10 +51,10 @@ lab.start()
 print(replaced())
 """
     assert kernel.run(code).text.splitlines() == [
-        str([False] * 10),
-        str([True] * 10),
-        f'{[False] * 10} True',
-        str([True] * 10),
+        str([False] * 12),
+        str([True] * 12),
+        f'{[False] * 12} True',
+        str([True] * 12),
     ]
 
 
@@ -118,3 +118,172 @@ def test_nodes_made_before_labkit_are_known(kernel):
         'print(early in existing_nodes())\nearly.destroy_node()\nrclpy.shutdown(context=context)'
     )
     assert (result.error, result.text) == ('', 'True\n')
+
+
+NODES = """
+import sys
+import labkit as lab
+import rclpy
+from rclpy.node import Node
+from labkit.background.runtime import runtime
+
+class Ticker(Node):
+    def __init__(self, name='other'):
+        super().__init__(name)
+        self.ticks = 0
+        self.create_timer(0.02, self.on_timer)
+
+    def on_timer(self):
+        self.ticks += 1
+
+other = lab.spin(Ticker())
+
+def goes_on():
+    before = other.ticks
+    lab.wait_until(lambda: other.ticks > before + 3)
+    return [entry.name for entry in runtime.nodes()]
+"""
+ENDING = """
+class Ending(Ticker):
+    def on_timer(self):
+        super().on_timer()
+        if self.ticks == 2:
+            {how}
+
+ending = lab.spin(Ending('ending'))
+"""
+
+
+@pytest.mark.parametrize('how', ['rclpy.shutdown()', 'rclpy.try_shutdown()'])
+def test_shutdown_in_a_callback_ends_its_node_alone(kernel, how):
+    kernel.run(NODES)
+    for _ in range(2):
+        cell = kernel.run(ENDING.format(how=how))
+        shown = kernel.wait_for_output(cell.msg_id, 'it ends /ending alone')
+        assert 'on_timer of /ending has called rclpy.shutdown().' in shown
+        assert 'Traceback' not in shown
+        assert kernel.run('print(goes_on(), runtime.ended)').text == (
+            "['/other'] {'/ending': 'on_timer'}\n"
+        )
+    again = kernel.run(
+        'new = lab.spin(Ticker("ending"))\nlab.wait_until(lambda: new.ticks > 3)\n'
+        'print(goes_on(), runtime.ended)\nrclpy.shutdown()\nprint(rclpy.ok())'
+    )
+    assert (again.error, again.text) == ('', "['/other', '/ending'] {}\nFalse\n")
+
+
+def test_shutdown_in_a_callback_ends_spin_in_the_cell(kernel):
+    kernel.run(NODES)
+    program = ENDING.format(how='rclpy.shutdown()').replace('lab.spin', '') + (
+        "rclpy.spin(ending)\nprint('spin has ended')\nending.destroy_node()"
+    )
+    for _ in range(2):
+        result = kernel.run(program)
+        assert result.error == ''
+        assert 'spin has ended' in result.text
+        assert kernel.run('print(goes_on())').text == "['/other']\n"
+
+
+@pytest.mark.parametrize(
+    'how',
+    [
+        'raise SystemExit',
+        'sys.exit(1)',
+        'self.destroy_node()',
+        'self.context.shutdown()',
+        'self.executor.shutdown()',
+        'rclpy.utilities.shutdown()',
+        'lab.stop()',
+    ],
+)
+def test_nodes_can_be_spun_again_whatever_a_callback_has_ended(kernel, how):
+    kernel.run(NODES)
+    for _ in range(2):
+        cell = kernel.run(ENDING.format(how=how) + 'ended = lambda: ending.ticks > 1')
+        kernel.run('import time\nwhile not ended():\n    time.sleep(0.01)')
+        result = kernel.run('other = lab.spin(Ticker())\nprint(goes_on())')
+        assert (result.error, "'/other'" in result.text) == ('', True)
+        assert 'labkit itself' not in result.text
+        kernel.run('if "ending" in str(runtime.nodes()):\n    lab.remove("ending")')
+        assert 'labkit itself' not in kernel.wait_for_output(cell.msg_id, '')
+
+
+def test_a_rate_in_a_callback_is_refused_and_everything_goes_on(kernel):
+    kernel.run(NODES)
+    wrong = """
+class Slow(Ticker):
+    def __init__(self):
+        super().__init__('slow')
+        self.rate = self.create_rate(50)
+
+    def on_timer(self):
+        super().on_timer()
+        self.rate.sleep()
+
+slow = lab.spin(Slow())
+"""
+    cell = kernel.run(wrong)
+    shown = kernel.wait_for_output(cell.msg_id, 'LabError')
+    assert 'The callback on_timer of /slow failed.' in shown
+    assert 'in on_timer\n    self.rate.sleep()' in shown
+    assert 'sleep() of a rate inside a callback would wait for ever' in shown
+    assert 'self.create_timer(0.1, self.on_timer)' in shown
+    assert kernel.run('print(goes_on())').text == "['/other', '/slow']\n"
+    broken = wrong.replace('self.rate.sleep()', '1 / 0')
+    corrected = kernel.run(broken)
+    assert 'ZeroDivisionError' in kernel.wait_for_output(corrected.msg_id, 'Zero')
+    right = kernel.run(
+        wrong.replace('self.rate.sleep()', '') + 'lab.wait_until(lambda: slow.ticks > 3)'
+    )
+    assert (right.error, right.text) == ('', '')
+
+
+def test_a_rate_in_a_thread_or_a_cell_works(kernel):
+    kernel.run(NODES)
+    result = kernel.run(
+        'import threading\n'
+        'rate, slept = other.create_rate(100), []\n'
+        'def work():\n'
+        '    for _ in range(3):\n'
+        '        rate.sleep()\n'
+        '        slept.append(1)\n'
+        'thread = threading.Thread(target=work)\n'
+        'thread.start()\n'
+        'thread.join()\n'
+        'work()\n'
+        'print(len(slept))'
+    )
+    assert (result.error, result.text) == ('', '6\n')
+
+
+STATE = """
+import time
+from labkit.rosgraph.snapshot import node_names
+before = ticker.ticks
+goes_on()
+print(ticker.ticks > before, runtime.entry_of(ticker) is not None, ticker.executor is not None,
+      ticker in runtime.unspun_nodes(), '/ticker' in [e.name for e in runtime.nodes()])
+"""
+
+
+@pytest.mark.parametrize('spun', [False, True])
+def test_after_the_stop_button_a_node_is_counted_as_what_it_is(kernel, spun):
+    kernel.run(NODES)
+    # Where the callback speaks, the node is being spun.
+    kernel.run(
+        'class Loud(Ticker):\n'
+        '    def on_timer(self):\n'
+        '        super().on_timer()\n'
+        '        if self.ticks == 1:\n'
+        '            print("tick")'
+    )
+    make = "ticker = Loud('ticker')\n" + ('lab.spin(ticker)\n' if spun else '')
+    for _ in range(2):
+        cell = kernel.start(f'{make}rclpy.spin(ticker)')
+        kernel.wait_for_output(cell, 'tick')
+        kernel.interrupt()
+        assert kernel.finish(cell).error.split(':')[0] in ('', 'KeyboardInterrupt')
+        state = kernel.run(STATE)
+        assert (state.error, state.text) == ('', f'{spun} {spun} {spun} {not spun} {spun}\n')
+    names = kernel.run('lab.wait_until(lambda: node_names(ticker).count("/ticker") == 1)')
+    assert names.error == ''
