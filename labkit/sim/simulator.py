@@ -99,11 +99,19 @@ class Simulator:
         robot did before.
 
         Raises:
-            LabError: There is no room for it.
+            LabError: It is outside of the room, or too near to a wall or a post, or a number is
+                not finite.
         """
         x, y, yaw = start
         if not (math.isfinite(x) and math.isfinite(y) and math.isfinite(yaw)):
             raise LabError(f'x, y and yaw must be finite numbers, but they are {x}, {y}, {yaw}.')
+        if self.world.is_outside(x, y):
+            xs, ys = zip(*self.world.corners, strict=True)
+            raise LabError(
+                f'The room reaches from x={min(xs):.4g} to {max(xs):.4g} m and from '
+                f'y={min(ys):.4g} to {max(ys):.4g} m, but x={x}, y={y} is outside of it.',
+                todo=f'Choose a place inside, {self.robot.radius} m or more from walls and posts.',
+            )
         # Another robot may stand there: it is about to be replaced, or they drive apart.
         spare = min((t.away(x, y)[0] for t in self.world.fixed), default=math.inf)
         if spare < self.robot.radius:

@@ -196,7 +196,8 @@ class Turtlebot(Node):
             yaw: rad.
 
         Raises:
-            LabError: There is no room for it.
+            LabError: It is outside of the room, or too near to a wall or a post, or a number is
+                not finite.
         """
         with self._lock:
             self.simulator.place((x, y, yaw))

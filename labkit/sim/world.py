@@ -80,16 +80,31 @@ class Contact(NamedTuple):
 class World:
     """Walls and posts, and the robots among them.
 
+    Args:
+        walls: Walls that stand free.
+        posts: Round obstacles.
+        corners: Corners of a convex room around all of it, one after the other, m. Its sides are
+            walls. Without corners the world has no outside.
+
     Attributes:
-        walls: The walls.
+        corners: The corners of the room.
+        walls: The walls, those of the room first.
         posts: The round obstacles.
         fixed: All of these.
         robots: The robots in this world by name, as posts where they are now. Robots that are
             given the same world see each other, and stop when they meet.
     """
 
-    def __init__(self, walls: Iterable[Wall] = (), posts: Iterable[Post] = ()) -> None:
-        self.walls = tuple(Wall(*wall) for wall in walls)
+    def __init__(
+        self,
+        walls: Iterable[Wall] = (),
+        posts: Iterable[Post] = (),
+        *,
+        corners: Iterable[tuple[float, float]] = (),
+    ) -> None:
+        self.corners = tuple(corners)
+        self._sides = _ring(self.corners)
+        self.walls = (*self._sides, *(Wall(*wall) for wall in walls))
         self.posts = tuple(Post(*post) for post in posts)
         self.robots: dict[str, Post] = {}
         self.fixed: tuple[Wall | Post, ...] = (*self.walls, *self.posts)
@@ -104,6 +119,15 @@ class World:
         """Return all that can be met, except the robot named `but`."""
         others = [post for name, post in list(self.robots.items()) if name != but]
         return [*self.fixed, *others]
+
+    def is_outside(self, x: float, y: float) -> bool:
+        """Tell whether (x, y), m, is outside of the room."""
+        # Seen along the sides, what is inside is always on the same hand.
+        turns = [
+            (side.x2 - side.x1) * (y - side.y1) - (side.y2 - side.y1) * (x - side.x1)
+            for side in self._sides
+        ]
+        return any(turn < 0 for turn in turns) and any(turn > 0 for turn in turns)
 
     def clearance(self, x: float, y: float, *, but: str = '') -> float:
         """Return the distance of (x, y) from the nearest thing, m; infinity if there is none.
@@ -291,7 +315,7 @@ def room(width: float = 5.0, height: float = 5.0, posts: Iterable[Post] = ()) ->
         posts: Round obstacles in it.
     """
     x, y = width / 2, height / 2
-    return World(_ring([(x, y), (-x, y), (-x, -y), (x, -y)]), posts)
+    return World(posts=posts, corners=[(x, y), (-x, y), (-x, -y), (x, -y)])
 
 
 def playground() -> World:
@@ -313,11 +337,11 @@ def pillars() -> World:
     angles = [corner * math.tau / 6 for corner in range(6)]
     grid = (-1.1, 0.0, 1.1)
     return World(
-        _ring([(far * math.cos(angle), far * math.sin(angle)) for angle in angles]),
-        [Post(x, y, 0.15) for x in grid for y in grid],
+        posts=[Post(x, y, 0.15) for x in grid for y in grid],
+        corners=[(far * math.cos(angle), far * math.sin(angle)) for angle in angles],
     )
 
 
-def _ring(corners: list[tuple[float, float]]) -> list[Wall]:
+def _ring(corners: tuple[tuple[float, float], ...]) -> tuple[Wall, ...]:
     ends = zip(corners, corners[1:] + corners[:1], strict=True)
-    return [Wall(*one, *other) for one, other in ends]
+    return tuple(Wall(*one, *other) for one, other in ends)

@@ -179,6 +179,33 @@ def test_place_puts_it_back(stage: Stage) -> None:
 
 
 @pytest.mark.parametrize(
+    ('place', 'words'),
+    [
+        ((2.6, 0.0, 0.0), r'from x=-2.5 to 2.5 m and from y=-2.5 to 2.5 m, but x=2.6, y=0.0'),
+        ((0.0, -7.0, 0.0), 'is outside of it'),
+        ((1e300, 0.0, 0.0), 'is outside of it'),
+        ((2.5, 0.0, 0.0), 'next wall or post is 0.000 m away'),
+        ((1.6, 1.6, 0.0), 'next wall or post is 0.000 m away'),
+        ((math.nan, 0.0, 0.0), 'finite numbers'),
+        ((0.0, math.inf, 0.0), 'finite numbers'),
+        ((0.0, 0.0, -math.inf), 'finite numbers'),
+    ],
+)
+def test_a_place_without_room_is_refused_and_the_robot_stays(
+    stage: Stage, place: tuple[float, float, float], words: str
+) -> None:
+    robot = stage.robot(lockstep=0.5, x=0.5)
+    driver = stage.driver()
+    stage.command(driver, 0.2, 0.0)
+    before = robot.pose, robot.twist
+    with pytest.raises(LabError, match=words):
+        robot.place(*place)
+    assert (robot.pose, robot.twist) == before
+    with pytest.raises(LabError, match=words):
+        Turtlebot(name='other', x=place[0], y=place[1], yaw=place[2])
+
+
+@pytest.mark.parametrize(
     ('options', 'words'),
     [
         ({'speed': 0.0}, 'speed must be'),

@@ -206,3 +206,17 @@ def test_arenas_are_closed_and_have_room_at_their_start(world: World, start: Pos
     assert world.clearance(start.x, start.y) > 2 * R
     assert world.ranges(start).max() < 10
     assert 'walls' in repr(world)
+
+
+def test_outside_is_beyond_the_sides_of_the_room() -> None:
+    world = pillars()
+    assert len(world.walls) == 6
+    assert not world.is_outside(0.0, 2.4)
+    assert world.is_outside(0.0, 2.6)
+    # Within the box around the hexagon, beyond a side.
+    assert world.is_outside(2.8, 2.0)
+    turned_round = World(corners=reversed(room(4.0, 2.0).corners))
+    assert turned_round.is_outside(0.0, 1.1)
+    assert not turned_round.is_outside(1.9, -0.9)
+    assert not World([Wall(1, -1, 1, 1)]).is_outside(5.0, 0.0)
+    assert not open_field().is_outside(1e9, 0.0)
