@@ -39,6 +39,7 @@ __all__ = [
     'end_earlier',
     'environment',
     'interrupt_child',
+    'is_of_child',
     'processes',
     'start_process',
     'starting_children',
@@ -354,6 +355,14 @@ def starting_children(gids: Collection[bytes]) -> tuple[bool, bool]:
         except psutil.NoSuchProcess:
             continue
     return False in found, True in found
+
+
+def is_of_child(gid: bytes) -> bool:
+    """Tell whether an endpoint belongs to a process that this process has started."""
+    import psutil
+
+    children = psutil.Process().children(recursive=True)
+    return process_id(gid) in {child.pid & 0xFFFF for child in children}
 
 
 def interrupt_child(gid: bytes) -> bool:

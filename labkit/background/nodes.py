@@ -91,6 +91,7 @@ class _Made:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._nodes: WeakSet[Node] | None = None
+        self._kinds: WeakSet[type[Node]] = WeakSet()
 
     def follow(self) -> None:
         """Keep track from now on; those that are there are looked for once."""
@@ -106,8 +107,14 @@ class _Made:
     def add(self, node: Node) -> None:
         """Note a node that is about to be made."""
         with self._lock:
+            self._kinds.add(type(node))
             if self._nodes is not None:
                 self._nodes.add(node)
+
+    def kinds(self) -> list[type[Node]]:
+        """Return the classes of all nodes that were ever noted."""
+        with self._lock:
+            return list(self._kinds)
 
     def all(self) -> list[Node]:
         with self._lock:

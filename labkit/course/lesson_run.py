@@ -169,6 +169,9 @@ class LessonRun:
         if self.broken:
             raise LessonError('not run: an earlier cell lost the kernel', cell_id=cell_id)
         self._next = max(self._next, index + 1)
+        # As JupyterLab does it: labkit asks which cell has made a node.
+        assert self._client.kc is not None
+        self._client.kc.session.metadata = {'cellId': cell_id}
         try:
             self._client.execute_cell(cell, index, execution_count=count)
         except (RuntimeError, TimeoutError) as error:

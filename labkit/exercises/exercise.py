@@ -13,6 +13,7 @@ from labkit.exercises.learner_errors import explain_error, last_cell
 from labkit.exercises.probe import Probe
 from labkit.exercises.recorder import Recorder
 from labkit.exercises.scope import Scope
+from labkit.exercises.traces import refuse_traces
 from labkit.exercises.verdict import Fail, LearnerError, NotAttempted, Outcome, Verdict
 from labkit.exercises.watch import Watch
 from labkit.views.card import Card
@@ -114,7 +115,9 @@ class Exercise:
         answer: The solution that is shown.
         styles: The solution in other styles, for the tests.
         wrong: Typical wrong answers, for the tests.
-        given: Full names of nodes that the lesson itself leaves running for this exercise.
+        given: Full names of nodes that the lesson itself leaves running for this exercise, with
+            the ids of the cells that make them, with spaces in between; `'*'` for any cell,
+            `''` for none, as for a node of another process.
         records: Those topics in `publishes` that are recorded from the setup cell on: for what
             happens once, and before the check. The judge finds them in `probe.recorded`.
         once: Whether the check uses up what it checks, as a node that is removed. The same
@@ -135,7 +138,7 @@ class Exercise:
     shared: Sequence[str] = ()
     styles: Sequence[Style] = ()
     wrong: Sequence[Wrong] = ()
-    given: Sequence[str] = ()
+    given: Mapping[str, str] = field(default_factory=dict)
     records: Sequence[str] = ()
     once: bool = False
     starter_id: str = ''
@@ -148,7 +151,7 @@ class Exercise:
             subscribes=self.subscribes,
             nodes=tuple(self.nodes),
             shared=frozenset(self.shared),
-            given=frozenset(self.given),
+            given=self.given,
         )
         self.scope = replace(self.scope, known=frozenset(self.scope.topics))
         self.starter_id = self.starter_id or f'{self.name.replace("_", "-")}-starter'
@@ -279,6 +282,8 @@ class Exercise:
                 error = last_cell.learner_error()
                 if error is not None:
                     raise error from None
+                if isinstance(outcome, NotAttempted) and not probe.something_is_starting():
+                    refuse_traces(probe, self._asked())
                 raise
         except LearnerError as error:
             return self._learner_error(error)
@@ -296,6 +301,9 @@ class Exercise:
                 clause=fail.clause,
             )
         return Verdict(Outcome.PASS, self.name, text or 'It does what the task asks for.')
+
+    def _asked(self) -> str:
+        return '; '.join(clause.text for clause in self.clauses) or self.task
 
     def _apply(self, probe: Probe) -> str | None:
         if self.judge is not None:

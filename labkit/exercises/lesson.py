@@ -5,8 +5,9 @@ from __future__ import annotations
 import importlib
 import pkgutil
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 from labkit.errors import LabError, nearest
 from labkit.exercises.exercise import Exercise
@@ -34,7 +35,8 @@ class Lesson:
         exercises: In the order of the notebook.
         quizzes: In the order of the notebook.
         topics: Further topics that the lesson's own cells use.
-        given: Full names of nodes that the lesson's own cells leave running.
+        given: Full names of nodes that the lesson's own cells leave running, see
+            `Exercise`.
     """
 
     def __init__(
@@ -45,19 +47,24 @@ class Lesson:
         exercises: Sequence[Exercise] = (),
         quizzes: Sequence[Quiz] = (),
         topics: Sequence[str] = (),
-        given: Sequence[str] = (),
+        given: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
         self.name = name
         self.notebook = notebook
         self._exercises = {exercise.name: exercise for exercise in exercises}
         self._quizzes = {quiz.name: quiz for quiz in quizzes}
         known = frozenset(topics).union(*(exercise.scope.topics for exercise in exercises))
+        of_lesson = frozenset(role for e in exercises for role in e.scope.roles)
         earlier: frozenset[Role] = frozenset()
         for exercise in exercises:
             scope = exercise.scope
             exercise.lesson = name
             exercise.scope = replace(
-                scope, known=known, given=scope.given.union(given), earlier=earlier
+                scope,
+                known=known,
+                given={**given, **scope.given},
+                earlier=earlier,
+                of_lesson=of_lesson,
             )
             earlier |= scope.roles.keys()
         for quiz in quizzes:

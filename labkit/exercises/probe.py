@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any
 
-from labkit.exercises.callbacks import Callbacks, find_node
+from labkit.exercises.callbacks import Callbacks, find_node, is_given
 from labkit.exercises.scope import Scope
 from labkit.exercises.verdict import Fail
 from labkit.exercises.watch import Watch, build
@@ -226,7 +226,16 @@ class Probe:
         from labkit.rosgraph.snapshot import node_names
 
         names = node_names(self.node)
-        return [name for name in names if not is_hidden(name) and name not in self.scope.given]
+        return [name for name in names if not is_hidden(name) and not is_given(name, self.scope)]
+
+    def is_from_here(self, name: str) -> bool:
+        """Tell whether a node is of this process, or of one that this process has started."""
+        if self.node_object(name) is not None:
+            return True
+        from labkit.background.child_processes import is_of_child
+
+        ends = [*self.all_publishers(), *self.all_subscriptions()]
+        return any(end.node == name and is_of_child(end.gid) for end in ends)
 
     def node_object(self, name: str) -> Any:
         """Return the node of that name as an object, None if it runs in another process."""
@@ -256,7 +265,7 @@ class Probe:
         return whose.place(endpoint.gid, self.node)
 
     def _learners(self, found: Iterable[Endpoint]) -> list[Endpoint]:
-        return [e for e in found if not is_hidden(e.node) and e.node not in self.scope.given]
+        return [e for e in found if not is_hidden(e.node) and not is_given(e.node, self.scope)]
 
     # -- messages -------------------------------------------------------------------------------
 

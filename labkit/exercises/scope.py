@@ -27,18 +27,21 @@ class Scope:
         subscribes: Topics to which they subscribe, with their types.
         nodes: Full names of nodes that the task asks for.
         shared: Topics on which others may publish too.
-        given: Full names of nodes that the lesson itself leaves running.
+        given: Full names of nodes that the lesson itself leaves running, and the ids of the cells
+            that make them. A node of such a name that another cell has made is the learner's.
         known: All topics of the lesson. What the learner does on others has a wrong name.
         earlier: Roles that earlier exercises of the lesson ask for: their nodes may still run.
+        of_lesson: Roles that all exercises of the lesson ask for.
     """
 
     publishes: Mapping[str, str] = field(default_factory=dict)
     subscribes: Mapping[str, str] = field(default_factory=dict)
     nodes: tuple[str, ...] = ()
     shared: frozenset[str] = frozenset()
-    given: frozenset[str] = frozenset()
+    given: Mapping[str, str] = field(default_factory=dict)
     known: frozenset[str] = frozenset()
     earlier: frozenset[Role] = frozenset()
+    of_lesson: frozenset[Role] = frozenset()
 
     @property
     def roles(self) -> dict[Role, str]:

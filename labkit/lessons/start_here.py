@@ -149,5 +149,5 @@ LESSON = Lesson(
     exercises=[first_node],
     quizzes=[_QUIZ],
     topics=['/greetings'],
-    given=['/first_node'],
+    given={'/first_node': 'first-node'},
 )

@@ -17,5 +17,5 @@ LESSON = Lesson(
     exercises=[odds, drive],
     quizzes=[HARBOUR, QUIZ],
     topics=['/chatter', '/limit', '/turtle/cmd_vel', *TOPICS],
-    given=['/talker', '/listener', *NODES],
+    given=dict.fromkeys(('/talker', '/listener', *NODES), ''),
 )

@@ -17,5 +17,5 @@ LESSON = Lesson(
     exercises=[two_stages, own_process, third_stage, two_names],
     quizzes=[QUIZ],
     topics=['/celsius', '/fahrenheit'],
-    given=['/observer'],
+    given={'/observer': 'remove-stage-one'},
 )

@@ -19,5 +19,5 @@ LESSON = Lesson(
     exercises=[ones, count_up, stay_within, evens, find_gate],
     quizzes=[QUIZ],
     topics=['/high', '/burst', GOALS, VISITORS],
-    given=['/announcer', *NODES],
+    given={'/announcer': 'stadium repair', **dict.fromkeys(NODES, '')},
 )

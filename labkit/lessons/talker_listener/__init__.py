@@ -17,5 +17,10 @@ LESSON = Lesson(
     exercises=[four_a_second, every_two_seconds, hear_chatter, say_once],
     quizzes=[QUIZ],
     topics=['/mail', '/stamped', '/news'],
-    given=['/writer', '/reader', '/stamped_talker', '/editor'],
+    given={
+        '/writer': 'not-spun',
+        '/reader': 'not-spun',
+        '/stamped_talker': 'rate-loop',
+        '/editor': 'too-early',
+    },
 )

@@ -15,5 +15,11 @@ LESSON = Lesson(
     exercises=[ears, mouth],
     quizzes=[QUIZ],
     topics=['/sight', '/move'],
-    given=['/left_eye', '/right_eye', '/brain', '/left_leg', '/right_leg'],
+    given={
+        '/left_eye': 'eye-class',
+        '/right_eye': 'legs-class',
+        '/brain': 'brain-class',
+        '/left_leg': 'legs-class',
+        '/right_leg': 'legs-class',
+    },
 )

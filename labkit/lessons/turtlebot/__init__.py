@@ -18,5 +18,5 @@ LESSON = Lesson(
     exercises=[stop, bot, wall, go_to, square],
     quizzes=[QUIZ],
     topics=['/scan', '/joint_states', '/clock'],
-    given=['/turtlebot', '/teleop', '/bot', '/speedometer'],
+    given={'/turtlebot': '*', '/teleop': '*', '/bot': 'bot-run', '/speedometer': 'speedometer'},
 )

@@ -1,0 +1,113 @@
+"""What the learner has made, where nothing of it is what the exercise asks for.
+
+Whoever has written something and is told 'write your code' looks for the fault in the wrong place.
+So a check that finds no attempt names what is new: a node of another name or topic, a class that
+is defined and never used, a process that has ended.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import sys
+import textwrap
+from typing import TYPE_CHECKING, Any
+
+from labkit import settings
+from labkit.exercises.scope import PUBLISHER, SUBSCRIPTION
+from labkit.exercises.verdict import Fail
+
+if TYPE_CHECKING:
+    from labkit.exercises.probe import Probe
+
+__all__ = ['refuse_traces']
+
+
+def refuse_traces(probe: Probe, task: str) -> None:
+    """Raise Fail if the learner has made something that may be meant as an attempt.
+
+    Args:
+        probe: The probe of the check.
+        task: What the exercise asks for, in a few words.
+    """
+    _refuse_nodes(probe, task)
+    if settings.in_kernel():
+        _refuse_class(task)
+
+
+def _refuse_nodes(probe: Probe, task: str) -> None:
+    """Raise Fail if there is a node that does nothing this lesson knows."""
+    ends: dict[str, list[str]] = {name: [] for name in _own_nodes(probe)}
+    known: set[str] = set()
+    for kind, found in (
+        (PUBLISHER, probe.all_publishers()),
+        (SUBSCRIPTION, probe.all_subscriptions()),
+    ):
+        for end in found:
+            if end.node not in ends:
+                continue
+            word = 'publishes on' if kind == PUBLISHER else 'subscribes to'
+            ends[end.node].append(f'{word} {end.topic} ({end.msg_type})')
+            if (kind, end.topic) in probe.scope.of_lesson:
+                known.add(end.node)
+    new = {name: what for name, what in ends.items() if name not in known}
+    if not new:
+        return
+    name, what = next(iter(new.items()))
+    other = f', and {len(new) - 1} more' if len(new) > 1 else ''
+    raise Fail(
+        task,
+        f'the node {name}, which {", ".join(what) or "neither publishes nor subscribes"}{other}',
+        why='There is a node of yours, but nothing of it is what this task asks for: compare the '
+        'names of node and topics, and the type, letter by letter.',
+        todo='Change the cell of the node and run it again. A node that belongs elsewhere ends '
+        f'with lab.remove({name!r}).',
+    )
+
+
+def _own_nodes(probe: Probe) -> list[str]:
+    """Return the nodes of this notebook and of the processes that it has started."""
+    return [name for name in dict.fromkeys(probe.node_names()) if probe.is_from_here(name)]
+
+
+def _refuse_class(task: str) -> None:
+    """Raise Fail if a class of nodes was written in the notebook, and no node was made of it."""
+    names = [name for name, kind in _classes().items() if _is_written(kind)]
+    if not names:
+        return
+    name = names[-1]
+    raise Fail(
+        task,
+        f'the class {name}, and no node of it',
+        why='A class is a plan. Nothing runs before a node is made of it.',
+        todo=f'Make one, and hand it over: lab.spin({name}(...)), with what its __init__ takes.',
+    )
+
+
+def _classes() -> dict[str, type]:
+    """Return the classes of nodes that cells have defined, and of which none was ever made."""
+    from rclpy.node import Node
+
+    from labkit.background.nodes import existing_nodes, made
+
+    used = {*made.kinds(), *map(type, existing_nodes())}
+    used = {base for kind in used for base in kind.__mro__}
+    space: dict[str, Any] = vars(sys.modules['__main__'])
+    return {
+        name: thing
+        for name, thing in space.items()
+        if type(thing) is type
+        and issubclass(thing, Node)
+        and thing.__module__ == '__main__'
+        and thing not in used
+        and not name.startswith('_')
+    }
+
+
+def _is_written(kind: type) -> bool:
+    """Tell whether nothing of a class is left open: three dots stand where a learner writes."""
+    try:
+        tree = ast.parse(textwrap.dedent(inspect.getsource(kind)))
+    except (OSError, TypeError, SyntaxError):
+        return False
+    return not any(isinstance(n, ast.Constant) and n.value is ... for n in ast.walk(tree))
