@@ -1,8 +1,8 @@
 """What a TurtleBot3 Burger publishes, as ROS messages made from the simulation.
 
 Frames, fields and units are those of the real robot. Sources: ROBOTIS-GIT/turtlebot3,
-turtlebot3_node/src/odometry.cpp and sensors/joint_state.cpp; ROBOTIS-GIT/hls_lfcd_lds_driver,
-src/hlds_laser_publisher.cpp.
+turtlebot3_node/src: odometry.cpp and, in sensors/, joint_state.cpp, imu.cpp, battery_state.cpp;
+ROBOTIS-GIT/hls_lfcd_lds_driver, src/hlds_laser_publisher.cpp.
 """
 
 from __future__ import annotations
@@ -14,12 +14,30 @@ import numpy as np
 from builtin_interfaces.msg import Time
 from nav_msgs.msg import Odometry
 from numpy.typing import NDArray
-from sensor_msgs.msg import JointState, LaserScan
+from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan
 
 from labkit.sim.kinematics import yaw_to_quaternion
 from labkit.sim.simulator import Simulator
 
-__all__ = ['joint_state_message', 'odometry_message', 'scan_message', 'time_message']
+__all__ = [
+    'battery_message',
+    'imu_message',
+    'joint_state_message',
+    'odometry_message',
+    'scan_message',
+    'time_message',
+]
+
+# Standard gravity, m/s². Source: BIPM, "The International System of Units" (3rd CGPM, 1901).
+GRAVITY = 9.80665
+# A full battery drives the robot for this long, s. Source: ROBOTIS e-manual, TurtleBot3,
+# "Features > Specifications": 2 h 30 min.
+BATTERY_TIME = 2.5 * 3600
+# Its capacity, Ah. Source: battery_state.cpp.
+BATTERY_CAPACITY = 1.8
+# Voltage of the full and of the empty battery, V. Source: ROBOTIS-GIT/OpenCR, turtlebot3_ros2/src/
+# turtlebot3/turtlebot3.cpp, update_battery_status_to_table: three cells of 4.1 V and of 3.5 V.
+BATTERY_FULL, BATTERY_EMPTY = 12.3, 10.5
 
 
 def _diagonal(*values: float) -> NDArray[np.float64]:
@@ -78,6 +96,51 @@ def joint_state_message(robot: Simulator, stamp: Time, prefix: str = '') -> Join
     message.name = ['wheel_left_joint', 'wheel_right_joint']
     message.position = array('d', robot.wheels)
     message.velocity = array('d', robot.wheel_rates)
+    return message
+
+
+def imu_message(robot: Simulator, stamp: Time, prefix: str = '') -> Imu:
+    """Return what the inertial sensor in the middle of the axle measures.
+
+    Orientation, rad/s and m/s² are those of the robot in truth, whatever its odometry believes.
+    A sensor at rest measures an acceleration of 1 g upwards; in a curve it measures the one
+    towards the middle. Covariances are zero, as on the real robot: they are not known.
+
+    Args:
+        robot: The robot.
+        stamp: When.
+        prefix: What comes before the name of its frame.
+    """
+    message = Imu()
+    message.header.stamp = stamp
+    message.header.frame_id = f'{prefix}imu_link'
+    turn, rate = message.orientation, message.angular_velocity
+    turn.x, turn.y, turn.z, turn.w = yaw_to_quaternion(robot.pose.yaw)
+    rate.z = robot.twist.w
+    linear = message.linear_acceleration
+    linear.x, linear.y, linear.z = robot.acceleration.v, robot.twist.v * robot.twist.w, GRAVITY
+    return message
+
+
+def battery_message(robot: Simulator, stamp: Time) -> BatteryState:
+    """Return how full the battery is: a plain model, not a measurement.
+
+    Charge and voltage fall evenly with simulated time, whatever the robot does, until the battery
+    is empty after 2.5 h. The robot drives on then. As the real one does, it fills in the charge
+    in percent (the message would have it from 0 to 1), the voltage, the design capacity, and
+    that there is a battery; the frame is empty.
+
+    Args:
+        robot: The robot.
+        stamp: When.
+    """
+    charge = max(0.0, 1 - robot.time / BATTERY_TIME)
+    message = BatteryState()
+    message.header.stamp = stamp
+    message.design_capacity = BATTERY_CAPACITY
+    message.percentage = 100 * charge
+    message.voltage = BATTERY_EMPTY + charge * (BATTERY_FULL - BATTERY_EMPTY)
+    message.present = True
     return message
 
 

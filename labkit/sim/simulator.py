@@ -53,6 +53,7 @@ class Simulator:
         time: Simulated time since the start, s.
         pose: Where it is.
         twist: How fast it moves.
+        acceleration: How fast that changes. A wall stops it at once, which is no acceleration.
         target: The last command, cut to what the drive can do.
         odometry: Where it believes to be, from its wheels.
         wheels: How far the left and the right wheel have turned by their encoders, rad.
@@ -121,7 +122,7 @@ class Simulator:
                 todo='Let it start further away from walls and posts.',
             )
         self.pose = self.odometry = Pose(x, y, wrap_angle(yaw))
-        self.twist = self.target = Twist2()
+        self.twist = self.target = self.acceleration = Twist2()
         self.wheels = (0.0, 0.0)
         self.collisions: list[Contact] = []
         self._command_left = math.inf
@@ -192,6 +193,7 @@ class Simulator:
         """Move until something changes: a speed is reached, a contact, the command ends."""
         if self.twist == self.target == Twist2():
             # However long it stands, this is one piece.
+            self.acceleration = Twist2()
             self._pass(dt)
             return dt
         acceleration, change = ramp(self.twist, self.target, self.robot.limits)
@@ -204,13 +206,14 @@ class Simulator:
         elif contact.time == 0 and self.twist == Twist2():
             # It pushes against what it touches: time passes, the robot stands.
             used = longest
+            self.acceleration = Twist2()
             self._pass(used)
         else:
             used = contact.time
             self._move(motion, used)
             if self.twist.v:
                 self.collisions.append(contact._replace(time=self.time))
-            self.twist = Twist2()
+            self.twist = self.acceleration = Twist2()
         return used
 
     def _move(self, motion: Motion, time: float) -> None:
@@ -225,6 +228,7 @@ class Simulator:
             self.odometry = Motion(self.odometry, seen, change).pose_at(time)
         else:
             self.odometry = self.pose
+        self.acceleration = acceleration
         v, w = motion.twist_at(time)
         self.twist = Twist2(
             self.target.v if abs(self.target.v - v) < SAME_SPEED else v,

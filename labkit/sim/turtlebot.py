@@ -1,8 +1,12 @@
 """The simulated robot as a ROS node, with the topics of a TurtleBot3 Burger.
 
 Names, types, frames and QoS are those of the real one, so what is written against this node runs
-unchanged there. Sources: ROBOTIS-GIT/turtlebot3, turtlebot3_node/src (KeepLast(10), reliable), and
-ROBOTIS-GIT/hls_lfcd_lds_driver, src/hlds_laser_publisher.cpp (SensorDataQoS).
+unchanged there. Sources: ROBOTIS-GIT/turtlebot3, turtlebot3_node: src/turtlebot3.cpp, and
+include/turtlebot3_node/sensors/sensors.hpp (KeepLast(10), reliable); ROBOTIS-GIT/
+hls_lfcd_lds_driver, src/hlds_laser_publisher.cpp (SensorDataQoS).
+
+Left out are `/tf`, since there is no wheel of tf2_msgs for ROS 2 Jazzy, `/magnetic_field`, and
+`/sensor_state`, whose type is ROBOTIS's own.
 """
 
 from __future__ import annotations
@@ -22,12 +26,14 @@ from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_sensor_data
 from rclpy.timer import Timer
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import JointState, LaserScan
+from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan
 
 from labkit.background import runtime
 from labkit.errors import LabError
 from labkit.sim.kinematics import Pose, Twist2
 from labkit.sim.messages import (
+    battery_message,
+    imu_message,
     joint_state_message,
     odometry_message,
     scan_message,
@@ -38,7 +44,8 @@ from labkit.sim.world import Contact, Wall, World
 
 __all__ = ['ODOM_RATE', 'Turtlebot']
 
-# How often /odom and /joint_states are published, Hz, in simulated time.
+# How often /odom, /joint_states, /imu and /battery_state are published, Hz, in simulated time. The
+# real robot, too, publishes them in one round; it has 20 of them in a second.
 ODOM_RATE = 30.0
 QUEUE_DEPTH = 10
 # Beyond this rclpy can't keep up with the messages, simulated seconds in a second.
@@ -52,8 +59,11 @@ class Turtlebot(Node):
 
     It hears `cmd_vel` (geometry_msgs/msg/Twist) and publishes `odom` (nav_msgs/msg/Odometry) and
     `joint_states` (sensor_msgs/msg/JointState) 30 times a second, and `scan`
-    (sensor_msgs/msg/LaserScan) 5 times a second. It stops when commands stop coming, and where it
-    touches a wall. The origin of the frame `odom` is that of the world, wherever the robot starts.
+    (sensor_msgs/msg/LaserScan) 5 times a second. To whoever subscribes it publishes `imu`
+    (sensor_msgs/msg/Imu) and `battery_state` (sensor_msgs/msg/BatteryState) 30 times a second;
+    the battery is a plain model, which falls from 100 % to 0 % in 2.5 h of simulated time. There
+    is no `/tf`. The robot stops when commands stop coming, and where it touches a wall. The
+    origin of the frame `odom` is that of the world, wherever it starts.
 
     There are three ways for time to pass. By default it is real time. With `speed` it runs faster
     or slower, and `/clock` tells it to nodes that have the parameter `use_sim_time`. With
@@ -153,6 +163,8 @@ class Turtlebot(Node):
             event_callbacks=self._on_join(self._publish_scan),
         )
         self._joints = self.create_publisher(JointState, 'joint_states', QUEUE_DEPTH)
+        self._imu = self.create_publisher(Imu, 'imu', QUEUE_DEPTH)
+        self._battery = self.create_publisher(BatteryState, 'battery_state', QUEUE_DEPTH)
         self.create_subscription(Twist, 'cmd_vel', self._on_command, QUEUE_DEPTH)
 
     def _on_join(self, publish: Callable[[], None]) -> PublisherEventCallbacks | None:
@@ -320,7 +332,13 @@ class Turtlebot(Node):
         if self._clock_publisher is not None:
             self._clock_publisher.publish(Clock(clock=self._stamp()))
         self._publish_odometry()
-        self._joints.publish(joint_state_message(self.simulator, self._stamp(), self._prefix))
+        stamp = self._stamp()
+        self._joints.publish(joint_state_message(self.simulator, stamp, self._prefix))
+        # These are seldom heard, and not made for nobody.
+        if self._imu.get_subscription_count():
+            self._imu.publish(imu_message(self.simulator, stamp, self._prefix))
+        if self._battery.get_subscription_count():
+            self._battery.publish(battery_message(self.simulator, stamp))
         # Half a round early is on time: real rounds are a little shorter or longer.
         time, turn = self.simulator.time, 1 / self.simulator.robot.scan_rate
         if time > self._scan_due - 0.5 / ODOM_RATE:

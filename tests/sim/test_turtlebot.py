@@ -11,10 +11,10 @@ import rclpy
 from geometry_msgs.msg import Twist
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from sensor_msgs.msg import LaserScan
+from sensor_msgs.msg import BatteryState, Imu, LaserScan
 
 from labkit.errors import LabError
-from labkit.sim.kinematics import BURGER, Pose
+from labkit.sim.kinematics import BURGER, Pose, yaw_from_quaternion
 from labkit.sim.turtlebot import Turtlebot
 from labkit.sim.world import Post, Wall, World, open_field, playground
 from tests.stage import Stage, twist, yaw_of
@@ -26,6 +26,8 @@ def test_topics_types_and_qos_are_those_of_the_real_robot(stage: Stage) -> None:
     expected = {
         '/odom': ('nav_msgs/msg/Odometry', reliable),
         '/joint_states': ('sensor_msgs/msg/JointState', reliable),
+        '/imu': ('sensor_msgs/msg/Imu', reliable),
+        '/battery_state': ('sensor_msgs/msg/BatteryState', reliable),
         '/scan': ('sensor_msgs/msg/LaserScan', best_effort),
     }
     for topic, (kind, reliability) in expected.items():
@@ -61,6 +63,70 @@ def test_messages_hold_what_the_real_robot_would_say(stage: Stage) -> None:
     assert list(scan.ranges) == pytest.approx(robot.simulator.scan())
     stamps = [message.header.stamp.sec for message in (odometry, joints, scan)]
     assert all(stamp > 1e9 for stamp in stamps), 'real time, as the system clock has it'
+
+
+def test_the_imu_feels_the_drive(stage: Stage) -> None:
+    robot = stage.robot(world=open_field(), lockstep=0.02, yaw=1.0, drift=0.1)
+    driver = stage.driver()
+    felt: list[Imu] = []
+    driver.create_subscription(Imu, '/imu', felt.append, 10)
+    stage.until(lambda: robot.count_subscribers('/imu') == 1)
+    stage.command(driver, 0.2, 1.0)
+    stage.until(lambda: len(felt) == 1)
+    start = felt[0]
+    assert start.header.frame_id == 'imu_link'
+    assert (start.header.stamp.sec, start.header.stamp.nanosec) == (0, 20_000_000)
+    # The drive speeds up: 2.5 m/s² and 3.2 rad/s².
+    assert start.linear_acceleration.x == pytest.approx(2.5)
+    assert start.angular_velocity.z == pytest.approx(0.064)
+    stage.command(driver, 0.2, 1.0, count=20)
+    stage.until(lambda: len(felt) == 21)
+    curve = felt[-1]
+    assert curve.angular_velocity.z == 1.0
+    assert curve.linear_acceleration.x == 0.0
+    assert curve.linear_acceleration.y == pytest.approx(0.2)
+    assert curve.linear_acceleration.z == 9.80665
+    turn = curve.orientation
+    # In truth, not as the drifting odometry believes.
+    assert yaw_from_quaternion(turn.x, turn.y, turn.z, turn.w) == pytest.approx(robot.pose.yaw)
+    assert robot.simulator.odometry.yaw != pytest.approx(robot.pose.yaw, abs=1e-3)
+    stage.command(driver, 0.0, 0.0, count=30)
+    stage.until(lambda: len(felt) == 51)
+    rest = felt[-1]
+    assert rest.linear_acceleration.x == rest.linear_acceleration.y == 0.0
+    assert rest.linear_acceleration.z == 9.80665
+
+
+def test_the_battery_falls_with_simulated_time(stage: Stage) -> None:
+    robot = stage.robot(lockstep=60.0)
+    driver = stage.driver()
+    seen: list[BatteryState] = []
+    driver.create_subscription(BatteryState, '/battery_state', seen.append, 10)
+    stage.until(lambda: robot.count_subscribers('/battery_state') == 1)
+    stage.command(driver, 0.0, 0.0)
+    stage.until(lambda: len(seen) == 1)
+    assert seen[0].percentage == pytest.approx(100 * (1 - 60 / 9000))
+    assert seen[0].voltage == pytest.approx(12.3 - 1.8 * 60 / 9000)
+    assert seen[0].design_capacity == pytest.approx(1.8)
+    assert seen[0].present
+    robot.simulator.step(10_000.0)
+    stage.command(driver, 0.0, 0.0)
+    stage.until(lambda: len(seen) == 2)
+    assert (seen[1].percentage, seen[1].voltage) == (0.0, 10.5)
+
+
+def test_a_number_that_is_none_is_seen_on_the_topic(stage: Stage) -> None:
+    robot = stage.robot(lockstep=0.1)
+    driver = stage.driver()
+    listener = stage.add(Node('listener'))
+    commands: list[Twist] = []
+    listener.create_subscription(Twist, '/cmd_vel', commands.append, 10)
+    stage.until(lambda: driver.commands.get_subscription_count() == 2)
+    stage.command(driver, math.nan, 0.5)
+    stage.until(lambda: commands)
+    assert math.isnan(commands[0].linear.x)
+    assert commands[0].angular.z == 0.5
+    assert robot.twist == (0.0, 0.0)
 
 
 def test_it_drives_in_real_time_and_stops_when_commands_stop(stage: Stage) -> None:
