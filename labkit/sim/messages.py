@@ -156,8 +156,7 @@ def scan_message(robot: Simulator, stamp: Time, prefix: str = '') -> LaserScan:
     message = LaserScan()
     message.header.stamp = stamp
     message.header.frame_id = f'{prefix}base_scan'
-    # The last beam is one increment short of a full turn. (The real driver announces 2 pi, which
-    # does not agree with its 360 beams.) All beams are of the same moment.
+    # The last beam is one increment short of a full turn. All beams are of the same moment.
     message.angle_min = 0.0
     message.angle_increment = math.tau / spec.scan_beams
     message.angle_max = message.angle_increment * (spec.scan_beams - 1)

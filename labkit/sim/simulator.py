@@ -47,6 +47,7 @@ class Simulator:
         drift: Error of its odometry: how much the wheels' radii differ, by their mean.
         noise: Standard deviation of a measured range, m.
         seed: Of the noise: the same seed, the same noise.
+        scan_nothing: What the scanner gives where it measures nothing, inf or 0.0; see `scan`.
         name: What it is called in the world; a robot of the same name is replaced.
 
     Attributes:
@@ -74,16 +75,19 @@ class Simulator:
         drift: float = 0.0,
         noise: float = 0.0,
         seed: int = 0,
+        scan_nothing: float = math.inf,
         name: str = 'turtlebot',
     ) -> None:
         _check('command_timeout', command_timeout, command_timeout > 0, 'more than 0 s')
         _check('drift', drift, abs(drift) < 1, 'a share such as 0.01')
         _check('noise', noise, 0 <= noise < math.inf, 'a distance in metres, 0 or more')
+        _check('scan_nothing', scan_nothing, scan_nothing in (math.inf, 0.0), 'inf or 0.0')
         self.world = world if world is not None else playground()
         self.robot = robot
         self.command_timeout = command_timeout
         self.drift = drift
         self.noise = noise
+        self.scan_nothing = scan_nothing
         self.name = name
         self.time = 0.0
         self._seed = seed
@@ -168,14 +172,19 @@ class Simulator:
     def scan(self) -> list[float]:
         """Return what the laser scanner sees now, beam after beam to the left, m.
 
-        Nothing within the range gives +inf, something nearer than the range -inf.
-        Source: REP 117, "Informational Distance Measurements" (ros.org/reps/rep-0117.html).
+        With `scan_nothing=inf` nothing within the range gives +inf, and something nearer than the
+        range -inf. With 0.0 both give 0.0, as the LDS-01 of a real TurtleBot3 does.
+        Sources: REP 117, "Informational Distance Measurements" (ros.org/reps/rep-0117.html);
+        hlds_laser_publisher.cpp (millimetres in whole numbers), and a scan of a real one in
+        github.com/ROBOTIS-GIT/turtlebot3/issues/404.
         """
         ranges = self.world.ranges(self.pose, robot=self.robot, but=self.name)
         if self.noise:
             ranges += self._random.normal(0.0, self.noise, len(ranges))
         ranges[ranges > self.robot.range_max] = math.inf
         ranges[ranges < self.robot.range_min] = -math.inf
+        if not self.scan_nothing:
+            ranges[np.isinf(ranges)] = 0.0
         numbers: list[float] = ranges.tolist()
         return numbers
 

@@ -84,6 +84,9 @@ class Turtlebot(Node):
         drift: Error of its odometry: the difference of the wheels' radii by their mean.
         noise: Standard deviation of a measured range, m. The real sensor has about 0.01.
         seed: Of the noise: the same seed, the same noise.
+        scan_nothing: What the scanner says where it measures nothing: inf, as the rules of ROS
+            have it (REP 117; -inf where something is too near), or 0.0, as that of a real
+            TurtleBot3 does in both cases.
         use_sim_time: Follow the `/clock` of another node, such as that of a robot with `speed`.
 
     Attributes:
@@ -108,6 +111,7 @@ class Turtlebot(Node):
         drift: float = 0.0,
         noise: float = 0.0,
         seed: int = 0,
+        scan_nothing: float = math.inf,
         use_sim_time: bool = False,
     ) -> None:
         _check_time(speed, lockstep, use_sim_time)
@@ -120,6 +124,7 @@ class Turtlebot(Node):
             drift=drift,
             noise=noise,
             seed=seed,
+            scan_nothing=scan_nothing,
             name=f'{space}/{name}',
         )
         if not rclpy.utilities.ok():

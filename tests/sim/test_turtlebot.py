@@ -115,6 +115,23 @@ def test_the_battery_falls_with_simulated_time(stage: Stage) -> None:
     assert (seen[1].percentage, seen[1].voltage) == (0.0, 10.5)
 
 
+def test_the_scanner_may_say_zero_for_nothing_as_a_real_one(stage: Stage) -> None:
+    # A wall behind the scanner, too near for it, one within its range, and nothing elsewhere.
+    walls = [Wall(-0.12, -0.001, -0.12, 0.001), Wall(1.0, -0.1, 1.0, 0.1)]
+    seen: dict[str, list[float]] = {}
+    for name, options in (('rep', {}), ('real', {'scan_nothing': 0.0})):
+        stage.robot(namespace=name, world=World(walls), lockstep=0.1, **options)
+        driver = stage.driver(name)
+        stage.command(driver, 0.0, 0.0)
+        stage.until(lambda driver=driver: driver.scans)
+        seen[name] = list(driver.scans[-1].ranges)
+    rep, real = seen['rep'], seen['real']
+    assert rep[0] == real[0] == pytest.approx(1.032)
+    assert (rep[90], rep[180]) == (math.inf, -math.inf)
+    assert (real[90], real[180]) == (0.0, 0.0)
+    assert [one if math.isfinite(one) else 0.0 for one in rep] == real
+
+
 def test_a_number_that_is_none_is_seen_on_the_topic(stage: Stage) -> None:
     robot = stage.robot(lockstep=0.1)
     driver = stage.driver()
@@ -281,6 +298,8 @@ def test_a_place_without_room_is_refused_and_the_robot_stays(
         ({'lockstep': math.inf}, 'lockstep must be'),
         ({'lockstep': 0.1, 'speed': 2.0}, 'exclude'),
         ({'use_sim_time': True, 'speed': 2.0}, 'exclude'),
+        ({'scan_nothing': 3.5}, 'scan_nothing must be inf or 0.0'),
+        ({'scan_nothing': math.nan}, 'scan_nothing must be inf or 0.0'),
         ({'x': 10.0, 'world': World([], [Post(10.0, 0.0, 1.0)])}, 'room around it'),
     ],
 )
