@@ -101,8 +101,10 @@ class Answers(Clause):
                 missing.append((at, value))
         if missing:
             self._refuse_missing(evidence, missing, left, len(heard))
-        if left:
-            self._refuse_extra(evidence, heard, left)
+        # At the beginning it may answer what came before: a node may keep what it hears.
+        extra = [(t, value) for t, value in left if t >= WITHIN_SEC]
+        if extra:
+            self._refuse_extra(evidence, heard, extra)
         examples = [value for _, value in heard[:2]]
         pairs = ', '.join(f'{show([v])} -> {show([self.answer(v)])}' for v in examples)
         hears = evidence.subscription(self.inner, self.by)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from labkit.exercises import expect
@@ -21,6 +21,8 @@ __all__ = ['Clause', 'Evidence', 'Stream', 'Test', 'judge']
 
 # The first test is sent after this time, and the others with so much time in between, s.
 TEST_EVERY_SEC = 1.0
+# So long it is looked at what comes after the last one, s.
+AFTER_SEC = 5.0
 LOG = 'rcl_interfaces/msg/Log'
 
 
@@ -98,19 +100,46 @@ class Evidence:
         """Let time pass, and send what the clauses want to be sent."""
         scope = self.probe.scope
         topics = {**scope.publishes, **scope.subscribes}
-        stimuli: list[Stimulus] = []
-        asked: list[tuple[Clause, int]] = []
-        for clause in clauses:
-            for test in clause.tests(self):
-                at = TEST_EVERY_SEC * (len(stimuli) + 1)
-                stimuli.append(Stimulus(at, test.topic, test.msg_type, test.fields, test.answers))
-                asked.append((clause, len(stimuli) - 1))
-        self.life = self.live(
-            topics, max(LIFE_SEC, stimuli[-1].at + 5.0 if stimuli else 0.0), clauses, stimuli
-        )
-        for clause, number in asked:
-            if number < len(self.life.sent):
-                self.tests.setdefault(clause, []).append(self.life.sent[number])
+        asked = [(clause, test) for clause in clauses for test in clause.tests(self)]
+        stimuli = _in_turn([test for _, test in asked])
+        self.life = self.live(topics, max(LIFE_SEC, _seconds(stimuli)), clauses, stimuli)
+        for (clause, _), sent in zip(asked, self.life.sent, strict=False):
+            self.tests.setdefault(clause, []).append(sent)
+        self.refuse_trouble(clauses)
+
+    def alone(self, clause: Clause, tests: Sequence[Test], node: str) -> Evidence:
+        """Let time pass for one node alone, and send it tests.
+
+        So they don't mix with what another node under test says on the same topic.
+
+        Args:
+            clause: Who asks.
+            tests: What is sent.
+            node: Full name of the node.
+
+        Returns:
+            The same evidence, with what was seen now.
+
+        Raises:
+            LearnerError, Fail: As `refuse_trouble` does.
+        """
+        scope, stimuli = self.probe.scope, _in_turn(tests)
+        topics = {**scope.publishes, **scope.subscribes}
+        life = self.live(topics, _seconds(stimuli), [clause], stimuli, nodes=[node])
+        evidence = replace(self, life=life)
+        evidence.refuse_trouble(())
+        return evidence
+
+    def refuse_trouble(self, clauses: Sequence[Clause]) -> None:
+        """Raise what has brought time to a stop before its end, if anything has.
+
+        Args:
+            clauses: What can be judged of the time before.
+
+        Raises:
+            LearnerError: A callback of the learner's has raised.
+            Fail: A callback does not return, or there is no end of callbacks.
+        """
         if self.life.error is not None:
             # What was wrong before is the better answer: the error may be its consequence.
             for clause in clauses:
@@ -158,6 +187,19 @@ class Evidence:
             fine_sec=20 * period,
             rest=max(period, 0.1),
         )
+
+
+def _in_turn(tests: Sequence[Test]) -> list[Stimulus]:
+    """Return tests with the times at which they are sent, one after the other."""
+    return [
+        Stimulus(TEST_EVERY_SEC * number, test.topic, test.msg_type, test.fields, test.answers)
+        for number, test in enumerate(tests, start=1)
+    ]
+
+
+def _seconds(stimuli: Sequence[Stimulus]) -> float:
+    """Return how long it is to be looked at what comes of them, s."""
+    return stimuli[-1].at + AFTER_SEC if stimuli else 0.0
 
 
 class Clause(ABC):
