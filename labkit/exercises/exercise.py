@@ -282,7 +282,8 @@ class Exercise:
                 error = last_cell.learner_error()
                 if error is not None:
                     raise error from None
-                if isinstance(outcome, NotAttempted) and not probe.something_is_starting():
+                unexplained = isinstance(outcome, NotAttempted) and not str(outcome)
+                if unexplained and not probe.something_is_starting():
                     refuse_traces(probe, self._asked())
                 raise
         except LearnerError as error:

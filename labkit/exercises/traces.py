@@ -8,9 +8,9 @@ is defined and never used, a process that has ended.
 from __future__ import annotations
 
 import ast
-import inspect
+import linecache
 import sys
-import textwrap
+from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
 from labkit import settings
@@ -37,6 +37,7 @@ def refuse_traces(probe: Probe, task: str) -> None:
 
 def _refuse_nodes(probe: Probe, task: str) -> None:
     """Raise Fail if there is a node that does nothing this lesson knows."""
+    asked = {topic for _, topic in probe.scope.of_lesson}
     ends: dict[str, list[str]] = {name: [] for name in _own_nodes(probe)}
     known: set[str] = set()
     for kind, found in (
@@ -48,7 +49,8 @@ def _refuse_nodes(probe: Probe, task: str) -> None:
                 continue
             word = 'publishes on' if kind == PUBLISHER else 'subscribes to'
             ends[end.node].append(f'{word} {end.topic} ({end.msg_type})')
-            if (kind, end.topic) in probe.scope.of_lesson:
+            shown = end.topic in probe.scope.known and end.topic not in asked
+            if shown or (kind, end.topic) in probe.scope.of_lesson:
                 known.add(end.node)
     new = {name: what for name, what in ends.items() if name not in known}
     if not new:
@@ -106,8 +108,19 @@ def _classes() -> dict[str, type]:
 
 def _is_written(kind: type) -> bool:
     """Tell whether nothing of a class is left open: three dots stand where a learner writes."""
-    try:
-        tree = ast.parse(textwrap.dedent(inspect.getsource(kind)))
-    except (OSError, TypeError, SyntaxError):
+    functions = [thing for thing in vars(kind).values() if isinstance(thing, FunctionType)]
+    if not functions:
         return False
-    return not any(isinstance(n, ast.Constant) and n.value is ... for n in ast.walk(tree))
+    lines = linecache.getlines(functions[0].__code__.co_filename)
+    try:
+        tree = ast.parse(''.join(lines))
+    except SyntaxError:  # it has lines for IPython, such as those that begin with %
+        return False
+    written = [
+        node
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ClassDef) and node.name == kind.__name__
+    ]
+    inside = [node for definition in written for node in ast.walk(definition)]
+    open_ends = [node for node in inside if isinstance(node, ast.Constant) and node.value is ...]
+    return bool(written) and not open_ends

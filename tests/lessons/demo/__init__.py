@@ -26,5 +26,5 @@ LESSON = Lesson(
         )
     ],
     topics=['/demo_background'],
-    given=['/background'],
+    given={'/background': '*'},
 )

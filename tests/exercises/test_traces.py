@@ -1,0 +1,74 @@
+"""What a check says where something is there, and nothing of it is what the exercise asks for."""
+
+from __future__ import annotations
+
+from types import ModuleType
+from typing import Any
+
+import pytest
+from rclpy.node import Node
+from std_msgs.msg import Int16, String
+
+from labkit.exercises import Exercise, Lesson, Outcome, Solution
+from labkit.exercises.clauses import Publishes
+
+INT16 = 'std_msgs/msg/Int16'
+
+
+@pytest.fixture
+def lesson(lab: ModuleType) -> Lesson:
+    def asking(name: str) -> Exercise:
+        return Exercise(
+            name=name,
+            task='A task.',
+            publishes={f'/{name}': INT16},
+            clauses=[Publishes(f'/{name}', 5.0, INT16)],
+            hints=['', ''],
+            answer=Solution('', ''),
+        )
+
+    return Lesson(
+        'odds', '04_odds.ipynb', exercises=[asking('ones'), asking('evens')], topics=['/demo']
+    )
+
+
+def test_a_node_that_does_something_else_is_named(lab: ModuleType, lesson: Lesson) -> None:
+    node = lab.spin(Node('eager'))
+    node.create_publisher(String, 'answers', 10)
+    verdict = lesson.ones.check()
+    assert verdict.outcome is Outcome.FAIL
+    assert '/eager, which publishes on /answers (std_msgs/msg/String)' in verdict.seen
+    assert lesson.ones.clauses[0].text in verdict.expected
+
+
+def test_a_node_that_does_nothing_is_named(lab: ModuleType, lesson: Lesson) -> None:
+    lab.spin(Node('idle'))
+    assert '/idle, which neither publishes nor subscribes' in lesson.ones.check().seen
+
+
+def test_a_node_of_another_exercise_or_of_the_lesson_is_no_trace(
+    lab: ModuleType, lesson: Lesson
+) -> None:
+    lab.spin(Node('maker')).create_publisher(Int16, 'evens', 10)
+    lab.spin(Node('guide')).create_publisher(Int16, 'demo', 10)
+    assert lesson.ones.check().outcome is Outcome.NOT_ATTEMPTED
+
+
+def test_a_class_that_is_never_used_is_named(kernel: Any) -> None:
+    kernel.run('import labkit as lab; lesson = lab.lesson("odds")')
+    kernel.run('from rclpy.node import Node\nclass Ones(Node): ...')
+    assert 'NOT ATTEMPTED' in kernel.run('lesson.ones.check()').text
+    kernel.run("class Ones(Node):\n    def __init__(self):\n        super().__init__('ones')")
+    assert 'the class Ones, and no node of it' in kernel.run('lesson.ones.check()').text
+    kernel.run('node = Ones(); lab.remove(node)')
+    assert 'the class Ones' not in kernel.run('lesson.ones.check()').text
+
+
+def test_a_node_with_a_name_that_the_lesson_uses_is_the_learners(kernel: Any) -> None:
+    kernel.run('import labkit as lab; lesson = lab.lesson("odds")')
+    kernel.run('from rclpy.node import Node\nfrom std_msgs.msg import Int16')
+    made = "node = lab.spin(Node('announcer')); node.create_publisher(Int16, 'ones', 10)"
+    kernel.run(made, cell_id='repair')
+    assert 'NOT ATTEMPTED' in kernel.run('lesson.ones.check()').text
+    kernel.run(made, cell_id='ones-starter')
+    assert 'a publisher of /announcer' in kernel.run('lesson.ones.check()').text
