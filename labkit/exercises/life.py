@@ -130,6 +130,7 @@ def live(
         stimulus.topic: probe.sender(stimulus.topic, stimulus.msg_type) for stimulus in stimuli
     }
     moving, standing, foreign = _nodes(probe, topics, nodes)
+    probe.lives_sec = seconds
     life = Life()
     moments: list[tuple[float, float]] = []
     with contextlib.ExitStack() as stack:

@@ -18,6 +18,7 @@ from labkit.exercises.scope import Scope
 from labkit.exercises.verdict import Fail
 from labkit.exercises.watch import Watch, build
 from labkit.rosgraph.names import EVERY_NODE_HAS, is_hidden
+from labkit.views.progress_bar import ProgressBar
 
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
@@ -50,6 +51,7 @@ class Probe:
         logs: The log messages of all nodes, from the start of the check.
         lived_sec: How much virtual time has passed for nodes of the learner's, s.
         held_lines: How many lines they wrote meanwhile. They are not shown.
+        lives_sec: How much of it is to pass just now, s.
     """
 
     def __init__(
@@ -66,7 +68,10 @@ class Probe:
         self._watches: list[Watch] = []
         self._publishers: list[Any] = []
         self._end = time.monotonic() + timeout_sec
+        self._begun = time.monotonic()
+        self._bar = ProgressBar('Checking')
         self.lived_sec = 0.0
+        self.lives_sec = 1.0
         self.held_lines = 0
 
     def __enter__(self) -> Probe:
@@ -81,6 +86,7 @@ class Probe:
         return self
 
     def __exit__(self, *_: object) -> None:
+        self._bar.close()
         from rclpy.exceptions import InvalidHandle
 
         with contextlib.suppress(InvalidHandle):  # a learner's thread has shut ROS down
@@ -114,8 +120,10 @@ class Probe:
             if condition():
                 return True
             self.callbacks.raise_new_error(self.scope)
-            if time.monotonic() >= end:
+            now = time.monotonic()
+            if now >= end:
                 return False
+            self._bar.show(None, f'watching in real time, {now - self._begun:.0f} s')
             time.sleep(POLL_SEC)
 
     def wait_to_appear(self, condition: Callable[[], object]) -> bool:
@@ -179,6 +187,7 @@ class Probe:
             LearnerError: A callback of a node under test has raised.
         """
         self.callbacks.raise_new_error(self.scope)
+        self._bar.show(seconds / self.lives_sec, f'{seconds:.0f} s of the time of your nodes')
 
     def forget(self, watches: Iterable[Watch]) -> None:
         """Take no more messages of these."""
