@@ -6,6 +6,7 @@ Their output appears under the cell that started them. They end with the kernel,
 from __future__ import annotations
 
 import contextlib
+import gc
 import json
 import os
 import signal
@@ -15,8 +16,9 @@ import threading
 import time
 from collections import Counter, deque
 from collections.abc import Collection
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from labkit import settings
 from labkit.background.console import Cell
@@ -28,15 +30,17 @@ from labkit.errors import LabTimeout
 from labkit.rosgraph.listings import ends_of_node
 from labkit.rosgraph.names import is_hidden
 from labkit.rosgraph.snapshot import is_whole, node_names
-from labkit.rosgraph.whose import process_id
+from labkit.rosgraph.whose import note_end, process_id, process_of
 
 if TYPE_CHECKING:
     from rclpy.node import Node
 
 __all__ = [
+    'EndedChild',
     'Process',
     'Processes',
     'end_earlier',
+    'ended_children',
     'environment',
     'interrupt_child',
     'is_of_child',
@@ -111,6 +115,8 @@ class Process:
         )
         os.close(writing)
         self.announced: dict[str, dict[str, list[str]]] | None = None
+        # What the GUIDs of its endpoints start with; mostly one process has all of them.
+        self._in_graph: set[bytes] = set()
         self._herald = threading.Thread(target=self._hear, args=(reading,), daemon=True)
         self._herald.start()
         self._reader = threading.Thread(target=self._read, name=f'labkit {name}', daemon=True)
@@ -130,6 +136,20 @@ class Process:
     def output(self) -> list[str]:
         """Return the last lines that it has printed, oldest first."""
         return list(self._lines)
+
+    def owns(self, gid: bytes) -> bool:
+        """Tell whether an endpoint is its own.
+
+        Args:
+            gid: The endpoint's GUID, as the graph gives it.
+        """
+        import psutil  # type: ignore[import-untyped]
+
+        try:
+            children = psutil.Process(self._supervisor.pid).children(recursive=True)
+        except psutil.NoSuchProcess:
+            return False
+        return process_id(gid) in {child.pid & 0xFFFF for child in children}
 
     def show_output(self) -> None:
         """Show what it has printed, and from now on prints, under the cell that started it."""
@@ -180,7 +200,11 @@ class Process:
         if helper is None or not self.nodes:
             return
 
-        runtime.wait(lambda: not {*node_names(helper)} & {*self.nodes}, GONE_SEC)
+        def is_gone() -> bool:
+            named = {*node_names(helper)} & {*self.nodes}
+            return not (named or self._in_graph & {process_of(gid) for gid in _gids(helper)})
+
+        runtime.wait(is_gone, GONE_SEC)
 
     def wait_for_nodes(self, node: Node, before: Collection[str], timeout_sec: float) -> bool:
         """Wait until its nodes are in the graph, with all that they have, or it has ended.
@@ -230,6 +254,7 @@ class Process:
         while not (complete := is_there()) and self.running and time.monotonic() < end:
             time.sleep(POLL_SEC / 5)
         self.nodes = appeared()
+        self._in_graph = {process_of(gid) for gid in _gids(node) if self.owns(gid)}
         if self.nodes and not self._announces:
             for name in self.nodes:
                 wait_until_spun(node, name)
@@ -248,10 +273,20 @@ class Process:
                     self._lines.append(line.rstrip('\n'))
                     if self._shown:
                         runtime.console.write_under(self.cell, line)
+        code = self._supervisor.wait()
+        if code < 0 or code > 128:  # a signal has ended it, so it may not have said goodbye
+            for process in self._in_graph:
+                note_end(process)
 
     def __repr__(self) -> str:
         state = 'running' if self.running else f'ended (exit code {self.exit_code})'
         return f'{self.name}: {", ".join([state, *self.nodes])}'
+
+
+def _gids(node: Node) -> list[bytes]:
+    """Return the GUID of a publisher of each node that the graph knows, ended or not."""
+    infos = node.get_publishers_info_by_topic('/parameter_events')
+    return [bytes(info.endpoint_gid) for info in infos]
 
 
 class Processes(list[Process]):
@@ -333,16 +368,18 @@ def starting_children(gids: Collection[bytes]) -> tuple[bool, bool]:
         Whether one of them has nothing in the graph yet, and whether one has: what else it makes
         may follow.
     """
-    import psutil  # type: ignore[import-untyped]
+    import psutil
 
     appeared = {process_id(gid) for gid in gids}
     oldest = time.time() - _YOUNG_SEC
 
     def is_starting(child: psutil.Process) -> bool:
+        if child.status() == psutil.STATUS_SLEEPING and child.children():
+            return False  # a supervisor or a shell, which only waits
         if child.create_time() > oldest:
             return bool(child.status() != psutil.STATUS_ZOMBIE)
         # On a busy machine it may take long to get as far as this. What has not used much of a
-        # processor yet, and wants one, is still starting; a supervisor or shell only waits.
+        # processor yet, and wants one, is still starting.
         at_work = child.status() in (psutil.STATUS_RUNNING, psutil.STATUS_DISK_SLEEP)
         used = child.cpu_times()
         return at_work and used.user + used.system < _STARTING_CPU_SEC
@@ -375,6 +412,67 @@ def interrupt_child(gid: bytes) -> bool:
 
     for child in psutil.Process().children(recursive=True):
         if child.pid & 0xFFFF == process_id(gid):
-            child.send_signal(signal.SIGINT)
-            return True
+            with contextlib.suppress(psutil.NoSuchProcess):
+                child.send_signal(signal.SIGINT)
+                return True
     return False
+
+
+@dataclass(frozen=True)
+class EndedChild:
+    """A process that this one has started, with whatever means, and that has ended.
+
+    Attributes:
+        pid: Its process id.
+        command: The program and its arguments, as they were given; none if nobody knows them.
+        exit_code: As `subprocess` tells it, -2 for Ctrl-C; None if it is not known, as that of a
+            process of `asyncio` before the cell ends.
+    """
+
+    pid: int
+    command: tuple[str, ...]
+    exit_code: int | None
+
+
+def ended_children() -> list[EndedChild]:
+    """Return the processes that this one has started and that have ended, without labkit's own.
+
+    Those that nobody has waited for yet are found in any case; others as long as there is a
+    `subprocess.Popen` of them, which `asyncio` makes too. Nothing is changed: whoever waits for
+    one of them still hears of its end. All objects of Python are looked at, which takes tenths of
+    a second.
+    """
+    import psutil
+
+    popens = [popen for popen in _popens() if hasattr(popen, 'pid')]
+    commands = {popen.pid: _words(popen.args) for popen in popens}
+    codes: dict[int, int | None] = {popen.pid: popen.returncode for popen in popens}
+    for child in psutil.Process().children():
+        with contextlib.suppress(psutil.NoSuchProcess):
+            codes.pop(child.pid, None)  # it runs, or a later process has the same id
+            if child.status() == psutil.STATUS_ZOMBIE:
+                codes[child.pid] = _exit_code(child.pid)
+    ended = [EndedChild(pid, commands.get(pid, ()), code) for pid, code in codes.items()]
+    return [child for child in ended if str(SUPERVISOR) not in child.command]
+
+
+def _popens() -> list[subprocess.Popen[Any]]:
+    # type() and not isinstance(): some objects answer to __class__ with surprises.
+    return [thing for thing in gc.get_objects() if issubclass(type(thing), subprocess.Popen)]
+
+
+def _words(args: Any) -> tuple[str, ...]:
+    """Return what `Popen` was given as words; a line for the shell is one."""
+    words = [args] if isinstance(args, (str, bytes, os.PathLike)) else args
+    return tuple(os.fsdecode(word) for word in words)
+
+
+def _exit_code(pid: int) -> int | None:
+    """Return the exit code of a child that nobody has waited for, and let others wait for it."""
+    try:
+        ended = os.waitid(os.P_PID, pid, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+    except ChildProcessError:
+        return None
+    if ended is None:
+        return None
+    return ended.si_status if ended.si_code == os.CLD_EXITED else -ended.si_status

@@ -10,6 +10,7 @@ from rclpy.qos import QoSProfile
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from labkit.rosgraph.names import UNKNOWN_NODE, full_node_name, is_hidden
+from labkit.rosgraph.whose import has_ended
 
 __all__ = ['Endpoint', 'publishers', 'subscriptions']
 
@@ -69,6 +70,7 @@ def _sorted(
             bytes(info.endpoint_gid),
         )
         for info in infos
+        if not has_ended(bytes(info.endpoint_gid))
     ]
     shown = [end for end in found if include_hidden or not is_hidden(end.node)]
     return tuple(sorted(shown, key=lambda end: (end.node, end.msg_type)))

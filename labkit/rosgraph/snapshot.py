@@ -21,7 +21,7 @@ from labkit.rosgraph.names import (
     full_node_name,
     is_hidden,
 )
-from labkit.rosgraph.whose import foreign_nodes, own_nodes
+from labkit.rosgraph.whose import foreign_nodes, has_ended, own_nodes
 
 __all__ = [
     'Graph',
@@ -172,12 +172,19 @@ def node_names(node: Node) -> list[str]:
     ROS's own list can keep a node for ever that has ended: a participant says which nodes it has
     (topic `ros_discovery_info`), and where the last of these messages is read after its goodbye,
     it is taken for a new participant. Such a node has no ends, and is left out here. A living one
-    has some from its first moment, mostly a publisher on `/parameter_events`.
+    has some from its first moment, mostly a publisher on `/parameter_events`. So is one of a
+    process that is known to have been killed.
     """
     named = Counter(full_node_name(*pair) for pair in node.get_node_names_and_namespaces())
     infos = node.get_publishers_info_by_topic('/parameter_events')
-    living = Counter(full_node_name(info.node_name, info.node_namespace) for info in infos)
-    for name in named.keys() - living.keys():
+    living, killed = Counter[str](), set()
+    for info in infos:
+        name = full_node_name(info.node_name, info.node_namespace)
+        if has_ended(bytes(info.endpoint_gid)):
+            killed.add(name)
+        else:
+            living[name] += 1
+    for name in named.keys() - living.keys() - killed:
         living[name] = named[name] * any(
             ends_of_node(node, name, include_hidden=True).names().values()
         )

@@ -16,7 +16,17 @@ from rclpy.node import Node
 from labkit import settings
 from labkit.rosgraph.names import full_node_name
 
-__all__ = ['foreign_nodes', 'is_own', 'own_nodes', 'participant_of', 'place', 'process_id']
+__all__ = [
+    'foreign_nodes',
+    'has_ended',
+    'is_own',
+    'note_end',
+    'own_nodes',
+    'participant_of',
+    'place',
+    'process_id',
+    'process_of',
+]
 
 _HOST = slice(2, 4)
 _PROCESS_ID = slice(4, 6)
@@ -25,6 +35,8 @@ _PARTICIPANT = slice(0, 12)
 
 # What the GUIDs of this process start with, once it is known, and the process: a fork is another.
 _own: tuple[int, bytes] = (0, b'')
+# What the GUIDs of processes start with that were killed: the graph forgets them 20 s later.
+_ended: set[bytes] = set()
 
 
 def is_own(gid: bytes, node: Node) -> bool:
@@ -40,6 +52,25 @@ def is_own(gid: bytes, node: Node) -> bool:
 def participant_of(gid: bytes) -> bytes:
     """Return what the GUIDs of all endpoints of one DDS participant start with."""
     return gid[_PARTICIPANT]
+
+
+def process_of(gid: bytes) -> bytes:
+    """Return what the GUIDs of all endpoints of one process start with."""
+    return gid[_PROCESS]
+
+
+def note_end(process: bytes) -> None:
+    """Let the endpoints of a process that has ended without a word be left out from now on.
+
+    Args:
+        process: What its GUIDs start with, see `process_of`.
+    """
+    _ended.add(process)
+
+
+def has_ended(gid: bytes) -> bool:
+    """Tell whether the process of an endpoint is known to have ended; the graph may not know."""
+    return gid[_PROCESS] in _ended
 
 
 def process_id(gid: bytes) -> int:
@@ -71,6 +102,7 @@ def _nodes(node: Node, *, own: bool) -> set[str]:
         full_node_name(info.node_name, info.node_namespace)
         for info in node.get_publishers_info_by_topic('/parameter_events')
         if is_own(bytes(info.endpoint_gid), node) == own
+        and not has_ended(bytes(info.endpoint_gid))
     }
 
 

@@ -6,13 +6,14 @@ on a topic; between processes the mistake is silent, and that is what is to be s
 
 from __future__ import annotations
 
-import os
 import random
-import subprocess
 import sys
-import time
+from typing import TYPE_CHECKING
 
 from labkit.errors import LabTimeout
+
+if TYPE_CHECKING:
+    from labkit.background.child_processes import Process
 
 __all__ = ['GATES', 'GOALS', 'NODES', 'VISITORS', 'open_stadium', 'wrong_gates']
 
@@ -25,76 +26,68 @@ NODES = ('/referee', *GATES)
 PERIOD_SEC = 0.1
 START_SEC = 25.0
 
-_process: subprocess.Popen[bytes] | None = None
+_process: Process | None = None
 
 
 def open_stadium() -> None:
     """Start the stadium as a process, and wait until its nodes are in the graph.
 
-    One that is open already is closed first. It closes by itself when this program ends.
+    One that is open already is closed first, and its nodes leave the graph. `lab.processes()`
+    lists and stops it.
 
     Raises:
         LabTimeout: Its nodes did not come.
     """
     global _process
+    from labkit.background.child_processes import environment, start_process
     from labkit.background.runtime import runtime
+    from labkit.rosgraph.snapshot import node_names
 
-    close_stadium()
+    if _process is not None:
+        _process.stop()
     runtime.start()
-    program = f'from {__name__} import main; main()'
-    # In a session of its own: the stop button interrupts all processes of the kernel's session.
-    _process = subprocess.Popen([sys.executable, '-c', program], start_new_session=True)
-    if not runtime.wait(_is_open, START_SEC):
+    assert runtime.helper is not None
+    before = node_names(runtime.helper)
+    command = [sys.executable, '-c', f'from {__name__} import main; main()']
+    _process = start_process('stadium', command, environment(), announces=True)
+    if not _process.wait_for_nodes(runtime.helper, before, START_SEC):
         raise LabTimeout(
             f'Waited {START_SEC:.0f} s for the nodes of the stadium, but they did not come.',
             todo='Run the cell again. If that does not help, lab.doctor() looks for the reason.',
         )
 
 
-def close_stadium() -> None:
-    """End the stadium if it is open."""
-    global _process
-    if _process is not None:
-        _process.terminate()
-        _process.wait()
-        _process = None
-
-
 def wrong_gates() -> list[str]:
-    """Return the names of the gates whose type is not that of the others, read off the graph."""
-    gates = _types(VISITORS)
+    """Return the names of the gates whose type is not that of the others, read off the graph.
+
+    None if the stadium is closed. Only the one that is open counts: a gate of an earlier one that
+    was killed stays in the graph for a while.
+    """
+    from labkit.background.runtime import runtime
+
+    if _process is None or not _process.running or runtime.helper is None:
+        return []
+    gates = {
+        f'/{info.node_name}': info.topic_type
+        for info in runtime.helper.get_publishers_info_by_topic(VISITORS)
+        if _process.owns(bytes(info.endpoint_gid))
+    }
     return [name for name in GATES if gates.get(name, RIGHT_TYPE) != RIGHT_TYPE]
 
 
-def _is_open() -> bool:
-    """Say whether every node of the stadium is seen, and each with its publisher."""
-    from labkit.background.runtime import runtime
-
-    publishing = {*_types(VISITORS), *_types(GOALS)}
-    return set(NODES) <= publishing and set(NODES) <= runtime.foreign_nodes()
-
-
-def _types(topic: str) -> dict[str, str]:
-    """Return the type of each node that publishes on a topic, by the node's full name."""
-    from labkit.background.runtime import runtime
-
-    assert runtime.helper is not None
-    infos = runtime.helper.get_publishers_info_by_topic(topic)
-    return {f'/{info.node_name}': info.topic_type for info in infos}
-
-
 def main() -> None:
-    """Publish until the program that has started this one ends."""
+    """Publish until it is interrupted."""
     import rclpy
     from rclpy.context import Context
     from rclpy.node import Node
     from rclpy.publisher import Publisher
-    from rclpy.utilities import try_shutdown
+    from rclpy.utilities import get_default_context
     from std_msgs.msg import Int16, Int32
 
-    parent = os.getppid()
+    from labkit.background.program import spin_until_interrupted
+
     # A context has a DDS participant of its own, and each can have its own type for a topic.
-    right, wrong = Context(), Context()
+    right, wrong = get_default_context(), Context()
     nodes, publishers = [], list[tuple[Publisher, type]]()
 
     def add(name: str, topic: str, msg_type: type, context: Context) -> None:
@@ -108,10 +101,12 @@ def main() -> None:
     for gate in GATES:
         add(gate, VISITORS, *((Int32, wrong) if gate == culprit else (Int16, right)))
     number = 0
-    while right.ok() and wrong.ok() and os.getppid() == parent:
+
+    def publish() -> None:
+        nonlocal number
         for publisher, msg_type in publishers:
             publisher.publish(msg_type(data=number // 10 % 1000))
         number += 1
-        time.sleep(PERIOD_SEC)
-    for context in (right, wrong):
-        try_shutdown(context=context)
+
+    nodes[0].create_timer(PERIOD_SEC, publish)
+    spin_until_interrupted(*nodes)
