@@ -10,6 +10,7 @@ from labkit.exercises.attempts import progress_store
 from labkit.exercises.clauses.base import Clause
 from labkit.exercises.expect.endpoints import alone
 from labkit.exercises.learner_errors import explain_error, last_cell
+from labkit.exercises.pending import Pending, learner_task_runs
 from labkit.exercises.probe import Probe
 from labkit.exercises.recorder import Recorder
 from labkit.exercises.scope import Scope
@@ -176,9 +177,17 @@ class Exercise:
         if self._recorder is not None:
             self._recorder.forget()
 
-    def check(self) -> Verdict:
-        """Look at what your nodes do, and say whether it is what the task asks for."""
+    def check(self) -> Verdict | Pending:
+        """Look at what your nodes do, and say whether it is what the task asks for.
+
+        Returns:
+            The verdict. Where an asyncio task of the notebook is at work, one that is about to
+            come: see `Pending`.
+        """
         last_cell.asked()
+        return Pending(self.name, self._check) if learner_task_runs() else self._check()
+
+    def _check(self) -> Verdict:
         verdict = self._examine()
         note = progress_store.note_check(self.lesson, self.name, verdict.outcome.value)
         return verdict if not note else verdict.with_note(note)

@@ -1,0 +1,82 @@
+"""A check of what runs in the notebook's own event loop, such as an asyncio task.
+
+That loop stands still while a cell runs, and with it the task. So the check goes on in a thread
+after its cell has ended, and its verdict takes the place of the word 'checking'.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import Callable, Generator
+from typing import Any
+
+from labkit.errors import cell_name
+from labkit.exercises.verdict import Verdict
+from labkit.views.card import Card
+
+__all__ = ['Pending', 'learner_task_runs']
+
+WORDS = (
+    'A task of this notebook is at work, and it stands still while a cell runs. The check goes on '
+    'when this cell has ended, and its answer will stand here. `await _` in the next cell waits '
+    'for it.'
+)
+
+
+def learner_task_runs() -> bool:
+    """Tell whether a task that a cell has started waits for the event loop of this thread."""
+    try:
+        loop = asyncio.get_running_loop()
+    except RuntimeError:
+        return False
+    current = asyncio.current_task(loop)
+    return any(_is_of_cell(task) for task in asyncio.all_tasks(loop) if task is not current)
+
+
+def _is_of_cell(task: asyncio.Task[Any]) -> bool:
+    code = getattr(task.get_coro(), 'cr_code', None)
+    return code is not None and bool(cell_name(code.co_filename))
+
+
+class Pending:
+    """A verdict that is about to come. In a notebook it shows itself as soon as it is there.
+
+    Args:
+        name: Name of the exercise.
+        check: Returns the verdict. It is called in a thread.
+    """
+
+    def __init__(self, name: str, check: Callable[[], Verdict]) -> None:
+        self._name = name
+        self._check = check
+        self._verdict: Verdict | None = None
+        self._handle: Any = None
+        self._thread = threading.Thread(target=self._work, name='labkit check', daemon=True)
+
+    def _work(self) -> None:
+        self._verdict = self._check()
+        if self._handle is not None:
+            self._handle.update(self._verdict)
+
+    def _card(self) -> Card:
+        return Card('quiet', 'CHECKING', self._name, text=WORDS)
+
+    def __repr__(self) -> str:
+        return repr(self._verdict or self._card())
+
+    def _ipython_display_(self) -> None:
+        from IPython.display import display
+
+        self._handle = display(self._card(), display_id=True)  # type: ignore[no-untyped-call]
+        self._thread.start()
+
+    def __await__(self) -> Generator[Any, None, Verdict]:
+        return asyncio.to_thread(self._result).__await__()
+
+    def _result(self) -> Verdict:
+        if self._thread.ident is None:
+            self._thread.start()
+        self._thread.join()
+        assert self._verdict is not None
+        return self._verdict

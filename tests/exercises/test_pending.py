@@ -1,0 +1,47 @@
+"""A check of an asyncio task, which stands still while the cell of the check runs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+SETUP = """
+import asyncio
+import labkit as lab
+from rclpy.node import Node
+from std_msgs.msg import Int16
+lesson = lab.lesson('odds')
+node = lab.spin(Node('ones'))
+publisher = node.create_publisher(Int16, 'ones', 10)
+"""
+TASK = """
+async def work(value):
+    while True:
+        publisher.publish(Int16(data=value))
+        await asyncio.sleep(0.1)
+
+task = asyncio.create_task(work({value}))
+"""
+
+
+def test_a_task_of_the_notebook_is_judged_once_the_cell_has_ended(kernel: Any) -> None:
+    kernel.run(SETUP)
+    kernel.run(TASK.format(value=1))
+    assert kernel.run('lesson.ones.check()').text.startswith('CHECKING: ones')
+    assert kernel.run('await _').text.startswith('PASS: ones')
+    kernel.run('task.cancel()')
+    kernel.run(TASK.format(value=2))
+    kernel.run('lesson.ones.check()')
+    assert 'Another number is put into the message.' in kernel.run('await _').text
+
+
+def test_a_check_without_a_task_answers_at_once(kernel: Any) -> None:
+    kernel.run(SETUP)
+    assert 'FAIL: ones' in kernel.run('lesson.ones.check()').text
+
+
+def test_the_answer_takes_the_place_of_the_waiting(kernel: Any) -> None:
+    kernel.run(SETUP)
+    kernel.run(TASK.format(value=1))
+    kernel.run('checked = lesson.ones.check()\nchecked')
+    assert kernel.run('await checked').text.startswith('PASS: ones')
+    assert kernel.run('checked._handle.display_id != ""').text == 'True\n'
