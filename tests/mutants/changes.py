@@ -114,7 +114,7 @@ def other_values(value: object) -> list[object]:
     if isinstance(value, int):
         return [value + 1, value - 1, 2 * value, 0, -value]
     if isinstance(value, float):
-        return [round(value * 1.1, 6), value * 0.5, value * 2, -value]
+        return [round(value * 1.1, 6), value * 0.5, value * 2, -value] if value else [1.0, -1.0]
     if isinstance(value, str) and value:
         middle = len(value) // 2
         other = 'o' if value[middle] == 'a' else 'a'
@@ -141,10 +141,8 @@ def _names(tree: ast.Module) -> Iterator[tuple[str, ast.AST, ast.AST]]:
                 after = next((name for name in others if name > node.attr), others[0])
                 yield 'other-name', node, _copy(node, attr=after)
     for node in ast.walk(tree):
-        for field in ('id', 'attr'):
-            if getattr(node, field, None) in SIBLINGS:
-                other = SIBLINGS[getattr(node, field)]
-                yield 'other-name', node, _copy(node, **{field: other})
+        if isinstance(node, ast.Attribute) and node.attr in SIBLINGS:
+            yield 'other-name', node, _copy(node, attr=SIBLINGS[node.attr])
 
 
 def _last_uses(tree: ast.Module) -> list[ast.AST]:
@@ -218,7 +216,7 @@ def _order_counts(first: ast.stmt, second: ast.stmt) -> bool:
     if isinstance(first, definitions) or isinstance(second, definitions):
         return isinstance(first, ast.ClassDef) and not isinstance(second, definitions)
     if all(isinstance(s, ast.Expr) for s in (first, second)):
-        return True
+        return not all('create_' in ast.unparse(s) for s in (first, second))
     if any('super()' in ast.unparse(s) for s in (first, second)):
         return True
     if any(isinstance(node, ast.Return) for s in (first, second) for node in ast.walk(s)):

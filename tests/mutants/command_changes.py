@@ -28,8 +28,6 @@ def command_changes(code: str) -> Iterator[tuple[str, str]]:
     for old, new in (('%', ''), ('"', ''), ('"', "'"), (': ', ':'), (': ', '='), ('{', '[')):
         yield 'text', code.replace(old, new, 1)
         yield 'text', code.replace(old, new)
-    for name in ('--once', '--times 5'):
-        yield 'option', code.replace(name, f'{name} --qos-reliability best_effort', 1)
     yield 'option', code.replace('--once', '--times 2', 1)
     yield 'option', code.replace('--rate', '--wait')
 

@@ -20,6 +20,8 @@ from labkit.exercises import Exercise, Lesson
 
 __all__ = ['Mutant', 'equivalents', 'mutants_of']
 
+# A program in a string is one line.
+LINE = 160
 EQUIVALENT = Path(__file__).with_name('equivalent.json')
 
 
@@ -114,13 +116,24 @@ def _diff(old: str, new: str) -> str:
     before, after = old.splitlines(), new.splitlines()
     parts, where = [], ''
     for tag, i, end, j, new_end in difflib.SequenceMatcher(None, before, after).get_opcodes():
-        if tag != 'equal':
-            parts += [f'- {line.strip()}' for line in before[i:end] if line.strip()]
-            parts += [f'+ {line.strip()}' for line in after[j:new_end] if line.strip()]
-            if tag == 'insert' and ''.join(before[i : i + 1]).strip():
-                parts[-1] += f' (before {before[i].strip()})'
-            where = where or _where(after, j)
+        if tag == 'equal' or _imports_more(tag, after[j:new_end]):
+            continue
+        parts += [f'- {_short(line)}' for line in before[i:end] if line.strip()]
+        parts += [f'+ {_short(line)}' for line in after[j:new_end] if line.strip()]
+        if tag == 'insert' and ''.join(before[i : i + 1]).strip():
+            parts[-1] += f' (before {_short(before[i])})'
+        where = where or _where(after, j)
     return f'{where}{" | ".join(parts)}'
+
+
+def _imports_more(tag: str, lines: list[str]) -> bool:
+    """Tell whether lines only import what another line of the change needs."""
+    return tag == 'insert' and all(line.startswith('from ') for line in lines)
+
+
+def _short(line: str) -> str:
+    line = line.strip()
+    return line if len(line) <= LINE else f'{line[:LINE]}...'
 
 
 def _where(lines: list[str], index: int) -> str:

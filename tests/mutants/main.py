@@ -67,27 +67,30 @@ def _chosen(texts: Sequence[str], sample: int) -> list[Part]:
 
 
 def _run(parts: Sequence[Part], jobs: int) -> list[Result]:
-    """Run all parts, the long ones first, `jobs` at a time; return the results in their order."""
-    total, done, start = sum(len(mutants) for *_, mutants in parts), 0, time.monotonic()
+    """Run all parts, the long ones first, `jobs` at a time; return the results in their order.
 
-    stopping = threading.Event()
+    The stop key (Ctrl and C) ends it early; what has been found until then is returned.
+    """
+    order = [mutant.id for *_, mutants in parts for mutant in mutants]
+    results: dict[str, Result] = {}
+    start, stopping = time.monotonic(), threading.Event()
 
     def say(result: Result) -> None:
-        nonlocal done
         if stopping.is_set():
             raise CancelledError
-        done += 1
+        results[result.mutant.id] = result
         outcome = result.finding.outcome.value if result.finding.outcome else 'no verdict'
         minutes = (time.monotonic() - start) / 60
-        line = f'{done} of {total}, {minutes:.1f} min: {outcome} {result.mutant.id}'
+        line = f'{len(results)} of {len(order)}, {minutes:.1f} min: {outcome} {result.mutant.id}'
         print(line, file=sys.stderr, flush=True)
 
     with ThreadPoolExecutor(max_workers=jobs) as pool:
-        order = sorted(range(len(parts)), key=lambda i: -len(parts[i][2]))
-        found = {i: pool.submit(lambda part: run_mutants(*part, say), parts[i]) for i in order}
+        longest_first = sorted(parts, key=lambda part: -len(part[2]))
+        running = [pool.submit(lambda part: run_mutants(*part, say), p) for p in longest_first]
         try:
-            return [result for i in range(len(parts)) for result in found[i].result()]
+            for future in running:
+                future.result()
         except KeyboardInterrupt:
             stopping.set()
             pool.shutdown(cancel_futures=True)
-            raise
+    return [results[name] for name in order if name in results]

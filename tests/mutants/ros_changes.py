@@ -162,10 +162,11 @@ def _moved(code: str) -> Iterator[_Changed]:
         yield 'moved', new
     for new, (body, i, methods) in _each(code, _published):
         own = next(m for m in methods if any(body is other for other in bodies(m)))
-        statement = body[i]
-        body[i : i + 1] = [ast.Pass()] if len(body) == 1 else []
-        own.body.insert(0, statement)
-        yield 'moved', new
+        if body is not own.body or i:
+            statement = body[i]
+            body[i : i + 1] = [ast.Pass()] if len(body) == 1 else []
+            own.body.insert(0, statement)
+            yield 'moved', new
     for new, (body, i, methods) in _each(code, _published):
         own = next(m for m in methods if any(body is other for other in bodies(m)))
         if body is not own.body:

@@ -63,23 +63,20 @@ def run_mutants(
     exercise: Exercise,
     mutants: Sequence[Mutant],
     say: Callable[[Result], None],
-) -> list[Result]:
-    """Run the mutants of one exercise; tell `say` of each as soon as it has its verdict."""
-    results: list[Result] = []
+) -> None:
+    """Run the mutants of one exercise; tell `say` of each when its verdict is sure."""
     with _Bench(lesson, exercise) as bench:
         for start in range(0, len(mutants), BATCH):
             try:
-                results += _run_batch(bench, mutants[start : start + BATCH], say)
+                _run_batch(bench, mutants[start : start + BATCH], say)
             except LessonError as error:
                 found = Finding(None, f'the lesson itself failed: {error}', 0.0)
-                results += [Result(mutant, found) for mutant in mutants[start:]]
-                break
-    return results
+                for mutant in mutants[start:]:
+                    say(Result(mutant, found))
+                return
 
 
-def _run_batch(
-    bench: _Bench, mutants: Sequence[Mutant], say: Callable[[Result], None]
-) -> list[Result]:
+def _run_batch(bench: _Bench, mutants: Sequence[Mutant], say: Callable[[Result], None]) -> None:
     """Run mutants in one kernel. What a spoilt kernel says is not believed, but asked again."""
     results = [Result(mutant, bench.try_code(mutant.code)) for mutant in mutants]
     spoilt = any(result.finding.outcome is None for result in results[:-1])
@@ -88,12 +85,12 @@ def _run_batch(
         bench.restart()
         if len(mutants) > 1:
             half = len(mutants) // 2
-            first = _run_batch(bench, mutants[:half], say)
-            return first + _run_batch(bench, mutants[half:], say)
+            _run_batch(bench, mutants[:half], say)
+            _run_batch(bench, mutants[half:], say)
+            return
         results = [Result(results[0].mutant, results[0].finding, control.text)]
     for result in results:
         say(result)
-    return results
 
 
 class _Bench:
