@@ -54,6 +54,24 @@ wait_for((0.0, 0.0))
     assert pilot('print(pilot.published, pilot.count == len(heard))') == '(0.0, 0.0) True'
 
 
+def test_while_no_key_is_held_it_publishes_nothing(pilot):
+    pilot("""
+ticks = []
+ear.create_timer(0.1, lambda: ticks.append(len(heard)))
+lab.wait_until(lambda: pilot._publisher.get_subscription_count() == 1)
+lab.wait_until(lambda: len(ticks) >= 10)
+page(v=0.5, w=0.0)
+wait_for((0.1, 0.0))
+page(stop=True)
+wait_for((0.0, 0.0))
+ticks.clear()
+lab.wait_until(lambda: len(ticks) >= 10)
+""")
+    assert pilot('print(heard.count((0.0, 0.0)), ticks[-1] == ticks[0])') == '1 True'
+    assert pilot('print(heard[0])') == '(0.1, 0.0)'
+    assert pilot('print(ear.get_publishers_info_by_topic("/cmd_vel")[0].node_name)') == 'teleop'
+
+
 def test_stamped_commands_for_robots_that_expect_them(pilot):
     pilot("""
 from geometry_msgs.msg import TwistStamped
