@@ -10,6 +10,8 @@ from __future__ import annotations
 import ast
 import linecache
 import sys
+from collections.abc import Sequence
+from pathlib import Path
 from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
 
 __all__ = ['refuse_traces']
 
+# Of a longer program the beginning is looked at, in characters.
+MAX_PROGRAM = 100_000
+
 
 def refuse_traces(probe: Probe, task: str) -> None:
     """Raise Fail if the learner has made something that may be meant as an attempt.
@@ -33,6 +38,7 @@ def refuse_traces(probe: Probe, task: str) -> None:
     _refuse_nodes(probe, task)
     if settings.in_kernel():
         _refuse_class(task)
+    _refuse_process(probe, task)
 
 
 def _refuse_nodes(probe: Probe, task: str) -> None:
@@ -124,3 +130,34 @@ def _is_written(kind: type) -> bool:
     inside = [node for definition in written for node in ast.walk(definition)]
     open_ends = [node for node in inside if isinstance(node, ast.Constant) and node.value is ...]
     return bool(written) and not open_ends
+
+
+def _refuse_process(probe: Probe, task: str) -> None:
+    """Raise Fail if a process that this notebook has started for this exercise is over."""
+    from labkit.background.child_processes import ended_children
+
+    names = [topic.lstrip('/') for topic in probe.scope.topics]
+    for child in ended_children():
+        program = _program(child.command)
+        # The lesson and other exercises have processes that have ended, too.
+        if not any(name in program for name in names):
+            continue
+        code = f' with exit code {child.exit_code}' if child.exit_code else ''
+        raise Fail(
+            task,
+            f'a process that this notebook has started, and that has ended{code}',
+            why='A program ends when its last line is done or when an error comes up. '
+            'rclpy.spin(node) in the last line keeps it going.',
+            todo='See what it says: print(subprocess.run([sys.executable, "-c", program], '
+            'capture_output=True, text=True).stderr)',
+        )
+
+
+def _program(command: Sequence[str]) -> str:
+    """Return the text of a program, as far as it can be had from its command."""
+    texts = list(command)
+    for word in command:
+        path = Path(word) if word.endswith('.py') else None
+        if path is not None and path.is_file():
+            texts.append(path.read_text(errors='replace')[:MAX_PROGRAM])
+    return '\n'.join(texts)

@@ -72,3 +72,12 @@ def test_a_node_with_a_name_that_the_lesson_uses_is_the_learners(kernel: Any) ->
     assert 'NOT ATTEMPTED' in kernel.run('lesson.ones.check()').text
     kernel.run(made, cell_id='ones-starter')
     assert 'a publisher of /announcer' in kernel.run('lesson.ones.check()').text
+
+
+def test_a_process_that_has_ended_is_named(kernel: Any) -> None:
+    kernel.run('import labkit as lab, subprocess, sys; lesson = lab.lesson("odds")')
+    kernel.run("other = subprocess.Popen([sys.executable, '-c', 'pass']); other.wait()")
+    assert 'NOT ATTEMPTED' in kernel.run('lesson.ones.check()').text
+    kernel.run("""program = "raise SystemExit(3)  # was to publish on /ones" """)
+    kernel.run("mine = subprocess.Popen([sys.executable, '-c', program]); mine.wait()")
+    assert 'has ended with exit code 3' in kernel.run('lesson.ones.check()').text
