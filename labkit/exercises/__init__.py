@@ -11,20 +11,12 @@ complete::
     """The exercises of lesson 04."""
 
     from labkit.exercises import (
-        Choice, Exercise, Lesson, Probe, Quiz, Solution, Style, Wrong, changed, expect, right,
-        wrong,
+        Choice, Exercise, Lesson, Quiz, Solution, Style, Wrong, changed, right, wrong,
     )
+    from labkit.exercises.clauses import Publishes, Says
     from labkit.lessons._script import in_process
 
     INT16 = 'std_msgs/msg/Int16'
-
-
-    def judge_ones(probe: Probe) -> str:
-        source = expect.publisher(probe, '/ones')
-        ones = expect.messages(probe, source, count=3, hz=10.0)
-        expect.equal(ones, 'data', 1, todo='Set msg.data = 1 before you publish.')
-        return f'{source.node} publishes 1 at {expect.describe_rate(ones)}.'
-
 
     NODE = """
     from rclpy.node import Node
@@ -52,12 +44,12 @@ complete::
                 name='ones',
                 task='Publish the Int16 1 on /ones, ten times a second.',
                 publishes={'/ones': INT16},
-                judge=judge_ones,
+                clauses=[Publishes('/ones', 10.0, INT16), Says('/ones', 1)],
                 hints=['What calls a function again and again?', 'create_timer(0.1, ...)'],
                 answer=Solution(NODE, 'A timer leaves the node free.'),
                 styles=[Style('own process', in_process(NODE), process=True)],
                 wrong=[
-                    Wrong('Hz for s', changed(NODE, ('0.1', '10')), 'its period is 10 s'),
+                    Wrong('Hz for s', changed(NODE, ('0.1', '10')), '100 times too slow'),
                 ],
             ),
         ],
@@ -75,55 +67,62 @@ complete::
 
 In the notebook are, with these cell ids (an underscore of the name becomes a dash):
 
-- `ones-starter`: the cell to edit, with `...` where the learner writes. It must run as it is;
+- `ones-task`: the task. Each of its bullets is the `text` of a clause, word for word; a test
+  compares them. The prose around them explains, and asks for nothing more;
+- `ones-starter`: the cell to edit, with `...` where the learner writes. It must run as it is,
+  after a restart of the kernel, too: so it imports what it uses;
 - `ones-check`: `lesson.ones.check()`, its output stored as NOT ATTEMPTED;
 - a cell with `# lesson.ones.hint()` and `# lesson.ones.solution()`;
 - one with `lesson.quiz('types')`.
 
-The judge
----------
-It gets a `Probe` (the graph, and messages as they come) and uses the matchers of `expect`, each of
-which returns what it found or raises the outcome. Rules of thumb:
+The clauses
+-----------
+A task is a list of clauses, see `clauses`: what is published where and how often, without an end
+(`Publishes`), what every message says (`Says`, `Messages`), what is answered to what, once and
+nothing otherwise (`Answers`), what is logged (`Logs`), what a node is called (`Named`). A clause
+has its words, looks for what must be in the graph, says which tests are sent, and judges what was
+seen. A lesson says only what is special: its misconceptions. A clause of its own is a subclass of
+`Clause` in the lesson's package.
+
+What was seen is half a minute of the lives of the learner's nodes, in virtual time (`life`): each
+message with the exact time at which it was published. A node that keeps a time of its own, such as
+a thread with `time.sleep()`, shows that by being silent then, and is judged in real time. Tests
+are drawn anew each time from all that the task allows (`draws`). Nodes of earlier exercises stand
+still meanwhile. Rules of thumb:
 
 - The exercise says what it asks for: `publishes` and `subscribes` (topics, with their types) and
   `nodes` (full names). The matchers take the types from there. Ask in any order.
 - Whether something missing is a FAIL or NOT ATTEMPTED is read off the graph, see `Scope`: an
   attempt is a node of the learner's that does what this exercise asks for and no earlier one
-  does, or what may mean that, under another name. Nodes without any publisher or subscription
-  are no attempt, unless only a node is asked for.
+  does, or what may mean that, under another name. Where there is none, `traces` names what else
+  is new: a node that nobody asked for, a class that was never used, a program that has ended.
 - `Lesson(topics=...)` names the topics that the lesson's own cells use besides. On every topic
   that the lesson does not know, a publisher of the right type counts as a wrong name. `given`
-  names nodes (`'/talker'`) that these cells leave running: they are never the learner's.
+  names nodes that these cells leave running, with the ids of the cells: they are never the
+  learner's, and a node of that name that another cell has made is.
 - A second publisher on a topic in `publishes` is a FAIL, whenever it comes, unless the topic is
   in `shared`, too.
-- `expect.publisher` looks for names that are nearly right, and for the type. `expect.messages`
-  waits for messages and judges their rate by their own stamps; when none come it says why: not
-  spun, no timer, timer calls in vain, a callback that does not return.
-- `expect.steps`, `first`, `each`, `equal`, `increasing` look at values. `first` knows the first
-  value even when the check comes late, because messages are numbered.
-- `expect.replies` sends test messages to a subscription and looks for the answers; `explain` gives
-  the misconception behind an answer of this exercise. `expect.logs` looks for a log line.
-- `expect.node` looks for the node's name, `expect.spun` whether anybody runs its callbacks,
-  `expect.qos` at the profile, `expect.ends_with_node`
-  ends the node (then `once=True`). For what is done once, before the check (`ros2 topic pub
-  --once`), `records=['/odds']` records from the setup cell on: `probe.recorded['/odds']`.
-  A recorder is a subscription, so it is counted by `ros2 topic info` and by publishers that wait.
+- For what is done once, before the check (`ros2 topic pub --once`), `records=['/odds']` records
+  from the setup cell on: `probe.recorded['/odds']`. A recorder is a subscription, so it is counted
+  by `ros2 topic info` and by publishers that wait.
+- What has no clause is looked at with a probe and the matchers of `expect`: `judge=` in the place
+  of `clauses=`. They return what they found or raise the outcome: `expect.publisher`, `messages`,
+  `node`, `spun`, `ends_with_node` (then `once=True`), `expect.that(condition, expected=...,
+  seen=..., why=..., todo=...)`, or `raise Fail(expected, seen, why=..., todo=...)`.
 - What another process makes comes into the graph piece by piece. Matchers wait for what they look
   for; before counting (`len(probe.publishers('/names'))`), use `probe.wait_to_appear(condition)`.
-- Anything else: `expect.that(condition, expected=..., seen=..., why=..., todo=...)`, or
-  `raise Fail(expected, seen, why=..., todo=...)`.
 - What the learner's code raises, in a cell or in a callback, becomes ERROR by itself, with the
   misconception behind it; such wrong answers have `outcome=Outcome.ERROR`.
-- A judge must not read the learner's code or variables, and waits only with `probe.wait` and the
-  matchers: they share one time limit, so that a check ends within 5 s.
+- Nothing reads the learner's code or variables. Waits are for events and counts.
 
 The proof
 ---------
 `tests/lessons/` runs every exercise in its notebook, in a real kernel: untouched, each wrong
 answer with its sentence, each style, the solution, and the check pressed again. The solution of
 one exercise keeps running while the next one is proved, as it does when a learner goes on. Have
-at least three wrong answers and two other styles (`process=True`: a script in a process of its
-own). `pytest tests/lessons -k odds-ones` proves one exercise.
+at least eight wrong answers and four other styles (`process=True`: a script in a process of its
+own); each clause must refuse a wrong one. `pytest tests/lessons -k odds-ones` proves one exercise,
+and `python tests/mutants -k odds-ones` asks the check about its solution with one change each.
 
 Ruff looks at all of these answers as it does at other code, and a learner sees the solution as it
 is formatted. Where what it finds is the mistake itself, as a name that is not defined, the wrong
