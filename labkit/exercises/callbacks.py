@@ -94,10 +94,14 @@ def is_given(name: str, scope: Scope) -> bool:
         return False
     from labkit.background.runtime import runtime
 
-    made_in = next((e.cell.cell_id for e in runtime.nodes() if e.name == name), '')
-    # A node of another process has no cell, and some front ends don't send the id of a cell.
     cells = scope.given[name].split()
-    return not made_in or made_in in cells or ANY_CELL in cells
+    if ANY_CELL in cells:
+        return True
+    if find_node(name) is None:
+        return not cells  # of another process, so no cell has made it
+    made_in = next((e.cell.cell_id for e in runtime.nodes() if e.name == name), '')
+    # Some front ends don't send the id of a cell.
+    return not made_in or made_in in cells
 
 
 def _is_under_test(error: Any, scope: Scope) -> bool:

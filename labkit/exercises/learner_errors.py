@@ -209,7 +209,8 @@ _KNOWN = (
     ),
     (
         ('AttributeError',),
-        r"object has no attribute '_default_callback_group'",
+        r"object has no attribute '_(Node__\w+|default_callback_group|logger|clock|rate_group|"
+        r"parameter_overrides)'",
         'The node was not set up before it was used: super().__init__(...) has not been called.',
         "Make super().__init__('my_node') the first line of __init__.",
     ),

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import reduce
 from itertools import pairwise
 from typing import Any
 
-__all__ = ['Sample', 'Watch', 'build']
+__all__ = ['Sample', 'Watch', 'build', 'streams_of']
 
 DEPTH = 1000
 
@@ -100,22 +100,8 @@ class Watch:
         return run
 
     def streams(self) -> list[list[Sample]]:
-        """Return the messages of each publisher.
-
-        A message does not say who sent it, but as which one: publishers that take turns, each
-        counting its own messages, are told apart by that.
-        """
-        streams: list[list[Sample]] = []
-        for sample in self.samples:
-            following = [
-                s for s in streams if not sample.number or s[-1].number + 1 == sample.number
-            ]
-            if following:
-                # Of two that count alike, it is the turn of the one that has waited longer.
-                min(following, key=lambda stream: stream[-1].stamp).append(sample)
-            else:
-                streams.append([sample])
-        return streams
+        """Return the messages of each publisher, see `streams_of`."""
+        return streams_of(self.samples)
 
     @property
     def intervals(self) -> list[float]:
@@ -142,6 +128,23 @@ class Watch:
 
     def __getitem__(self, index: int) -> Any:
         return self.samples[index].message
+
+
+def streams_of(samples: Iterable[Sample]) -> list[list[Sample]]:
+    """Return the messages of each publisher.
+
+    A message does not say who sent it, but as which one: publishers that take turns, each
+    counting its own messages, are told apart by that.
+    """
+    streams: list[list[Sample]] = []
+    for sample in samples:
+        following = [s for s in streams if not sample.number or s[-1].number + 1 == sample.number]
+        if following:
+            # Of two that count alike, it is the turn of the one that has waited longer.
+            min(following, key=lambda stream: stream[-1].stamp).append(sample)
+        else:
+            streams.append([sample])
+    return streams
 
 
 def build(msg_type: str, fields: Mapping[str, Any]) -> Any:

@@ -8,17 +8,19 @@ from __future__ import annotations
 
 from labkit.exercises.clauses.answering import Answers, Logs, find_stage
 from labkit.exercises.clauses.base import Clause, Evidence, Stream, Test, judge
-from labkit.exercises.clauses.nodes import Named, Subscribes
-from labkit.exercises.clauses.publishing import Messages, Publishes, Says, often
+from labkit.exercises.clauses.nodes import Named, Runs, Subscribes
+from labkit.exercises.clauses.publishing import HasText, Messages, Publishes, Says, often
 
 __all__ = [
     'Answers',
     'Clause',
     'Evidence',
+    'HasText',
     'Logs',
     'Messages',
     'Named',
     'Publishes',
+    'Runs',
     'Says',
     'Stream',
     'Subscribes',

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 
 from labkit.exercises import expect
 from labkit.exercises.clauses.base import Clause, Evidence
+from labkit.exercises.expect import timing
+from labkit.exercises.verdict import Fail
 
-__all__ = ['Named', 'Subscribes']
+__all__ = ['Named', 'Runs', 'Subscribes']
 
 
 @dataclass(frozen=True)
@@ -52,3 +54,41 @@ class Subscribes(Clause):
     def find(self, evidence: Evidence) -> None:
         """Look for the subscription."""
         evidence.subscription(self.topic, self.by)
+
+
+@dataclass(frozen=True)
+class Runs(Clause):
+    """Somebody runs the callbacks of a node, and none of them holds the others up.
+
+    Attributes:
+        words: What is asked for, in words of the task.
+        node: Full name of the node; if empty, the one that publishes on a topic.
+        topic: Full name of that topic.
+    """
+
+    words: str
+    node: str = ''
+    topic: str = ''
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return self.words
+
+    def judge(self, evidence: Evidence) -> str:
+        """Ask the node."""
+        probe = evidence.probe
+        name = self.node or evidence.publisher(self.topic).node
+        timing.hanging(probe)
+        if not timing.runs(probe, name):
+            raise Fail(
+                f'{name} runs: its callbacks are called when their time has come',
+                f'{name} is there, but it is not spun',
+                why='A node that is made is in the graph, but it does nothing before somebody '
+                'spins it.'
+                if probe.node_object(name) is not None
+                else 'Its program does something else, such as a loop that waits. So it neither '
+                'takes messages nor answers questions.',
+                todo=timing.how_to_spin(probe, name),
+            )
+        return f'{name} runs.'

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import statistics
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from labkit.exercises.clauses.base import Clause, Evidence, Stream
 from labkit.exercises.expect import timing
 from labkit.exercises.expect.values import show, text_trouble
 from labkit.exercises.life import LIFE_SEC, Life
 from labkit.exercises.verdict import Fail
-from labkit.exercises.watch import Sample
+from labkit.exercises.watch import Sample, streams_of
 
-__all__ = ['Messages', 'Publishes', 'Says', 'often']
+if TYPE_CHECKING:
+    from labkit.rosgraph.endpoints import Endpoint
+
+__all__ = ['HasText', 'Messages', 'Publishes', 'Says', 'often']
 
 # How far a rate may be off, as a part of it, where time is exact. Where a node keeps a time of its
 # own, `timing.TOLERANCE` holds.
@@ -88,10 +91,11 @@ class Publishes(Clause):
     def judge(self, evidence: Evidence) -> str:
         """Judge the rate, and whether it goes on."""
         source = evidence.publisher(self.topic, self.by)
-        life = self._life(evidence)
+        if self._is_one_of_several(evidence):
+            return self._judge_one_of_several(evidence)
+        life = evidence.life
         samples = life.on(self.topic)
         trouble = self._trouble(samples, life)
-        exact = trouble is None
         if trouble is not None:
             if _is_regular(samples):
                 self._refuse(trouble)
@@ -100,18 +104,80 @@ class Publishes(Clause):
         else:
             stream = Stream(self.topic, tuple(samples), True, life.seconds)
         evidence.streams[self.topic, self.by] = stream
-        if not exact:
+        if not stream.exact:
             return f'{source.node} publishes {timing.describe_rate(watch)} on {self.topic}.'
-        rate = _rate(samples)
-        return f'{source.node} publishes {rate:.3g} Hz on {self.topic}, {life.seconds:.0f} s long.'
+        return self._say(source, stream)
 
-    def _life(self, evidence: Evidence) -> Life:
-        scope = evidence.probe.scope
-        if not self.by or self.topic in scope.sole:
-            return evidence.life
-        # A message does not say who has sent it. So time passes for one node alone.
-        topics = {self.topic: scope.publishes[self.topic]}
-        return evidence.live(topics, LIFE_SEC, [self], nodes=[self.by])
+    def _say(self, source: Endpoint, stream: Stream) -> str:
+        rate, seconds = _rate(stream.samples), stream.seconds
+        return f'{source.node} publishes {rate:.3g} Hz on {self.topic}, {seconds:.0f} s long.'
+
+    # -- several publishers on one topic --------------------------------------------------------
+
+    def _is_one_of_several(self, evidence: Evidence) -> bool:
+        return bool(self.by) and self.topic not in evidence.probe.scope.sole
+
+    def _judge_one_of_several(self, evidence: Evidence) -> str:
+        """Judge a publisher of a topic that has several.
+
+        A message does not say who has sent it, so time passes for one node alone. What comes of
+        others meanwhile, of a thread or another process, comes in a count of its own.
+        """
+        life, stream = self._alone(evidence)
+        if stream is None:
+            self._refuse_regular(life)
+            stream = self._among_others(evidence)
+        evidence.streams[self.topic, self.by] = stream
+        if not stream.exact:
+            return f'{self.by} publishes about {self.hz:.3g} Hz on {self.topic}.'
+        return self._say(evidence.publisher(self.topic, self.by), stream)
+
+    def _alone(self, evidence: Evidence) -> tuple[Life, Stream | None]:
+        """Return what came while time passed for this node alone, and its messages if right."""
+        topics = {self.topic: evidence.probe.scope.publishes[self.topic]}
+        life = evidence.live(topics, LIFE_SEC, [self], nodes=[self.by])
+        for samples in streams_of(life.on(self.topic)):
+            if self._trouble(samples, life) is None:
+                return life, Stream(self.topic, tuple(samples), True, life.seconds)
+        return life, None
+
+    def _refuse_regular(self, life: Life) -> None:
+        for samples in streams_of(life.on(self.topic)):
+            trouble = self._trouble(samples, life)
+            if trouble is not None and _is_regular(samples):
+                self._refuse(trouble)
+
+    def _among_others(self, evidence: Evidence) -> Stream:
+        """Return the messages of all in real time, if there is one publisher for each node.
+
+        Raises:
+            Fail: There are fewer.
+        """
+        probe, topic = evidence.probe, self.topic
+        source = evidence.publisher(topic, self.by)
+        nodes = sorted(
+            {by for kind, at, by in evidence.ends if (kind, at) == ('publisher', topic)}
+        )
+        found = timing.at_rate(probe, topic, source.msg_type, self.hz, count=len(nodes))
+        if len(found) >= len(nodes):
+            samples = [sample for stream in found for sample in stream]
+            return Stream(topic, tuple(samples), False, 0.0)
+        timing.hanging(probe)
+        others = [replace(self, by=node)._alone(evidence)[1] for node in nodes if node != self.by]
+        # Those that follow ROS time are known. If somebody else talks, it may be this one.
+        exact = sum(stream is not None for stream in others)
+        why, todo = timing.reason(probe, source)
+        if len(found) > exact:
+            why = f'One of these nodes does not publish at this rate: {", ".join(nodes)}.'
+            todo = 'Compare what they do, line by line.'
+        raise Fail(
+            f'a message every {self.period:.3g} s ({self.hz:.3g} Hz) of {self.by} on {topic}',
+            f'{len(found)} of {len(nodes)} publishers with this rate',
+            why=why,
+            todo=todo,
+        )
+
+    # -- a node that keeps a time of its own ----------------------------------------------------
 
     def _in_real_time(self, evidence: Evidence, trouble: tuple[str, str], samples: Any) -> Any:
         """Watch in real time: the node may keep a time of its own, such as a sleeping thread.
@@ -258,6 +324,46 @@ class Says(Clause):
                     todo=todo or self.todo,
                 )
         return ''
+
+
+@dataclass(frozen=True)
+class HasText(Clause):
+    """A text field is not empty, in any message of some publishers.
+
+    Attributes:
+        topic: Full name of the topic. A clause on the rate stands before this one.
+        by: Full names of the nodes; any node if there is one empty name.
+        field: Name of the field.
+    """
+
+    topic: str
+    by: Sequence[str] = ('',)
+    field: str = 'data'
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return 'no message is empty'
+
+    def judge(self, evidence: Evidence) -> str:
+        """Judge the texts."""
+        for by in self.by:
+            stream = evidence.streams[self.topic, by]
+            values = stream.values(self.field)
+            number = next((i for i, text in enumerate(values) if not text.strip()), None)
+            if number is not None:
+                raise Fail(
+                    f'a text in each message on {self.topic}',
+                    f'{self.field} = {show(values[number:])}'
+                    + (f', after {number} with a text' if number else ''),
+                    why='The message was published as it was made: its field '
+                    f'{self.field} is an empty text at first.'
+                    if not values[number]
+                    else 'A text of spaces says nothing.',
+                    todo=f'Set the field before you publish: msg.{self.field} = ...',
+                )
+        examples = [evidence.streams[self.topic, by].values(self.field)[0] for by in self.by]
+        return f'It says {show(examples)}.'
 
 
 def _rate(samples: Sequence[Sample]) -> float:

@@ -171,6 +171,8 @@ def _find(probe: Probe, kind: str, topic: str, by: str) -> Endpoint:
     for endpoint in matching():
         if endpoint.msg_type != msg_type:
             _refuse_type(endpoint, kind, msg_type)
+        if kind == SUBSCRIPTION:
+            _refuse_qos(endpoint)
     return matching()[0]
 
 
@@ -183,6 +185,32 @@ def _refuse_type(endpoint: Endpoint, kind: str, msg_type: str) -> NoReturn:
         todo=f'Import {msg_type.rsplit("/", 1)[-1]} from {msg_type.split("/")[0]}.msg and use it '
         'for this topic.',
     )
+
+
+def _refuse_qos(subscription: Endpoint) -> None:
+    """Raise Fail if a subscription asks for more than publishers usually offer."""
+    from rclpy.duration import Infinite
+    from rclpy.qos import LivelinessPolicy, QoSProfile
+
+    from labkit.rosgraph.matching import qos_mismatch
+
+    # What a depth alone is in the graph.
+    usual = QoSProfile(  # type: ignore[no-untyped-call]
+        depth=10,
+        deadline=Infinite,
+        liveliness=LivelinessPolicy.AUTOMATIC,
+        liveliness_lease_duration=Infinite,
+    )
+    reason = qos_mismatch(usual, subscription.qos)
+    if reason:
+        raise Fail(
+            f'a subscription to {subscription.topic} that hears a usual publisher',
+            f'the QoS profile of {subscription.node} does not match that of a usual publisher: '
+            f'{reason}',
+            why='No message goes from one side to the other where QoS profiles do not match, and '
+            'nobody says so.',
+            todo='Pass a number alone as the last argument, the depth. The rest is usual then.',
+        )
 
 
 def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str) -> NoReturn:
@@ -217,6 +245,16 @@ def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str
             todo=f'Write the topic as {topic!r}.',
         )
     seen = _list([f'{other.node} {_KINDS[kind][1]} {other.topic}' for other in mine])
+    names = probe.node_names()
+    if by and by not in names:
+        near = nearest(by, [other.node for other in mine])
+        raise Fail(
+            expected,
+            seen or f'{_list(names)}, and no node called {by}',
+            why=_name_trouble(by, near) if near else f'There is no node called {by}.',
+            todo=f'The name is what super().__init__() gets: {by.rsplit("/", 1)[-1]!r}. '
+            'Each node has to be made, and handed over with lab.spin.',
+        )
     raise Fail(
         expected,
         seen or f'{_list(sorted(nodes))} without any {kind}',

@@ -4,18 +4,29 @@ from __future__ import annotations
 
 import statistics
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from labkit.exercises.expect.endpoints import alone
 from labkit.exercises.probe import Probe
 from labkit.exercises.verdict import Fail, NotAttempted
-from labkit.exercises.watch import Watch
+from labkit.exercises.watch import Sample, Watch
 
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
 
-__all__ = ['ends_with_node', 'hanging', 'messages', 'rate', 'spun']
+__all__ = [
+    'at_rate',
+    'ends_with_node',
+    'hanging',
+    'how_to_spin',
+    'messages',
+    'rate',
+    'reason',
+    'runs',
+    'spun',
+]
 
 # How long a topic may be silent before that is a finding, where no rate is asked for.
 QUIET_SEC = 2.0
@@ -32,6 +43,8 @@ VAIN_TICKS = 5
 VAIN_SEC = 0.5
 # How long messages of a known rate may be collected.
 COLLECT_SEC = 2.5
+# How long a node of another process may take to answer, if it is spun.
+ANSWER_SEC = 3.0
 # How long a node may take to end.
 END_SEC = 3.0
 
@@ -72,6 +85,33 @@ def messages(
         if not _next_message(probe, watch, source, quiet, hz):
             _explain_silence(probe, watch, source)
     return watch
+
+
+def at_rate(
+    probe: Probe, topic: str, msg_type: str, hz: float, *, count: int, tolerance: float = TOLERANCE
+) -> list[list[Sample]]:
+    """Return the messages of those publishers of a topic that publish at a rate, in real time.
+
+    Args:
+        probe: The probe of the check.
+        topic: Full name of the topic.
+        msg_type: Name of its type.
+        hz: Messages a second.
+        count: So many publishers are waited for; not longer than it takes to tell.
+        tolerance: How far the usual interval may be off, as a part of it.
+    """
+    watch = probe.watch(topic, msg_type)
+    enough = max(1, min(MAX_INTERVALS, round(hz)))
+
+    def fitting() -> list[list[Sample]]:
+        return [
+            stream
+            for stream in watch.streams()
+            if len(stream) > enough and _fits(_intervals(stream), 1.0 / hz, tolerance)
+        ]
+
+    probe.wait(lambda: len(fitting()) >= count, (enough + 2) / hz + QUIET_SEC)
+    return fitting()
 
 
 def rate(
@@ -117,12 +157,12 @@ def rate(
         if number < enough:
             return number > 1 and statistics.median(watch.intervals) > 2.0 * period
         # Where few intervals are enough, one that is odd asks for another one.
-        return _fits(watch, period, tolerance, at_least) or number > enough + 1
+        return _fits(watch.intervals, period, tolerance, at_least) or number > enough + 1
 
     probe.wait(decided)
     if _crowded(probe, watch.topic):
         alone(probe, watch.topic)
-    if watch.intervals and _fits(watch, period, tolerance, at_least):
+    if watch.intervals and _fits(watch.intervals, period, tolerance, at_least):
         return 1.0 / statistics.median(watch.intervals)
     _refuse_too_early(probe, watch, period)
     _refuse_rate(probe, watch, source, hz)
@@ -172,19 +212,45 @@ def hanging(probe: Probe) -> None:
 
 
 def spun(probe: Probe, endpoint: Endpoint) -> None:
-    """Raise Fail if an endpoint's node is in this notebook, and nobody runs its callbacks."""
-    node = probe.node_object(endpoint.node)
-    if node is not None and node.executor is None:
+    """Raise Fail if nobody runs the callbacks of an endpoint's node."""
+    if not runs(probe, endpoint.node):
         raise Fail(
             f'{endpoint.node} takes its messages and calls its callbacks',
             f'{endpoint.node} is there, but it is not spun',
             why='Messages come and wait in the queue. Nothing takes them out.',
-            todo='Hand the node over: lab.spin(node)',
+            todo=how_to_spin(probe, endpoint.node),
         )
 
 
-def _fits(watch: Watch, period: float, tolerance: float, at_least: bool) -> bool:
-    intervals = sorted(watch.intervals)
+def how_to_spin(probe: Probe, name: str) -> str:
+    """Say how a node of this process, or of another one, is spun."""
+    if probe.node_object(name) is None:
+        return 'Call rclpy.spin(node) in its program.'
+    return 'Hand the node over: lab.spin(node)'
+
+
+def runs(probe: Probe, name: str) -> bool:
+    """Tell whether somebody runs the callbacks of a node.
+
+    A node of another process is asked a question. One without parameter services can't be asked,
+    and counts as spun.
+    """
+    node = probe.node_object(name)
+    if node is not None:
+        return node.executor is not None
+    from labkit.background.service_calls import wait_until_spun
+
+    services = dict(probe.spun_node.get_service_names_and_types())
+    asked = f'{name}/list_parameters' in services
+    return not asked or wait_until_spun(probe.spun_node, name, ANSWER_SEC)
+
+
+def _intervals(stream: Sequence[Sample]) -> list[float]:
+    return [later.stamp - earlier.stamp for earlier, later in pairwise(stream)]
+
+
+def _fits(gaps: Sequence[float], period: float, tolerance: float, at_least: bool = False) -> bool:
+    intervals = sorted(gaps)
     usual = (statistics.median(intervals), intervals[len(intervals) // 4])
     if at_least:
         return min(usual) <= (1.0 + tolerance) * period
@@ -296,11 +362,11 @@ def _explain_silence(probe: Probe, watch: Watch, source: Endpoint) -> NoReturn:
         if len(watch)
         else f'a publisher of {source.node}, but no message for {waited:.1f} s'
     )
-    why, todo = _reason(probe, source)
+    why, todo = reason(probe, source)
     raise Fail(expected, seen, why=why, todo=todo)
 
 
-def _reason(probe: Probe, source: Endpoint) -> tuple[str, str]:
+def reason(probe: Probe, source: Endpoint) -> tuple[str, str]:
     """Return why a publisher is silent, as its node shows it, and what to do."""
     node = probe.node_object(source.node)
     publish = 'Call self.publisher.publish(msg) in the callback.'
