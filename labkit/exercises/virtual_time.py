@@ -88,6 +88,12 @@ class VirtualTime:
                 self._was_active.append(node)
             self._set(node)
             compat.set_ros_time_is_active(clock, True)
+        # A timer that was called last in an earlier stretch of virtual time, ahead of this one,
+        # begins its period anew when the clock is set for the first time (rcl/src/rcl/timer.c,
+        # _rcl_timer_time_jump). So that happens before anything is seen.
+        self._now = self._start = self._start + 1
+        for node in self._all:
+            self._set(node)
         if self._remote is not None:
             self._remote.set(self._now)
         self.settle()
@@ -103,7 +109,12 @@ class VirtualTime:
 
     def restart_timers(self) -> None:
         """Let all timers begin anew, so that they don't depend on when the nodes were made."""
+        # A timer that was last called later than now, since more time has passed before than was
+        # real, would count from the next step of the clock on. So that step is made here.
+        self._start += 1
+        self._now += 1
         for node in self._moving:
+            self._set(node)
             for timer in node.timers:
                 if not timer.is_canceled():  # type: ignore[no-untyped-call]
                     timer.reset()  # type: ignore[no-untyped-call]

@@ -53,6 +53,23 @@ def test_half_a_minute_is_seen_exactly(lab: ModuleType) -> None:
     assert life.seconds == 30.0
 
 
+def test_a_second_look_is_as_exact_as_the_first(lab: ModuleType) -> None:
+    class Twice(Counter):
+        def __init__(self) -> None:
+            super().__init__()
+            self.create_timer(0.3, lambda: self.publisher.publish(Int16(data=0)))
+
+    lab.spin(Twice())
+    for _ in range(3):
+        life = see({'/odds': INT16}, {'/counter'})
+        zeros = [sample.at for sample in life.on('/odds') if sample.message.data == 0]
+        assert {round(later - earlier, 9) for earlier, later in pairwise(zeros)} == {0.3}
+        assert len(zeros) == 100
+        odds = [sample.at for sample in life.on('/odds') if sample.message.data]
+        assert {round(later - earlier, 9) for earlier, later in pairwise(odds)} == {0.2}
+        assert len(odds) == 150
+
+
 def test_a_fast_timer_that_publishes_now_and_then_is_seen_exactly(lab: ModuleType) -> None:
     class Now(Counter):
         calls = 0
