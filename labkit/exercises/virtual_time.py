@@ -109,12 +109,7 @@ class VirtualTime:
 
     def restart_timers(self) -> None:
         """Let all timers begin anew, so that they don't depend on when the nodes were made."""
-        # A timer that was last called later than now, since more time has passed before than was
-        # real, would count from the next step of the clock on. So that step is made here.
-        self._start += 1
-        self._now += 1
         for node in self._moving:
-            self._set(node)
             for timer in node.timers:
                 if not timer.is_canceled():  # type: ignore[no-untyped-call]
                     timer.reset()  # type: ignore[no-untyped-call]
