@@ -7,15 +7,16 @@ from labkit.exercises import (
     Exercise,
     Lesson,
     Outcome,
-    Probe,
     Quiz,
     Solution,
     Style,
     Wrong,
-    expect,
+    changed,
     right,
     wrong,
 )
+from labkit.exercises.clauses import Named, Runs
+from labkit.lessons._script import in_process, started_by_asyncio, started_by_subprocess
 
 __all__ = ['LESSON']
 
@@ -26,16 +27,26 @@ lab.spin(Node('hello_robot'))
 """
 
 
-def _judge_first_node(probe: Probe) -> str:
-    name = expect.node(probe, '/hello_robot')
-    return f'A node called {name} is running.'
+_CLASS = """
+from rclpy.node import Node
 
+
+class HelloRobot(Node):
+    def __init__(self):
+        super().__init__('hello_robot')
+
+
+robot = lab.spin(HelloRobot())
+"""
 
 first_node = Exercise(
     name='first_node',
     task='Start a node called `hello_robot`.',
     nodes=['/hello_robot'],
-    judge=_judge_first_node,
+    clauses=(
+        Named('/hello_robot'),
+        Runs('the node runs: it is spun, as `lab.spin` does it', node='/hello_robot'),
+    ),
     hints=[
         'The cell `first-node` further up starts a node called first_node. Which line does it?',
         "Node('first_node') makes a node of that name, and lab.spin(...) lets it run.",
@@ -47,64 +58,105 @@ first_node = Exercise(
         'it run in the background. The import is needed once in a notebook.',
     ),
     styles=[
+        Style('class', _CLASS),
         Style(
-            'class',
+            'functions, and a thread of its own',
+            """
+import threading
+
+import rclpy
+from rclpy.executors import MultiThreadedExecutor
+
+node = rclpy.create_node('hello_robot')
+executor = MultiThreadedExecutor()
+executor.add_node(node)
+threading.Thread(target=executor.spin, daemon=True).start()
+""",
+        ),
+        Style(
+            'renamed from outside',
             """
 from rclpy.node import Node
 
-
-class HelloRobot(Node):
-    def __init__(self):
-        super().__init__('hello_robot')
-
-
-robot = lab.spin(HelloRobot())
+robot = lab.spin(Node('first_node', cli_args=['--ros-args', '-r', '__node:=hello_robot']))
 """,
         ),
-        Style(
-            'as in a tutorial',
-            """
-import rclpy
-
-rclpy.init()
-node = rclpy.create_node('hello_robot')
-""",
-        ),
+        Style('own process', in_process(_CLASS), process=True),
+        Style('own process, by subprocess', started_by_subprocess(in_process(_CLASS))),
+        Style('own process, by asyncio', started_by_asyncio(in_process(_CLASS))),
     ],
     wrong=[
         Wrong(
             'capital letters',
-            _NODE.replace('hello_robot', 'Hello_Robot'),
+            changed(_NODE, ('hello_robot', 'Hello_Robot')),
             'Capital and small letters differ in names',
         ),
         Wrong(
             'no underscore',
-            _NODE.replace('hello_robot', 'hellorobot'),
+            changed(_NODE, ('hello_robot', 'hellorobot')),
             'The names differ in an underscore',
         ),
         Wrong(
             'a letter too many',
-            _NODE.replace('hello_robot', 'hello_robots'),
+            changed(_NODE, ('hello_robot', 'hello_robots')),
             'names must be equal to the last letter',
         ),
         Wrong(
+            'in a namespace',
+            changed(_NODE, ("'hello_robot'", "'hello_robot', namespace='lab'")),
+            'it lies in another namespace',
+        ),
+        Wrong(
+            'the name of the example',
+            changed(_NODE, ('hello_robot', 'first_node')),
+            'the node /first_node',
+        ),
+        Wrong(
             'with a space',
-            _NODE.replace('hello_robot', 'hello robot'),
+            changed(_NODE, ('hello_robot', 'hello robot')),
             'The name of a node has letters, digits and _ only',
             outcome=Outcome.ERROR,
         ),
         Wrong(
             'no quotation marks',
-            _NODE.replace("'hello_robot'", 'hello_robot'),
+            changed(_NODE, ("'hello_robot'", 'hello_robot')),
             'Python does not know the name hello_robot here',
             outcome=Outcome.ERROR,
             refused='The name is not defined.',
         ),
         Wrong(
             'a text is not a node',
-            _NODE.replace("Node('hello_robot')", "'hello_robot'"),
+            changed(_NODE, ("Node('hello_robot')", "'hello_robot'")),
             "lab.spin() expects a node, but got 'hello_robot'",
             outcome=Outcome.ERROR,
+        ),
+        Wrong(
+            'made and not spun',
+            changed(_NODE, ("lab.spin(Node('hello_robot'))", "robot = Node('hello_robot')")),
+            'it does nothing before somebody spins it',
+        ),
+        Wrong(
+            'a class, and no node of it',
+            changed(_CLASS, ('\n\n\nrobot = lab.spin(HelloRobot())', '')),
+            'nothing runs before a node is made of it'.capitalize(),
+        ),
+        Wrong(
+            'a program that does not spin',
+            changed(
+                in_process(_CLASS),
+                ('rclpy.spin(HelloRobot())', 'robot = HelloRobot()\n    time.sleep(60)'),
+                ('import rclpy\nfrom', 'import time\n\nimport rclpy\nfrom'),
+            ),
+            'Its program does something else',
+            process=True,
+        ),
+        Wrong(
+            'ended again',
+            changed(
+                _CLASS, ('robot = lab.spin(HelloRobot())', 'lab.remove(lab.spin(HelloRobot()))')
+            ),
+            'Not attempted yet',
+            outcome=Outcome.NOT_ATTEMPTED,
         ),
     ],
 )

@@ -44,7 +44,7 @@ VAIN_SEC = 0.5
 # How long messages of a known rate may be collected.
 COLLECT_SEC = 2.5
 # How long a node of another process may take to answer, if it is spun.
-ANSWER_SEC = 3.0
+ANSWER_SEC = 2.5
 # How long a node may take to end.
 END_SEC = 3.0
 
