@@ -61,6 +61,7 @@ class Runtime:
         helper: A hidden node for labkit's own subscriptions and questions to the graph.
         ended: Nodes that have called `rclpy.shutdown()`, and in which callback, by full name.
         foreign_threads: Threads that spin an executor of the learner's own, see `notebook_rclpy`.
+        after_start: Called each time ROS has been started, in the thread that started it.
     """
 
     def __init__(self) -> None:
@@ -70,6 +71,7 @@ class Runtime:
         self.helper: Node | None = None
         self.ended: dict[str, str] = {}
         self.foreign_threads: set[threading.Thread] = set()
+        self.after_start: list[Callable[[], None]] = []
         # Held for as long as a start takes. No callback asks for it, see `start`.
         self._starting = threading.RLock()
         self._ending = threading.Lock()
@@ -131,6 +133,8 @@ class Runtime:
             if settings.in_kernel():
                 install(self)
             self._executor.start()
+        for action in tuple(self.after_start):
+            action()
 
     def stop(self) -> None:
         """Destroy all nodes, join the thread, shut ROS down."""

@@ -10,6 +10,7 @@ from types import ModuleType
 import pytest
 
 import labkit
+from labkit.background.runtime import runtime
 
 # With pytest's importlib mode a test can't import the file beside it by itself.
 sys.path.insert(0, str(Path(__file__).resolve().parent))
@@ -29,3 +30,5 @@ def lab() -> Iterator[ModuleType]:
     labkit.start()
     yield labkit
     labkit.stop()
+    # What the next test starts is not for the exercises of this one.
+    runtime.after_start.clear()
