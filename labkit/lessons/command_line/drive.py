@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import pairwise
-from statistics import median
+import math
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from labkit.exercises import (
@@ -19,7 +18,16 @@ from labkit.exercises import (
     expect,
 )
 from labkit.exercises.watch import Sample
-from labkit.lessons.command_line.last_command import heard
+from labkit.lessons.command_line.last_command import explain_last_command, forget_commands
+from labkit.lessons.command_line.sent import (
+    Sent,
+    is_every,
+    messages_at_once,
+    newest_run,
+    period,
+    refuse_other_topics,
+    sent_to,
+)
 
 __all__ = ['drive']
 
@@ -38,24 +46,50 @@ _ONCE = changed(_LINE, ('--times 5', '--once'))
 
 
 def _judge_drive(probe: Probe) -> str:
-    recorded = heard(probe, TOPIC, COUNT, EXPECTED)
-    if not recorded:
+    sent = sent_to(probe, TOPIC, EXPECTED, is_whole=_is_whole, is_too_much=_is_too_much)
+    try:
+        _judge_run(sent)
+        refuse_other_topics(probe, TOPIC, TWIST)
+    except Fail:
+        sent.recording.keep(sent.samples)
+        explain_last_command(TOPIC, EXPECTED)
+        raise
+    forget_commands()
+    return f'{COUNT} messages came, ten a second: forwards, and to the left.'
+
+
+def _judge_run(sent: Sent) -> None:
+    run = newest_run(sent.samples)
+    for sample in run:
+        _expect_fields(sample.message)
+    if sent.is_running and not _is_whole(run) and not _is_too_much(run):
         raise NotAttempted(
-            f'Not attempted yet: nothing has come on {TOPIC}. Write your command in the cell '
-            'above, run that cell, then run this one again.'
+            f'{len(run)} of {COUNT} messages have come on {TOPIC}, and the command still runs. '
+            'Run this cell again when it has ended.'
         )
-    run = recorded.last_run()
-    _expect_fields(run[-1].message)
-    _expect_count(run)
-    gap = median(later.stamp - earlier.stamp for earlier, later in pairwise(run))
+    if not (sent.is_running and _is_slow(run)):
+        _expect_count(sent.samples, run)
     expect.that(
-        abs(gap / PERIOD_SEC - 1.0) < 0.3,
-        expected=f'a message every {PERIOD_SEC} s (10 Hz)',
-        seen=f'a message every {gap:.2g} s',
+        is_every(PERIOD_SEC, run),
+        expected=f'a message every {PERIOD_SEC} s (9.5 to 10.5 a second)',
+        seen=f'a message every {period(run):.3g} s ({1 / period(run):.3g} a second)',
         why='The option --rate says how many messages are sent in a second. Without it, it is 1.',
         todo='Use --rate 10.',
     )
-    return f'{COUNT} messages came, ten a second: forwards, and to the left.'
+
+
+def _is_whole(samples: Sequence[Sample]) -> bool:
+    return bool(samples) and len(newest_run(samples)) == COUNT
+
+
+def _is_too_much(samples: Sequence[Sample]) -> bool:
+    """Tell whether it is clear that these are too many messages, or too slow ones."""
+    run = newest_run(samples)
+    return len(run) > COUNT or _is_slow(run)
+
+
+def _is_slow(run: Sequence[Sample]) -> bool:
+    return len(run) > 2 and period(run) > 1.5 * PERIOD_SEC
 
 
 def _expect_fields(message: Any) -> None:
@@ -68,35 +102,57 @@ def _expect_fields(message: Any) -> None:
     if all(abs(seen[name] - wanted[name]) < 1e-6 for name in seen):
         return
     used = {name: value for name, value in seen.items() if value}
-    why = 'linear holds the speeds in m/s, angular the turning in rad/s; x, y and z are the axes.'
-    if used == {'linear.x': LEFT, 'angular.z': FORWARD}:
-        why = 'The two numbers are exchanged.'
-    elif used == {'linear.z': LEFT, 'angular.x': FORWARD} or 'angular.x' in used:
-        why = 'linear and angular are exchanged: linear is for driving, angular for turning.'
-    elif used.get('angular.z', 0.0) < 0.0:
-        why = 'A turn to the left is positive, to the right negative.'
-    elif used.get('angular.z', 0.0) > 6.0:
-        why = 'Angles are in radians: 0.5 rad is about 29 degrees.'
-    elif 'angular.y' in used or 'linear.z' in used:
-        why = 'x points forwards, y to the left, z upwards. A robot on the ground turns about z.'
     raise Fail(
-        f'linear.x = {FORWARD} and angular.z = {LEFT}, all else 0',
+        f'linear.x = {FORWARD} and angular.z = {LEFT}, all else 0, in every message',
         ', '.join(f'{name} = {value:g}' for name, value in used.items()) or 'all fields are 0',
-        why=why,
+        why=_misconception(used),
         todo='Write {linear: {x: ...}, angular: {z: ...}}.',
     )
 
 
-def _expect_count(run: Sequence[Sample]) -> None:
+def _misconception(used: Mapping[str, float]) -> str:
+    """Return what leads to the fields that are not 0."""
+    if not all(map(math.isfinite, used.values())):
+        return 'A speed is a number. nan is none, and no robot can drive at inf.'
+    if used == {'linear.x': LEFT, 'angular.z': FORWARD}:
+        return 'The two numbers are exchanged.'
+    if used == {'linear.z': LEFT, 'angular.x': FORWARD} or 'angular.x' in used:
+        return 'linear and angular are exchanged: linear is for driving, angular for turning.'
+    if used.get('angular.z', 0.0) < 0.0:
+        return 'A turn to the left is positive, to the right negative.'
+    if used.get('angular.z', 0.0) > 6.0:
+        return 'Angles are in radians: 0.5 rad is about 29 degrees.'
+    if 'angular.y' in used or 'linear.z' in used:
+        return 'x points forwards, y to the left, z upwards. A robot on the ground turns about z.'
+    return (
+        'linear holds the speeds in m/s, angular the turning in rad/s; x, y and z are the axes. '
+        'Fields that are not named stay 0.'
+    )
+
+
+def _expect_count(samples: Sequence[Sample], run: Sequence[Sample]) -> None:
+    first, last = run[0].number, run[-1].number
+    # A message that was lost on its way was sent all the same.
+    count, others = last - first + 1, messages_at_once(samples, run)
     why = 'Without --times or --once a command goes on until it is stopped.'
-    if len(run) < COUNT:
+    todo = f'Use --times {COUNT}.'
+    seen = f'{count} of them'
+    if others:
+        seen = f'{count} of them, and {others} of another publisher at the same time'
+        why = 'Two publish at once. The robot would hear both.'
+        todo = 'End all but one, and run the command once more.'
+    elif count < COUNT and first > 1 and first - 1 not in {s.number for s in samples}:
+        seen = f'the last {count} of {last}'
+        why = 'The first ones were sent before anybody listened.'
+        todo = 'Wait for a subscriber before you publish; --times does so.'
+    elif count < COUNT:
         why = '--once sends one message. --times says how many are to be sent.'
     expect.that(
-        len(run) == COUNT,
-        expected=f'{COUNT} messages on {TOPIC}',
-        seen=f'{len(run)} of them',
+        count == COUNT and not others,
+        expected=f'{COUNT} messages on {TOPIC}, of one command',
+        seen=seen,
         why=why,
-        todo=f'Use --times {COUNT}.',
+        todo=todo,
     )
 
 
@@ -125,6 +181,53 @@ drive = Exercise(
 %ros2 topic pub -r 10 -t 5 cmd_vel geometry_msgs/msg/Twist \\
     "{linear: {x: 0.2, y: 0, z: 0.0}, angular: {x: 0.0, y: 0.0, z: 5.0e-1}}"
 """,
+        ),
+        Style('in the background', f'{_LINE.rstrip()} &\n'),
+        Style('as in a terminal', changed(_LINE, ('%', '!'))),
+        Style(
+            'YAML in lines, fields in another order',
+            '''
+twist = """
+angular:
+  z: 0.5
+linear:
+  x: 0.2
+"""
+!ros2 topic pub -t 5 -r 10 /cmd_vel geometry_msgs/Twist "$twist"
+''',
+        ),
+        Style('twice', _LINE * 2),
+        Style('after one message', _ONCE + _LINE),
+        Style(
+            'a program',
+            """
+import time
+
+import rclpy
+from geometry_msgs.msg import Twist, Vector3
+from rclpy.node import Node
+
+
+class Driver(Node):
+    def __init__(self):
+        super().__init__('driver')
+        self.publisher = self.create_publisher(Twist, 'cmd_vel', 10)
+        self.left = 5
+        self.timer = self.create_timer(0.1, self.on_timer)
+
+    def on_timer(self):
+        if self.left and self.publisher.get_subscription_count():
+            self.publisher.publish(Twist(linear=Vector3(x=0.2), angular=Vector3(z=0.5)))
+            self.left -= 1
+
+
+rclpy.init()
+driver = Driver()
+while driver.left:
+    rclpy.spin_once(driver)
+time.sleep(1)
+""",
+            process=True,
         ),
         Style(
             'a node',
@@ -169,6 +272,40 @@ for _ in range(5):
             'goes on until it is stopped',
         ),
         Wrong('too slow', changed(_LINE, ('--rate 10', '--rate 5')), 'Without it, it is 1.'),
+        Wrong('a little too slow', changed(_LINE, ('--rate 10', '--rate 9')), 'Use --rate 10.'),
+        Wrong('a little too fast', changed(_LINE, ('--rate 10', '--rate 12')), 'Use --rate 10.'),
+        Wrong(
+            'too slow, in the background',
+            f'{changed(_LINE, ("--rate 10", "--rate 2")).rstrip()} &\n',
+            'Use --rate 10.',
+        ),
+        Wrong('one more', changed(_LINE, ('--times 5', '--times 6')), '6 of them'),
+        Wrong('a sideways speed', changed(_LINE, ('0.2}', '0.2, y: 0.1}')), 'stay 0'),
+        Wrong('not a number', changed(_LINE, ('0.2}', '0.2, y: .nan}')), 'nan is none'),
+        Wrong('another speed', changed(_LINE, ('0.2', '0.25')), 'linear.x = 0.25'),
+        Wrong(
+            'the last one is another',
+            """
+import rclpy
+from geometry_msgs.msg import Twist
+
+node = lab.spin(rclpy.create_node('driver'))
+publisher = node.create_publisher(Twist, 'cmd_vel', 10)
+twist = Twist()
+twist.linear.x, twist.angular.z = 0.2, 0.5
+rate = node.create_rate(10)
+for _ in range(4):
+    publisher.publish(twist)
+    rate.sleep()
+publisher.publish(Twist())
+""",
+            'all fields are 0',
+        ),
+        Wrong(
+            'another topic, too',
+            _LINE + changed(_ONCE, ('/cmd_vel', '/wheels -w 0')),
+            'messages on /wheels as well',
+        ),
         Wrong('other topic', changed(_ONCE, ('/cmd_vel', '/cmdvel -w 0')), 'is not /cmd_vel'),
     ],
     records=[TOPIC],

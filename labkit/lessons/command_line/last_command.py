@@ -7,16 +7,15 @@ look at the commands that this notebook has run. Commands of a terminal are not 
 from __future__ import annotations
 
 import difflib
+from collections.abc import Collection
 
-from labkit.exercises import Fail, Probe, Watch
+from labkit.exercises import Fail
 from labkit.rosgraph.refusals import Refusal
 
-__all__ = ['explain_last_command', 'forget_commands', 'heard']
+__all__ = ['explain_last_command', 'forget_commands', 'other_topic']
 
 # How much of two names has to be the same, from 0 to 1.
 NEAR = 0.75
-# How long messages of a process that has ended a moment ago may be on their way.
-LATE_SEC = 0.3
 # The misconception behind a refusal, in words of the lesson.
 _WHY = {
     Refusal.SPACE_AFTER_COLON: 'In YAML a colon is followed by a space: data: 1',
@@ -36,32 +35,6 @@ _WHY = {
     Refusal.FIELDS_WANTED: 'Fields that are messages themselves take braces of their own.',
     Refusal.REPEATED_SLASH: 'One slash at the beginning is enough.',
 }
-
-
-def heard(probe: Probe, topic: str, count: int, expected: str) -> Watch:
-    """Return what commands have published on a topic that is recorded; forget the commands then.
-
-    Args:
-        probe: The probe of the check.
-        topic: Full name of the topic.
-        count: How many messages are asked for. It waits for them for a moment.
-        expected: What should have come, in words.
-
-    Raises:
-        Fail: Nothing has come, and the last command says why.
-    """
-    recorded = probe.recorded[topic]
-
-    def enough() -> bool:
-        recorded.pump()
-        return len(recorded) >= count
-
-    if not enough() and not recorded:
-        explain_last_command(topic, expected)
-    probe.wait(enough, LATE_SEC)
-    if recorded:
-        forget_commands()
-    return recorded
 
 
 def explain_last_command(topic: str, expected: str) -> None:
@@ -103,6 +76,31 @@ def explain_last_command(topic: str, expected: str) -> None:
             why=_WHY.get(last.reason, ''),
             todo=todo,
         )
+
+
+def other_topic(topic: str, msg_type: str, known: Collection[str]) -> str:
+    """Return the topic to which a command has sent messages of a type after those to another one.
+
+    Args:
+        topic: Full name of the topic where they belong.
+        msg_type: Name of their type.
+        known: Topics that the lesson's own commands use.
+
+    Returns:
+        Its full name, `''` if there is none.
+    """
+    from labkit.ros2.shell import history
+
+    last = msg_type.rsplit('/', 1)[-1]
+    other = ''
+    for ran in history:
+        if ran.words[:2] != ('topic', 'pub') or ran.reason is not None:
+            continue
+        if ran.topic == topic:
+            other = ''
+        elif ran.topic not in known and any(w.rsplit('/', 1)[-1] == last for w in ran.words):
+            other = ran.topic
+    return other
 
 
 def forget_commands() -> None:

@@ -17,7 +17,9 @@ from labkit.exercises import (
     changed,
     expect,
 )
-from labkit.lessons.command_line.last_command import heard
+from labkit.exercises.watch import Sample
+from labkit.lessons.command_line.last_command import explain_last_command, forget_commands
+from labkit.lessons.command_line.sent import Sent, refuse_other_topics, sent_to
 
 __all__ = ['odds']
 
@@ -31,47 +33,96 @@ _COMMANDS = ''.join(changed(_ONE, ('1}', f'{number}}}')) for number in WANTED)
 
 
 def _judge_odds(probe: Probe) -> str:
-    _refuse_other_types(probe)
-    recorded = heard(probe, TOPIC, len(WANTED), EXPECTED)
-    if not recorded:
-        raise NotAttempted(
-            f'Not attempted yet: nothing has come on {TOPIC}. Write your commands in the cell '
-            'above, run that cell, then run this one again. If a command says that something '
-            'is wrong, nothing was sent.'
+    sent = sent_to(probe, TOPIC, EXPECTED, is_whole=_is_whole, is_too_much=_is_repeated)
+    try:
+        expect.that(
+            not sent.goes_on,
+            expected=EXPECTED,
+            seen=f'messages that go on coming: data = {expect.show(_values(sent.new))}',
+            why='Without --once a command goes on publishing, as a loop without an end does.',
+            todo='End it, and publish the three numbers once.',
         )
-    values = recorded.values('data')
-    # Who has run the cell twice, or has tried something before, is right in the end.
-    if values[-3:] != WANTED or values[-4:-3] == WANTED[:1]:
-        _refuse(values)
+        if not _is_whole(sent.samples):
+            _refuse_early(sent)
+            _refuse(sent)
+        refuse_other_topics(probe, TOPIC, INT16)
+    except Fail:
+        sent.recording.keep(_right_so_far(sent))
+        explain_last_command(TOPIC, EXPECTED)
+        forget_commands()
+        raise
+    forget_commands()
     return 'The numbers 1, 3 and 5 came on /odds, one message each.'
 
 
-def _refuse_other_types(probe: Probe) -> None:
-    """Raise Fail if a command, of a terminal perhaps, waits with another type."""
-    for info in probe.node.get_publishers_info_by_topic(TOPIC):
-        expect.that(
-            info.topic_type == INT16,
-            expected=EXPECTED,
-            seen=f'a publisher on {TOPIC} with messages of type {info.topic_type}',
-            why='A topic carries one type of message. Nobody hears messages of another type.',
-            todo=f'Stop that command with Ctrl-C, and use {INT16}.',
+def _values(samples: Sequence[Sample]) -> list[int]:
+    return [sample.message.data for sample in samples]
+
+
+def _is_whole(samples: Sequence[Sample]) -> bool:
+    return len(_beginning(samples)) == len(WANTED)
+
+
+def _beginning(samples: Sequence[Sample]) -> Sequence[Sample]:
+    """Return the last messages that are 1, 3 and 5, or 1 and 3, or 1; else nothing."""
+    for count in range(len(WANTED), 0, -1):
+        before, last = samples[:-count], samples[-count:]
+        if _values(last) != WANTED[:count]:
+            continue
+        # What the same publisher has sent just before belongs to it, unless it was whole, too.
+        if (
+            not before
+            or not _is_next(before[-1], last[0])
+            or before[-1].message.data == WANTED[-1]
+        ):
+            return last
+    return ()
+
+
+def _is_next(earlier: Sample, later: Sample) -> bool:
+    """Tell whether two messages are one publisher's, one after the other."""
+    return 0 < earlier.number == later.number - 1
+
+
+def _is_repeated(samples: Sequence[Sample]) -> bool:
+    """Tell whether one publisher has sent the same number twice in a row."""
+    return any(
+        _is_next(earlier, later) and earlier.message.data == later.message.data
+        for earlier, later in pairwise(samples)
+    )
+
+
+def _right_so_far(sent: Sent) -> Sequence[Sample]:
+    """Return the messages that the next attempt may go on from: a wrong one changes nothing."""
+    begun = _beginning(sent.samples)
+    return begun if 0 < len(begun) < len(WANTED) else sent.earlier
+
+
+def _refuse_early(sent: Sent) -> None:
+    """Raise NotAttempted if a command still runs, and what it has sent is right so far."""
+    if sent.is_running and _beginning(sent.samples):
+        raise NotAttempted(
+            f'data = {expect.show(_values(sent.samples))} so far, and a command still runs. Run '
+            'this cell again when it has ended.'
         )
 
 
-def _refuse(values: Sequence[int]) -> NoReturn:
+def _refuse(sent: Sent) -> NoReturn:
+    values, kept = _values(sent.samples), len(_right_so_far(sent))
     missing = [number for number in WANTED if number not in values]
     todo = 'Publish all three numbers again: 1, then 3, then 5.'
-    if all(value % 2 == 0 for value in values):
+    if kept:
+        todo = f'Go on with {", then ".join(map(str, WANTED[kept:]))}.'
+    if all(value % 2 == 0 for value in _values(sent.new)):
         why = 'These are even numbers. An odd number leaves 1 when it is divided by 2.'
-    elif any(earlier == later for earlier, later in pairwise(values)):
+    elif _is_repeated(sent.samples):
         why = 'The same number came more than once: without --once a command goes on publishing.'
-        todo = 'Add --once to each command, and publish all three again.'
     elif missing:
         why = f'Still missing: {", ".join(map(str, missing))}.'
     elif sorted(values) == WANTED:
         why = 'All three came, but in another order.'
     else:
-        why = 'Other numbers came as well.'
+        why = 'Other numbers came as well, or a number came twice.'
     raise Fail(EXPECTED, f'data = {expect.show(values)}', why=why, todo=todo)
 
 
@@ -103,6 +154,27 @@ odds = Exercise(
         Style('also with the command of the shell', changed(_COMMANDS, (_ONE, f'!{_ONE[1:]}'))),
         Style('after a wrong one', changed(_ONE, ('1}', '8}')) + _COMMANDS),
         Style('twice', _COMMANDS * 2),
+        Style('the first one twice', _ONE + _COMMANDS),
+        Style(
+            'after another type, which is refused',
+            changed(_COMMANDS, ('Int16', 'Int32')) + _COMMANDS,
+        ),
+        Style(
+            'in the background',
+            ''.join(f'{line} &\n' for line in _COMMANDS.splitlines()),
+        ),
+        Style(
+            'a node',
+            """
+import rclpy
+from std_msgs.msg import Int16
+
+node = rclpy.create_node('odd_node')
+publisher = node.create_publisher(Int16, 'odds', 10)
+for number in (1, 3, 5):
+    publisher.publish(Int16(data=number))
+""",
+        ),
     ],
     wrong=[
         Wrong(
@@ -143,6 +215,48 @@ odds = Exercise(
         Wrong('a word', changed(_ONE, ('1}', 'one}')), 'written in digits'),
         Wrong('two slashes', changed(_ONE, ('/odds', '//odds')), 'One slash at the beginning'),
         Wrong('only two', changed(_COMMANDS, (_ONE, '')), 'Still missing: 1.'),
+        Wrong('only the first', _ONE, 'Still missing: 3, 5. Next: Go on with 3, then 5.'),
+        Wrong(
+            'in another order',
+            changed(_COMMANDS, ('1}', '0}'), ('5}', '1}'), ('0}', '5}')),
+            'All three came, but in another order.',
+        ),
+        Wrong('one more', _COMMANDS + changed(_ONE, ('1}', '7}')), 'Other numbers came as well'),
+        Wrong(
+            'all numbers',
+            ''.join(changed(_ONE, ('1}', f'{number}}}')) for number in range(1, 6)),
+            'Other numbers came as well',
+        ),
+        Wrong(
+            'twice each',
+            changed(_COMMANDS, ('--once', '--times 2 --rate 20')),
+            'The same number came more than once',
+        ),
+        Wrong(
+            'another topic, too',
+            _COMMANDS + changed(_ONE, ('--once /odds', '--once -w 0 /odd_numbers')),
+            'messages on /odd_numbers as well',
+        ),
+        Wrong(
+            'a loop without an end',
+            """
+import rclpy
+from std_msgs.msg import Int16
+
+node = lab.spin(rclpy.create_node('odd_loop'))
+publisher = node.create_publisher(Int16, 'odds', 10)
+numbers = [1, 3, 5]
+
+
+def on_timer():
+    publisher.publish(Int16(data=numbers[0]))
+    numbers.append(numbers.pop(0))
+
+
+timer = node.create_timer(0.1, on_timer)
+""",
+            'messages that go on coming',
+        ),
     ],
     records=[TOPIC],
 )

@@ -1,0 +1,243 @@
+"""What was sent to a topic: waited for until it is all there, attempt by attempt.
+
+A message does not say who has sent it, but as which one: every publisher counts from 1.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+from statistics import median
+from typing import NoReturn
+
+from labkit.exercises import Fail, NotAttempted, Probe
+from labkit.exercises.recorder import Recording
+from labkit.exercises.watch import Sample
+from labkit.lessons.command_line.last_command import explain_last_command, other_topic
+
+__all__ = [
+    'Sent',
+    'is_every',
+    'messages_at_once',
+    'newest_run',
+    'period',
+    'refuse_other_topics',
+    'sent_to',
+]
+
+Samples = Sequence[Sample]
+
+# Nothing more comes after so long: if all is there, or nobody is who could send it; else, s.
+GONE_SEC = 0.3
+SILENT_SEC = 1.2
+# So long a check waits, s, and so many messages it waits for: what goes on then has no end.
+MOST_SEC = 4.5
+MANY = 10
+# A publisher that was silent so long, and for so many of its periods, begins anew.
+PAUSE_SEC = 1.0
+PAUSE_PERIODS = 3.0
+# How far a rate may be off: a twentieth, as the task says, and what two clocks may differ by.
+TOLERANCE = 0.055
+
+
+@dataclass(frozen=True)
+class Sent:
+    """What has come on a topic.
+
+    Attributes:
+        recording: Where it came from.
+        earlier: What the check before has kept.
+        new: What has come since, in its order.
+        is_running: Whether a command that sends it has not ended yet.
+        goes_on: Whether messages came on and on while the check looked at it.
+    """
+
+    recording: Recording
+    earlier: Samples
+    new: Samples
+    is_running: bool
+    goes_on: bool
+
+    @property
+    def samples(self) -> list[Sample]:
+        """All of it."""
+        return [*self.earlier, *self.new]
+
+
+def sent_to(
+    probe: Probe,
+    topic: str,
+    expected: str,
+    *,
+    is_whole: Callable[[Samples], bool],
+    is_too_much: Callable[[Samples], bool],
+) -> Sent:
+    """Wait as long as a command runs or messages keep coming; return what was sent.
+
+    Args:
+        probe: The probe of the check. Its time bounds the wait.
+        topic: Full name of the topic.
+        expected: What should have come, in words.
+        is_whole: Whether nothing is missing.
+        is_too_much: Whether it is clear already that it is not what was asked for.
+
+    Raises:
+        Fail: Nothing has come, and the last command, or a publisher elsewhere, says why.
+        NotAttempted: Nothing has come.
+    """
+    recording = probe.recorded[topic]
+    assert isinstance(recording, Recording)
+    started = time.monotonic()
+
+    def samples() -> Samples:
+        return [*recording.earlier, *recording.samples]
+
+    def silent_sec() -> float:
+        return time.monotonic() - max(started, recording.last_arrival)
+
+    def is_there() -> bool:
+        recording.pump()
+        return bool(recording.samples or _commands(probe, topic) or probe.publishers(topic))
+
+    def is_over() -> bool:
+        recording.pump()
+        if len(recording.samples) - count > MANY:
+            return True
+        if recording.samples and is_too_much(samples()):
+            return True
+        if _commands(probe, topic):
+            return False
+        if is_whole(samples()) or not probe.publishers(topic):
+            return silent_sec() > GONE_SEC
+        return silent_sec() > SILENT_SEC
+
+    probe.wait_to_appear(is_there)
+    count = len(recording.samples)
+    in_time = probe.wait(is_over, MOST_SEC)
+    _refuse_other_type(probe, topic, expected)
+    if not recording.samples:
+        _refuse_nothing(probe, topic, expected, recording.earlier)
+    is_running = _commands(probe, topic)
+    keeps_coming = not in_time and not is_running and silent_sec() < SILENT_SEC
+    return Sent(
+        recording,
+        earlier=list(recording.earlier),
+        new=list(recording.samples),
+        is_running=is_running,
+        goes_on=keeps_coming or len(recording.samples) - count > MANY,
+    )
+
+
+def newest_run(samples: Samples) -> list[Sample]:
+    """Return the newest messages of the publisher that was heard last, without a long pause.
+
+    A cell or a command may have been run before: each attempt is a run of its own.
+    """
+    runs: list[list[Sample]] = []
+    for sample in samples:
+        following = [run for run in runs if run[-1].number < sample.number]
+        if following:
+            # Of two that count alike, the later one goes on: the other has ended.
+            following[-1].append(sample)
+        else:
+            runs.append([sample])
+    newest = max(runs, key=lambda run: run[-1].stamp)
+    gaps = [later.stamp - earlier.stamp for earlier, later in pairwise(newest)]
+    pause = max(PAUSE_SEC, PAUSE_PERIODS * median(gaps)) if gaps else 0.0
+    begins = [number for number, gap in enumerate(gaps, start=1) if gap > pause]
+    return newest[begins[-1] if begins else 0 :]
+
+
+def messages_at_once(samples: Samples, run: Samples) -> int:
+    """Return how many messages of others came while a run did."""
+    between = [s for s in samples if run[0].stamp <= s.stamp <= run[-1].stamp]
+    return len(between) - len(run)
+
+
+def is_every(period_sec: float, run: Samples) -> bool:
+    """Tell whether the messages of a run came with this time in between, by their stamps.
+
+    A busy machine delays single messages. A late first or last one spoils the mean, and two late
+    ones in the middle may spoil the median of all pairs (Theil and Sen): one of them is enough.
+    """
+    mean = (run[-1].stamp - run[0].stamp) / (run[-1].number - run[0].number)
+    return any(abs(seen / period_sec - 1.0) <= TOLERANCE for seen in (mean, period(run)))
+
+
+def period(run: Samples) -> float:
+    """Return the time from one message of a run to the next, in seconds."""
+    return median(
+        (later.stamp - earlier.stamp) / (later.number - earlier.number)
+        for earlier, later in combinations(run, 2)
+    )
+
+
+def refuse_other_topics(probe: Probe, topic: str, msg_type: str) -> None:
+    """Raise Fail if messages of the type of the task are sent to another topic as well."""
+    known = probe.scope.known
+    found = [
+        end.topic
+        for end in probe.all_publishers()
+        if end.msg_type == msg_type and end.topic not in known
+    ]
+    other = found[0] if found else other_topic(topic, msg_type, known)
+    if other:
+        raise Fail(
+            f'messages on {topic}, and on no other topic',
+            f'what was asked for, and messages on {other} as well',
+            why=f'The task asks for {topic} only.',
+            todo=f'End what publishes on {other}, and send the messages to {topic} once more.',
+        )
+
+
+def _refuse_nothing(probe: Probe, topic: str, expected: str, earlier: Samples) -> NoReturn:
+    """Raise what explains why nothing new has come."""
+    explain_last_command(topic, expected)
+    if earlier:
+        raise NotAttempted(f'Nothing new has come on {topic} since the last check.')
+    for end in probe.all_publishers():
+        if end.topic not in probe.scope.known and end.msg_type == probe.scope.publishes[topic]:
+            raise Fail(
+                expected,
+                f'{end.node} publishes on {end.topic}',
+                why=f'{end.topic} is not {topic}: names must be equal to the last letter.',
+                todo=f'Write the topic as {topic}.',
+            )
+    if _commands(probe, topic) or probe.publishers(topic):
+        raise NotAttempted(
+            f'Somebody is going to publish on {topic}, but nothing has come yet. Run this cell '
+            'again when the command has ended.'
+        )
+    if probe.something_is_starting():
+        raise NotAttempted
+    raise NotAttempted(
+        f'Not attempted yet: nothing has come on {topic}. Write your commands in the cell above, '
+        'run that cell, then run this one again. If a command says that something is wrong, '
+        'nothing was sent.'
+    )
+
+
+def _refuse_other_type(probe: Probe, topic: str, expected: str) -> None:
+    """Raise Fail if a command, of a terminal perhaps, is there with another type."""
+    wanted = probe.scope.publishes[topic]
+    for info in probe.node.get_publishers_info_by_topic(topic):
+        if info.topic_type != wanted:
+            raise Fail(
+                expected,
+                f'a publisher on {topic} with messages of type {info.topic_type}',
+                why='A topic carries one type of message. Nobody hears messages of another type.',
+                todo=f'Stop that command with Ctrl-C, and use {wanted}.',
+            )
+
+
+def _commands(probe: Probe, topic: str) -> bool:
+    """Tell whether a command of another process publishes: its node is hidden."""
+    from labkit.rosgraph.endpoints import publishers
+    from labkit.rosgraph.names import is_hidden
+
+    return any(
+        is_hidden(end.node) and not probe.in_this_process(end)
+        for end in publishers(probe.node, topic)
+    )
