@@ -31,6 +31,9 @@ LIFE_SEC = 30.0
 MAX_EVENTS = 6000
 # After so many messages of one topic nothing new is to be learnt.
 MAX_MESSAGES = 3000
+# When this is over, time passes in large steps for nodes of other processes, s of real time.
+HURRY_SEC = 3.0
+LARGE_STEP_SEC = 0.5
 # How long an answer may take that comes from a thread or another process, s of real time.
 PATIENCE_SEC = 0.8
 POLL_SEC = 0.002
@@ -75,6 +78,9 @@ class Life:
         flooded: Whether so many callbacks came in one moment that there was no end to see.
         hanging: Whether a callback did not return.
         remote: Full names of the nodes of other processes that followed.
+        tick: How exactly times of these are known, s,
+        fine_sec: for so long, s;
+        rest: and how exactly at least afterwards, s.
         error: What a callback of the learner's has raised, if one has: then time stopped there.
     """
 
@@ -84,6 +90,9 @@ class Life:
     flooded: bool = False
     hanging: bool = False
     remote: Sequence[str] = ()
+    tick: float = 0.0
+    fine_sec: float = math.inf
+    rest: float = 0.0
     error: LearnerError | None = None
 
     def on(self, topic: str) -> list[Sample]:
@@ -131,7 +140,7 @@ def live(
     }
     moving, standing, foreign = _nodes(probe, topics, nodes)
     probe.lives_sec = seconds
-    life = Life()
+    life = Life(tick=tick, fine_sec=fine_sec, rest=rest)
     moments: list[tuple[float, float]] = []
     with contextlib.ExitStack() as stack:
         remote = stack.enter_context(RemoteTime(probe.spun_node, foreign)) if foreign else None
@@ -155,6 +164,8 @@ def live(
             passing.tick = tick if passing.seconds < fine_sec else rest
             course.go(min(seconds, max(fine_sec, passing.seconds)))
             passing.tick = rest
+            if life.remote:
+                life.rest = course.hurry(seconds)
             course.go(seconds)
             if life.remote:
                 course.wait_for_late_ones()
@@ -212,6 +223,15 @@ class _Course:
         if self.events >= MAX_EVENTS or self.passing.flooded or self.passing.hanging:
             return False
         return seconds <= 0 or self.passing.advance(seconds, self._look, self.note)
+
+    def hurry(self, at: float) -> float:
+        """Let time pass until a moment, in large steps once it has taken long; return the step."""
+        passing = self.passing
+        end = time.monotonic() + HURRY_SEC
+        while passing.seconds < at and self.go(min(at, passing.seconds + LARGE_STEP_SEC)):
+            if time.monotonic() > end:
+                passing.tick = max(passing.tick, LARGE_STEP_SEC)
+        return passing.tick
 
     def send(self, sender: Callable[..., float], stimulus: Stimulus, life: Life) -> None:
         """Send a test, and see what comes of it at once."""

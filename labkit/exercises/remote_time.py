@@ -1,7 +1,8 @@
 """Virtual time for nodes of other processes: the parameter `use_sim_time` and the topic `/clock`.
 
 A step is over when a node has answered twice: the first answer says that it has heard of the new
-time, the second one that it has done what was due then.
+time, the second one that it has done what was due then. A timer that is due more than once within
+a step is called once.
 """
 
 from __future__ import annotations
@@ -20,7 +21,10 @@ if TYPE_CHECKING:
 __all__ = ['RemoteTime']
 
 GUARD = Path(__file__).with_name('time_guard.py')
-# How long a node may take to answer, s of real time. One that does not is left in real time.
+# How long a node may take to answer for the first time, s of real time. One that does not is not
+# spun, or at work for long, and is left in real time.
+FIRST_ANSWER_SEC = 1.2
+# And how long later on. One that does not answer then is not asked again.
 ANSWER_SEC = 3.0
 # How long a clock may take to be found by a node, s of real time.
 MATCH_SEC = 5.0
@@ -41,7 +45,8 @@ class RemoteTime:
     def __init__(self, node: Node, names: Sequence[str]) -> None:
         self._node = node
         self.names = list(names)
-        self._clients: list[Any] = []
+        self._clients: dict[str, Any] = {}
+        self._told: list[str] = []
         self._guard: subprocess.Popen[bytes] | None = None
         self._clock: Any = None
 
@@ -60,20 +65,21 @@ class RemoteTime:
         )
         self._clock = self._node.create_publisher(Clock, '/clock', profile)
         self._guard = _start_guard(self.names)
-        self.names = [name for name in self.names if self._use_sim_time(name, True)]
-        self._clients = [
-            self._node.create_client(GetParameters, f'{name}/get_parameters')
+        self._told = [name for name in self.names if self._use_sim_time(name, True)]
+        self.names = list(self._told)
+        self._clients = {
+            name: self._node.create_client(GetParameters, f'{name}/get_parameters')
             for name in self.names
-        ]
+        }
         _wait(lambda: self._clock.get_subscription_count() >= len(self.names), MATCH_SEC)
-        for client in self._clients:
+        for client in self._clients.values():
             _wait(client.service_is_ready, ANSWER_SEC)
         return self
 
     def __exit__(self, *_: object) -> None:
-        for name in self.names:
+        for name in self._told:
             self._use_sim_time(name, False)
-        for client in self._clients:
+        for client in self._clients.values():
             self._node.destroy_client(client)
         if self._clock is not None:
             self._node.destroy_publisher(self._clock)
@@ -99,20 +105,19 @@ class RemoteTime:
 
     def settle(self) -> None:
         """Wait until the nodes have done what has reached them."""
-        for _ in range(2):
-            self._ask_all()
-
-    def _ask_all(self) -> None:
         from rcl_interfaces.srv import GetParameters
 
         request = GetParameters.Request(names=['use_sim_time'])
-        done = []
-        for client in self._clients:
-            event = threading.Event()
-            client.call_async(request).add_done_callback(lambda _, e=event: e.set())
-            done.append(event)
-        for event in done:
-            event.wait(ANSWER_SEC)
+        # A node takes one request of a service each time it looks what is ready, timers first. So
+        # both may be sent at once.
+        answers = [
+            (name, _answer(self._clients[name], request)) for name in self.names for _ in range(2)
+        ]
+        end = time.monotonic() + ANSWER_SEC
+        silent = {
+            name for name, done in answers if not done.wait(max(0.0, end - time.monotonic()))
+        }
+        self.names = [name for name in self.names if name not in silent]
 
     def _has_parameters(self, name: str) -> bool:
         services = dict(self._node.get_service_names_and_types())
@@ -132,10 +137,17 @@ class RemoteTime:
             with ServiceCalls(self._node, SetParameters, f'{name}/set_parameters') as service:
                 if not service.wait_until_ready(ANSWER_SEC):
                     return False
-                response = service.call(request, ANSWER_SEC)
+                response = service.call(request, FIRST_ANSWER_SEC if value else ANSWER_SEC)
         except LabError:
             return False
         return all(result.successful for result in response.results)
+
+
+def _answer(client: Any, request: Any) -> threading.Event:
+    """Ask a service; return what is set when it has answered."""
+    done = threading.Event()
+    client.call_async(request).add_done_callback(lambda _: done.set())
+    return done
 
 
 def _start_guard(names: Sequence[str]) -> subprocess.Popen[bytes]:

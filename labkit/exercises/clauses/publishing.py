@@ -29,6 +29,8 @@ GAP_TOLERANCE = 0.5
 REGULAR_SEC = 1e-6
 # So much a rate in real time may differ from that in virtual time if both are one.
 SAME_RATE = 0.3
+STOPS = 'They stop coming.'
+BURSTS = 'They come in bursts, or with pauses.'
 _WORDS: dict[float, str] = {
     1: 'once',
     2: 'twice',
@@ -206,33 +208,45 @@ class Publishes(Clause):
             count = len(samples)
             seen = f'{"one message" if count else "no message"} in {life.seconds:.0f} s'
             return seen, 'The messages come much too slowly, or have stopped coming.'
-        rate, period = _rate(samples), self.period
-        # Times of other processes are known to a tick.
-        margin = TOLERANCE + (period / 5 / (samples[-1].at - samples[0].at) if life.remote else 0)
+        if life.remote and len(samples) > 2:
+            # The phase of a timer may change when its clock does.
+            samples = samples[1:]
+        # Times of other processes are known to a tick, and later on less well.
+        tick, rest = (life.tick, life.rest) if life.remote else (0.0, 0.0)
+        fine = [sample for sample in samples if not tick or sample.at <= life.fine_sec]
+        if len(fine) < 3:
+            fine = list(samples)
+        rate, period = _rate(fine), self.period
+        gaps, fine_gaps = _gaps(samples), _gaps(fine)
         late = life.seconds - samples[-1].at
-        if late > (1 + GAP_TOLERANCE) * max(period, 1 / rate) and not self.ends:
+        if late > (1 + GAP_TOLERANCE) * max(period, *gaps) + tick and not self.ends:
             return (
                 f'{len(samples)} messages, the last one after {samples[-1].at:.1f} s, and then '
                 f'none until {life.seconds:.0f} s',
-                'They stop coming.',
+                STOPS,
             )
+        longest, shortest = max(gaps), min(fine_gaps)
+        bursts = (
+            f'{len(samples)} messages in {life.seconds:.0f} s, with {shortest:.3g} s to '
+            f'{longest:.3g} s in between',
+            BURSTS,
+        )
+        if max(fine_gaps) > 3 / rate:
+            return bursts
+        margin = TOLERANCE + tick / max(sum(fine_gaps), period)
         too_fast = rate * period > 1 + margin and not self.at_least
         if too_fast or rate * period < 1 - margin:
             return self._off(rate)
-        gaps = [later.at - earlier.at for earlier, later in pairwise(samples)]
-        longest, shortest = max(gaps), min(gaps)
-        if longest > (1 + GAP_TOLERANCE) * period + 1e-9 or (
-            shortest < (1 - GAP_TOLERANCE) * period - 1e-9 and not self.at_least
+        if longest > (1 + GAP_TOLERANCE) * max(period, rest) + tick + 1e-9 or (
+            shortest < (1 - GAP_TOLERANCE) * period - tick - 1e-9 and not self.at_least
         ):
-            return (
-                f'{len(samples)} messages in {life.seconds:.0f} s, with {shortest:.3g} s to '
-                f'{longest:.3g} s in between',
-                'They come in bursts, or with pauses.',
-            )
+            return bursts
         return None
 
     def _off(self, rate: float) -> tuple[str, str]:
         period = 1 / rate
+        if not period:
+            return 'all messages at one moment', BURSTS
         factor = period * self.hz
         off = f'{factor:.3g} times too slow' if factor > 1 else f'{1 / factor:.3g} times too fast'
         why = 'The rate is set by the period of the timer, or by the time the loop sleeps.'
@@ -247,12 +261,14 @@ class Publishes(Clause):
 
     def _refuse(self, trouble: tuple[str, str]) -> NoReturn:
         least = 'at least ' if self.at_least else ''
+        todo = f'The first argument of create_timer() is the period in seconds: {self.period:.3g}'
+        if trouble[1] in (STOPS, BURSTS):
+            todo = 'Publish once in each call of a timer with this period, and let it go on.'
         raise Fail(
             f'{least}a message every {self.period:.3g} s ({self.hz:.3g} Hz) on {self.topic}',
             trouble[0],
             why=trouble[1],
-            todo=f'The first argument of create_timer() is the period in seconds: '
-            f'{self.period:.3g}',
+            todo=todo,
         )
 
 
@@ -384,7 +400,12 @@ def _period(samples: Sequence[Sample]) -> float:
     return (last.at - first.at) / max(count, len(samples) - 1)
 
 
+def _gaps(samples: Sequence[Sample]) -> list[float]:
+    """Return the seconds of virtual time from one message to the next."""
+    return [later.at - earlier.at for earlier, later in pairwise(samples)]
+
+
 def _is_regular(samples: Sequence[Sample]) -> bool:
     """Tell whether messages come as evenly in virtual time as only a timer of ROS can."""
-    gaps = [later.at - earlier.at for earlier, later in pairwise(samples)]
+    gaps = _gaps(samples)
     return len(gaps) >= 4 and max(gaps) - min(gaps) < REGULAR_SEC
