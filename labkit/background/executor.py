@@ -70,6 +70,7 @@ class BackgroundExecutor(SingleThreadedExecutor):
         self._conditions: list[Callable[[], None]] = []
         self._closing = False
         self._settling: threading.Event | None = None
+        self._settle_lock = threading.Lock()
         self._gathering = False
         # The thread that is looking at a condition of `wait` just now.
         self._looking: int | None = None
@@ -242,10 +243,11 @@ class BackgroundExecutor(SingleThreadedExecutor):
         Returns:
             Whether it became quiet in time.
         """
-        done = self._settling = threading.Event()
-        self.wake()
-        quiet = done.wait(timeout_sec)
-        self._settling = None
+        with self._settle_lock:
+            done = self._settling = threading.Event()
+            self.wake()
+            quiet = done.wait(timeout_sec)
+            self._settling = None
         return quiet
 
     def in_callback(self) -> bool:
