@@ -70,7 +70,8 @@ def test_what_is_known_as_equivalent_is_a_mutant() -> None:
         for diff in known
         if name not in EXERCISES or diff not in {mutant.diff for mutant in mutants(name)}
     }
-    assert not stale, 'tests/mutants/equivalent.json: take these out, or write them anew'
+    lines = '\n'.join(f'{name}: {diff}' for name, diff in sorted(stale))
+    assert not stale, f'No mutants any more; see --list, and mend equivalent.json:\n{lines}'
 
 
 @pytest.mark.parametrize(

@@ -95,6 +95,19 @@ def states_of(exercise: Exercise) -> list[State]:
     return states
 
 
+def copied(lesson: Lesson, folder: Path) -> Path:
+    """Copy the notebook of a lesson, and what its kernel needs, into a folder; return its path."""
+    notebook = notebook_of(lesson)
+    if lesson is demo.LESSON:
+        shutil.copytree(HERE / 'demo', folder / 'demo')
+    shutil.copy(HERE / 'kernel_tools.py', folder)
+    content = nbformat.read(notebook, as_version=4)
+    if any(state.process for exercise in lesson.exercises for state in states_of(exercise)):
+        content.metadata['labkit'] = {'processes': True}
+    nbformat.write(content, folder / notebook.name)
+    return folder / notebook.name
+
+
 def prove(
     lesson: Lesson, folder: Path, wanted: Collection[tuple[str, str]]
 ) -> dict[tuple[str, str], Finding]:
@@ -112,15 +125,7 @@ class Proof:
 
     def __init__(self, lesson: Lesson, folder: Path) -> None:
         self.lesson = lesson
-        notebook = notebook_of(lesson)
-        self._path = folder / notebook.name
-        if lesson is demo.LESSON:
-            shutil.copytree(HERE / 'demo', folder / 'demo')
-        shutil.copy(HERE / 'kernel_tools.py', folder)
-        content = nbformat.read(notebook, as_version=4)
-        if any(state.process for exercise in lesson.exercises for state in states_of(exercise)):
-            content.metadata['labkit'] = {'processes': True}
-        nbformat.write(content, self._path)
+        self._path = copied(lesson, folder)
         self.findings: dict[tuple[str, str], Finding] = {}
 
     def run(self, wanted: Collection[tuple[str, str]]) -> dict[tuple[str, str], Finding]:

@@ -21,6 +21,8 @@ from labkit.exercises.lesson import all_lessons
 __all__ = ['main']
 
 Part = tuple[Lesson, Exercise, list[Mutant]]
+# So many mutants share a kernel, so that no job is left alone with an exercise of two hundred.
+PART = 60
 
 
 def main(description: str | None) -> int:
@@ -61,8 +63,8 @@ def _chosen(texts: Sequence[str], sample: int) -> list[Part]:
             named = [mutant for mutant in found if any(text in mutant.id for text in texts)]
             chosen = [m for i, m in enumerate(named, start=count) if i % sample == 0]
             count += len(named)
-            if chosen:
-                parts.append((lesson, exercise, chosen))
+            for first in range(0, len(chosen), PART):
+                parts.append((lesson, exercise, chosen[first : first + PART]))
     return parts
 
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import re
-import shutil
 import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from mutants.generate import Mutant
-from proof import HERE, MARK, PRESSES, RESET, Finding, insert, notebook_of, press
+from proof import MARK, PRESSES, RESET, Finding, copied, insert, press
 
 from labkit.course.lesson_run import LessonError, LessonRun
 from labkit.exercises import Exercise, Lesson, Outcome
@@ -146,9 +145,7 @@ class _Bench:
     def _open(self) -> LessonRun:
         """Start a kernel, and work through the lesson up to the exercise, as it is in the file."""
         folder = Path(self._stack.enter_context(tempfile.TemporaryDirectory(prefix='mutants-')))
-        shutil.copy(HERE / 'kernel_tools.py', folder)
-        path = Path(shutil.copy(notebook_of(self._lesson), folder))
-        run = LessonRun(path, cell_timeout_sec=CELL_TIMEOUT_SEC)
+        run = LessonRun(copied(self._lesson, folder), cell_timeout_sec=CELL_TIMEOUT_SEC)
         self._stack.callback(run.close)
         cells = run.notebook.cells
         starters = {exercise.starter_id: exercise for exercise in self._lesson.exercises}
