@@ -192,7 +192,7 @@ class Number(Question):
         otherwise: What to think of when it is another one.
         wrong: Typical wrong numbers, with what is wrong about each.
         explain: Says what is wrong about a number by the live graph, '' if it can't tell.
-        tolerance: How far the answer may be off.
+        tolerance: How far the answer may be off, as a part of it.
         unit: The unit, such as `'Hz'`.
     """
 
@@ -219,12 +219,12 @@ class Number(Question):
         numbers = self._numbers(given)
         answer = _value(self.answer)
         for number in numbers:
-            if abs(number - answer) <= self.tolerance + 1e-9 * abs(answer):
+            if abs(number - answer) <= max(self.tolerance, 1e-9) * abs(answer):
                 return Feedback(True, [('why', self.why)])
         for number, (value, why) in product(numbers, self.wrong.items()):
             # Nobody types all decimals of a number that has many.
-            rounded = 1e-9 if float(value).is_integer() else 0.005
-            if math.isclose(number, value, rel_tol=rounded, abs_tol=self.tolerance / 2):
+            off = 1e-9 if float(value).is_integer() else 0.005
+            if math.isclose(number, value, rel_tol=max(off, self.tolerance / 2)):
                 return Feedback(False, [('why', why)])
         return Feedback(False, [('why', self.explain(numbers[0]) or self.otherwise)])
 

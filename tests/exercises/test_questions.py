@@ -29,7 +29,7 @@ RATE = Number(
     'The period is 0.1 s.',
     'Divide 1 by the period.',
     wrong={0.1: 'This is the period.'},
-    tolerance=0.5,
+    tolerance=0.05,
     unit='Hz',
 )
 NODE = Word('Who publishes?', lambda: ['/talker', '/other'], 'It is there.', 'Look at the graph.')
@@ -149,7 +149,7 @@ FIVE = asked('my_name_is', 'my_name_is', 4)
 SMALL = asked('odds', 'odds', 3)
 LOST = asked('odds', 'odds', 4)
 RADIAN = asked('turtlebot', 'turtlebot', 3)
-BEACON = Number('?', 4, 'Yes.', 'Look.', tolerance=0.45, unit='Hz')
+BEACON = Number('?', 4, 'Yes.', 'Look.', tolerance=0.11, unit='Hz')
 
 RIGHT: list[tuple[Question, list[object]]] = [
     (PIER, ['/pier_east', 'pier_east', ' pier_east ', '"/pier_east"', "'pier_east'"]),
@@ -268,7 +268,7 @@ WRONG: list[tuple[Question, object, str]] = [
     (RADIAN, '57.2958', 'the angle in degrees'),
     (RADIAN, '0,5', 'what it turns in one second'),
     (RADIAN, '4', 'You divided.'),
-    (BEACON, '4.5', 'Look.'),
+    (BEACON, '4,5 Hz', 'Look.'),
     (BEACON, '5 Hz', 'Look.'),
 ]
 

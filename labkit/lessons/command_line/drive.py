@@ -158,8 +158,8 @@ def _expect_count(samples: Sequence[Sample], run: Sequence[Sample]) -> None:
 
 drive = Exercise(
     name='drive',
-    task=f'Publish {COUNT} messages on {TOPIC} as `{TWIST}`, ten a second: {FORWARD} m/s '
-    f'forwards and {LEFT} rad/s to the left.',
+    task=f'Publish {COUNT} messages on {TOPIC} as `{TWIST}`, ten a second (9.5 to 10.5): '
+    f'{FORWARD} m/s forwards and {LEFT} rad/s to the left, all other fields 0.',
     publishes={TOPIC: TWIST},
     shared=[TOPIC],
     judge=_judge_drive,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from statistics import median
@@ -135,7 +136,7 @@ def _rate_of_beacon() -> float:
             raise LabError('/beacon is silent.', todo='Open the harbour again: open_harbour()')
         measured = 1 / median(watch.intervals)
         # The harbour chose one of these; a busy machine is not asked which.
-        return min(RATES_HZ, key=lambda hz: abs(hz - measured))
+        return min(RATES_HZ, key=lambda hz: abs(math.log(hz / measured)))
 
 
 def _no_rate_of_beacon(number: float) -> str:
@@ -238,7 +239,7 @@ HARBOUR = Quiz(
         'topic hz counts the messages that come, and divides by the time.',
         'Use ros2 topic hz --count 2 /beacon: the average rate, rounded.',
         explain=_no_rate_of_beacon,
-        tolerance=0.45,
+        tolerance=0.15,
         unit='Hz',
     ),
     Number(

@@ -128,8 +128,8 @@ def _refuse(sent: Sent) -> NoReturn:
 
 odds = Exercise(
     name='odds',
-    task=f'Publish the numbers 1, 3 and 5 on {TOPIC} from the command line, as `{INT16}`, one '
-    'message each.',
+    task=f'Publish the numbers 1, 3 and 5 on {TOPIC} from the command line, as `{INT16}`, in this '
+    'order, one message each, and nothing else.',
     publishes={TOPIC: INT16},
     shared=[TOPIC],
     judge=_judge_odds,
