@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from labkit.exercises.callbacks import Callbacks, find_node, is_given
 from labkit.exercises.scope import Scope
-from labkit.exercises.verdict import Fail
+from labkit.exercises.verdict import Fail, LearnerError
 from labkit.exercises.watch import Watch, build
 from labkit.rosgraph.names import EVERY_NODE_HAS, is_hidden
 from labkit.views.progress_bar import ProgressBar
@@ -152,6 +152,10 @@ class Probe:
 
         active = {end.node for end in (*self.all_publishers(), *self.all_subscriptions())}
         return bool(foreign_nodes(self.node).intersection(self.node_names()) - active)
+
+    def process_is_starting(self) -> bool:
+        """Tell whether a process was started that is not, or not all, in the graph yet."""
+        return self._grace() >= PROCESS_GRACE_SEC
 
     def something_is_starting(self) -> bool:
         """Tell whether a process, or ROS itself, was started a moment ago."""
@@ -314,13 +318,18 @@ class Probe:
         """End the node of an endpoint, as the learner would: remove it, or press Ctrl-C.
 
         Raises:
+            LearnerError: Its `destroy_node` raises. The node is gone all the same.
             Fail: It runs in a process that this notebook has not started.
         """
         node = self.node_object(endpoint.node) if self.in_this_process(endpoint) else None
         if node is not None:
-            from labkit.background.runtime import remove
+            from labkit.background.runtime import runtime
+            from labkit.background.tracebacks import short_traceback
 
-            remove(node)
+            error = runtime.destroy(node)
+            if error is not None:
+                where = f'destroy_node of {endpoint.node}'
+                raise LearnerError(where, error, short_traceback(error))
         elif not _interrupt(endpoint.gid):
             raise Fail(
                 f'{endpoint.node} runs in this notebook, so that the check can end it',

@@ -35,6 +35,7 @@ def refuse_traces(probe: Probe, task: str) -> None:
         probe: The probe of the check.
         task: What the exercise asks for, in a few words.
     """
+    _refuse_ended_nodes(task)
     _refuse_nodes(probe, task)
     if settings.in_kernel():
         _refuse_class(task)
@@ -71,6 +72,20 @@ def _refuse_nodes(probe: Probe, task: str) -> None:
         todo='Change the cell of the node and run it again. A node that belongs elsewhere ends '
         f'with lab.remove({name!r}).',
     )
+
+
+def _refuse_ended_nodes(task: str) -> None:
+    """Raise Fail if a callback has ended its own node."""
+    from labkit.background.runtime import runtime
+
+    for name, callback in runtime.ended.items():
+        raise Fail(
+            task,
+            f'no node: {name} has ended, because its callback {callback} called rclpy.shutdown()',
+            why='rclpy.shutdown() ends ROS for a whole program. In a notebook it ends the node '
+            'that calls it.',
+            todo='Leave it out, and run the cell of the node again. lab.remove(...) ends a node.',
+        )
 
 
 def _own_nodes(probe: Probe) -> list[str]:
@@ -136,7 +151,10 @@ def _refuse_process(probe: Probe, task: str) -> None:
     """Raise Fail if a process that this notebook has started for this exercise is over."""
     from labkit.background.child_processes import ended_children
 
-    names = [topic.lstrip('/') for topic in probe.scope.topics]
+    # A process of an earlier exercise may have ended, too.
+    earlier = {topic for _, topic in probe.scope.earlier}
+    new = [topic for topic in probe.scope.topics if topic not in earlier]
+    names = [topic.lstrip('/') for topic in new or probe.scope.topics]
     for child in ended_children():
         program = _program(child.command)
         # The lesson and other exercises have processes that have ended, too.

@@ -90,7 +90,7 @@ def test_nothing_there_is_no_attempt(lab: ModuleType) -> None:
 def test_nodes_and_topics_of_the_lesson_are_no_attempt(lab: ModuleType) -> None:
     lab.spin(Counter('background'))
     lab.spin(Counter('demo', topic='demo'))
-    asked = exercise(counts, given=['/background'])
+    asked = exercise(counts, given={'/background': '*'})
     assert asked.check().outcome is Outcome.FAIL
     Lesson('odds', '04_odds.ipynb', exercises=[asked], topics=['/demo'])
     assert asked.check().outcome is Outcome.NOT_ATTEMPTED
@@ -349,3 +349,19 @@ def test_node_that_is_not_spun_is_told_so_where_its_answer_is_wanted(lab: Module
     assert verdict.outcome is Outcome.FAIL
     assert verdict.todo == 'Hand the node over: lab.spin(node)'
     node.destroy_node()
+
+
+def test_an_error_in_destroy_node_is_the_learners(lab: ModuleType) -> None:
+    class Rude(Counter):
+        def destroy_node(self) -> None:
+            self.publisher.publish('goodbye')
+            super().destroy_node()
+
+    def judge(probe: Probe) -> None:
+        expect.ends_with_node(probe, expect.publisher(probe, '/odds'))
+
+    lab.spin(Rude())
+    verdict = exercise(judge).check()
+    assert verdict.outcome is Outcome.ERROR
+    assert 'destroy_node of /counter raised TypeError' in verdict.text
+    assert exercise(judge).check().outcome is Outcome.NOT_ATTEMPTED  # it is gone all the same

@@ -81,3 +81,19 @@ def test_a_process_that_has_ended_is_named(kernel: Any) -> None:
     kernel.run("""program = "raise SystemExit(3)  # was to publish on /ones" """)
     kernel.run("mine = subprocess.Popen([sys.executable, '-c', program]); mine.wait()")
     assert 'has ended with exit code 3' in kernel.run('lesson.ones.check()').text
+
+
+def test_a_node_that_has_ended_itself_is_named(kernel: Any) -> None:
+    kernel.run('import labkit as lab, rclpy; lesson = lab.lesson("odds")')
+    kernel.run(
+        'from rclpy.node import Node\nfrom std_msgs.msg import Int16\n'
+        "node = lab.spin(Node('ones')); node.create_publisher(Int16, 'ones', 10)\n"
+        'def last():\n    rclpy.shutdown()\n'
+        'timer = node.create_timer(0.1, last)'
+    )
+    kernel.run('from labkit.background.runtime import runtime')
+    kernel.run('import time\nwhile not runtime.ended: time.sleep(0.01)')
+    said = kernel.run('lesson.ones.check()').text
+    assert '/ones has ended, because its callback last called rclpy.shutdown()' in ' '.join(
+        said.split()
+    )
