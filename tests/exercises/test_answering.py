@@ -9,7 +9,7 @@ import pytest
 
 from labkit.exercises import Fail
 from labkit.exercises.clauses import Answers, Evidence
-from labkit.exercises.life import Life
+from labkit.exercises.life import Life, Sent
 from labkit.exercises.watch import Sample
 
 CLAUSE = Answers('/odds', '/evens', 'add 1', answer=lambda n: n + 1, draw=lambda: [1])
@@ -35,3 +35,30 @@ def test_answer_to_what_came_before_the_check_is_no_extra_message() -> None:
 def test_message_that_answers_nothing_is_one_too_many() -> None:
     with pytest.raises(Fail, match='1 more on /evens'):
         CLAUSE.judge(evidence([(1.0, 5)], [(1.05, 6), (4.0, 652)]))
+
+
+def test_answer_that_comes_late_is_refused() -> None:
+    seen = evidence([(1.0, 5), (2.0, 7)], [(4.0, 6), (4.0, 8)])
+    seen.life.sent = [Sent(1.0, '/odds', {'data': 5}), Sent(2.0, '/odds', {'data': 7})]
+    with pytest.raises(Fail, match='within 1 s') as refused:
+        CLAUSE.judge(seen)
+    assert refused.value.seen == '3.0 s from data = 5 to its answer'
+
+
+def test_answer_to_somebody_else_may_seem_late_because_time_flies() -> None:
+    assert CLAUSE.judge(evidence([(1.0, 5)], [(4.0, 6)]))
+
+
+def test_reason_for_more_messages_names_the_topic_that_is_answered_too() -> None:
+    seen = evidence([(1.0, 5), (1.5, 1)], [(1.0, 6), (1.5, 2), (1.6, 2), (2.0, 11)])
+    seen.life.sent = [Sent(1.0, '/odds', {'data': 5}), Sent(2.0, '/ones', {'data': 10})]
+    with pytest.raises(Fail) as refused:
+        CLAUSE.judge(seen)
+    assert refused.value.why.startswith('What comes on /ones is answered, too.')
+
+
+def test_reason_for_the_same_answer_again_and_again_is_a_timer() -> None:
+    came = [(1.0 + i / 10, 6) for i in range(5)] + [(2.0 + i / 10, 8) for i in range(5)]
+    with pytest.raises(Fail) as refused:
+        CLAUSE.judge(evidence([(1.0, 5), (2.0, 7)], came))
+    assert refused.value.why.startswith('The answer is repeated')

@@ -6,6 +6,7 @@ the same topics meanwhile: what they send has to be answered as well.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import reduce
@@ -26,6 +27,8 @@ __all__ = ['Answers', 'Logs', 'find_stage']
 
 # How soon an answer has to come, s. A node may keep what it hears until its timer ticks.
 WITHIN_SEC = 1.0
+# How far a time may be off where it is not known exactly, s.
+LATE_SEC = 0.1
 # How long the first answer of a node may take, if it makes its publisher only then, s.
 FIRST_ANSWER_SEC = 0.6
 # So many topics more, which a node hears though nobody has asked for it, get a test, too.
@@ -91,16 +94,18 @@ class Answers(Clause):
         heard = [(s.at, _get(s, self.field)) for s in life.on(self.inner)]
         came = [(s.at, _get(s, self.field)) for s in life.on(self.outer)]
         left = list(came)
-        missing = []
+        missing, late = [], []
         for at, value in heard:
             right = self.answer(value)
             found = next((i for i, (t, v) in enumerate(left) if t >= at and v == right), None)
             if found is not None:
+                late.append((left[found][0] - at, at, value))
                 del left[found]
             elif at < life.seconds - WITHIN_SEC:
                 missing.append((at, value))
         if missing:
             self._refuse_missing(evidence, missing, left, len(heard))
+        self._refuse_late(evidence, late)
         # At the beginning it may answer what came before: a node may keep what it hears.
         extra = [(t, value) for t, value in left if t >= WITHIN_SEC]
         if extra:
@@ -140,25 +145,49 @@ class Answers(Clause):
             todo=todo,
         )
 
+    def _refuse_late(self, evidence: Evidence, delays: Sequence[tuple[float, float, Any]]) -> None:
+        """Raise Fail if a test was answered too late.
+
+        What others have sent is not looked at: they may have sent it in real time.
+        """
+        life = evidence.life
+        tests = {sent.at for sent in life.sent if sent.topic == self.inner}
+        late = [
+            (delay, value)
+            for delay, at, value in delays
+            if delay > WITHIN_SEC + LATE_SEC and any(abs(at - sent) < LATE_SEC for sent in tests)
+        ]
+        if late:
+            delay, value = max(late, key=lambda pair: pair[0])
+            raise Fail(
+                f'an answer on {self.outer} within {WITHIN_SEC:g} s',
+                f'{delay:.1f} s from {self.field} = {show([value])} to its answer',
+                why='The answers wait for a timer, or for something else that comes seldom.',
+                todo='Publish in the callback of the subscription, or take a shorter period.',
+            )
+
     def _refuse_extra(
         self,
         evidence: Evidence,
         heard: Sequence[tuple[float, Any]],
         left: Sequence[tuple[float, Any]],
     ) -> NoReturn:
-        at, value = left[0]
         expected = f'one message on {self.outer} for each one on {self.inner}, and no other'
+        rights = {self.answer(value) for _, value in heard}
         others = {
             self.answer(sent.fields[self.field]): sent.topic
             for sent in evidence.life.sent
             if sent.topic != self.inner
         }
+        other = next((v for _, v in left if v in others and v not in rights), None)
+        at, value = left[0]
         answered = [v for t, v in heard if self.answer(v) == value and t <= at]
         before = [v for t, v in heard if t <= at]
+        times = max(Counter(v for _, v in left if v in rights).values(), default=0)
         why, todo = '', f'Publish on {self.outer} only in the callback for {self.inner}, and once.'
-        if value in others:
-            why = f'What comes on {others[value]} is answered, too. Nobody asked for that.'
-        elif answered and len(left) >= 3 and len({v for _, v in left}) == 1:
+        if other is not None:
+            why = f'What comes on {others[other]} is answered, too. Nobody asked for that.'
+        elif times >= 3:
             why = 'The answer is repeated, again and again: a timer or a loop publishes it.'
         elif answered:
             why = 'A message is answered more than once.'
