@@ -1,8 +1,8 @@
-"""A solution as a script, which every check must accept, and as one that runs twice."""
+"""A solution as a script, which every check must accept, started in this way or another."""
 
 from __future__ import annotations
 
-__all__ = ['in_process', 'two_copies']
+__all__ = ['in_process', 'started_by_asyncio', 'started_by_subprocess', 'two_copies']
 
 
 def in_process(code: str) -> str:
@@ -22,6 +22,18 @@ def two_copies(code: str) -> str:
     """Return a solution as a script that makes its node twice. Arguments as for `in_process`."""
     body, node = _parts(code)
     return _script(body, f'copies = {node}, {node}', 'rclpy.spin(copies[0])')
+
+
+def started_by_subprocess(script: str) -> str:
+    """Return a cell that starts a script as a process, as the standard library does it."""
+    start = "process = subprocess.Popen([sys.executable, '-c', program])"
+    return f'import subprocess\nimport sys\n\nprogram = """{script}"""\n{start}\n'
+
+
+def started_by_asyncio(script: str) -> str:
+    """Return a cell that starts a script as a process without waiting, as asyncio does it."""
+    start = "process = await asyncio.create_subprocess_exec(sys.executable, '-c', program)"
+    return f'import asyncio\nimport sys\n\nprogram = """{script}"""\n{start}\n'
 
 
 def _parts(code: str) -> tuple[str, str]:

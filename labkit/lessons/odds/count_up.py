@@ -123,7 +123,7 @@ node = rclpy.create_node('loop')
 publisher = node.create_publisher(Int16, 'odds', 1)
 
 
-def work():
+def work(publisher):
     for number in range(1, 2001, 2):
         if not rclpy.ok():
             break
@@ -131,8 +131,41 @@ def work():
         time.sleep(1 / 5)
 
 
-threading.Thread(target=work, daemon=True).start()
+threading.Thread(target=work, args=[publisher], daemon=True).start()
 """,
+        ),
+        Style(
+            'a fast timer, and every fourth call counts',
+            """
+import rclpy
+from std_msgs.msg import Int16
+
+node = rclpy.create_node('one')
+publisher = node.create_publisher(Int16, 'odds', 10)
+calls = 0
+
+
+def on_timer():
+    global calls
+    if calls % 4 == 0:
+        publisher.publish(Int16(data=calls // 2 + 1))
+    calls += 1
+
+
+node.create_timer(0.05, on_timer)
+lab.spin(node)
+""",
+        ),
+        Style(
+            'in a namespace, with the full name of the topic',
+            changed(
+                _ODDS,
+                (
+                    "super().__init__('odd_source')",
+                    "super().__init__('add_one', namespace='sums')",
+                ),
+                ("'odds', 10", "'/odds', 10"),
+            ),
         ),
         Style('own process', in_process(_ODDS), process=True),
     ],
@@ -196,6 +229,57 @@ threading.Thread(target=work, daemon=True).start()
             two_copies(_ODDS),
             'Two copies of the node run at once',
             process=True,
+        ),
+        Wrong(
+            'a third too slow',
+            changed(_ODDS, ('create_timer(0.2,', 'create_timer(0.3,')),
+            '1.5 times too slow',
+        ),
+        Wrong(
+            'three per cent too slow',
+            changed(_ODDS, ('create_timer(0.2,', 'create_timer(0.206,')),
+            '1.03 times too slow',
+        ),
+        Wrong(
+            'every 5 s',
+            changed(_ODDS, ('create_timer(0.2,', 'create_timer(5,')),
+            'A rate in Hz and a period in seconds were mixed up',
+        ),
+        Wrong(
+            'ends at 19',
+            changed(
+                _ODDS,
+                (
+                    '        self.number += 2\n',
+                    '        self.number += 2\n        if self.number > 19:\n'
+                    '            self.timer.cancel()\n',
+                ),
+            ),
+            'They stop coming.',
+        ),
+        Wrong(
+            'starts over at 100',
+            changed(_ODDS, ('self.number += 2', 'self.number = (self.number + 2) % 100')),
+            'The values start over',
+        ),
+        Wrong(
+            'each number twice',
+            changed(
+                _ODDS,
+                (
+                    '        self.publisher.publish(msg)\n',
+                    '        self.publisher.publish(msg)\n        self.publisher.publish(msg)\n',
+                ),
+            ),
+            'Twice as many messages come as were asked for',
+        ),
+        Wrong(
+            'right first, wrong later',
+            changed(
+                _ODDS,
+                ('self.number += 2', 'self.number += 2 if self.number < 61 else 4'),
+            ),
+            'The step changes',
         ),
     ],
 )

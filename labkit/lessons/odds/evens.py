@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from labkit.exercises import Exercise, Outcome, Solution, Style, Wrong, changed
 from labkit.exercises.clauses import Answers
 from labkit.exercises.draws import draw_int16s
-from labkit.lessons._script import in_process
+from labkit.lessons._script import in_process, started_by_subprocess
 
 __all__ = ['evens']
 
@@ -42,6 +42,8 @@ def _explain(number: int, came: Sequence[int]) -> tuple[str, str]:
         )
     if number - 1 in came:
         return '1 is subtracted, and not added.', 'even.data = msg.data + 1'
+    if number < 0 and 1 - number in came:
+        return 'The sign of the number is lost.', 'even.data = msg.data + 1'
     if 2 * number in came:
         return 'The number is doubled. 1 becomes 2, but 3 becomes 6.', 'even.data = msg.data + 1'
     if came:
@@ -119,6 +121,51 @@ class Postman(Node):
 postman = lab.spin(Postman())
 """,
         ),
+        Style(
+            'a thread that takes from a queue',
+            """
+import queue
+import threading
+
+import rclpy
+from std_msgs.msg import Int16
+
+node = rclpy.create_node('worker')
+publisher = node.create_publisher(Int16, 'evens', 10)
+todo = queue.Queue()
+node.create_subscription(Int16, 'odds', lambda msg: todo.put(msg.data), 10)
+
+
+def work(todo, publisher):
+    while rclpy.ok():
+        publisher.publish(Int16(data=todo.get() + 1))
+
+
+threading.Thread(target=work, args=[todo, publisher], daemon=True).start()
+lab.spin(node)
+""",
+        ),
+        Style(
+            'a name that the lesson has used',
+            changed(_EVENS, ("super().__init__('evens')", "super().__init__('announcer')")),
+        ),
+        Style(
+            'an executor of its own, in a thread',
+            changed(
+                _EVENS,
+                (
+                    'from rclpy.node',
+                    'import threading\n\nfrom rclpy.executors import MultiThreadedExecutor\n'
+                    'from rclpy.node',
+                ),
+                (
+                    'evens = lab.spin(Evens())\n',
+                    'executor = MultiThreadedExecutor()\nexecutor.add_node(Evens())\n'
+                    'threading.Thread(target=executor.spin, daemon=True).start()\n',
+                ),
+            ),
+        ),
+        Style('own process, started here', started_by_subprocess(in_process(_EVENS))),
         Style(
             'own process',
             in_process(_EVENS),
@@ -204,6 +251,116 @@ postman = lab.spin(Postman())
                 ('from rclpy', 'from time import sleep\n\nfrom rclpy'),
             ),
             'While a callback runs, no other one can',
+        ),
+        Wrong(
+            'answers twice',
+            changed(
+                _EVENS,
+                (
+                    '        self.publisher.publish(even)\n',
+                    '        self.publisher.publish(even)\n        self.publisher.publish(even)\n',
+                ),
+            ),
+            'A message is answered more than once.',
+        ),
+        Wrong(
+            'passes on, and answers',
+            changed(
+                _EVENS,
+                (
+                    '        even = Int16()',
+                    '        self.publisher.publish(msg)\n        even = Int16()',
+                ),
+            ),
+            'What came in goes out as well',
+        ),
+        Wrong(
+            'repeats its answer',
+            changed(
+                _EVENS,
+                (
+                    "super().__init__('evens')\n",
+                    "super().__init__('evens')\n        self.even = Int16()\n"
+                    '        self.timer = self.create_timer(0.2, self.on_timer)\n',
+                ),
+                (
+                    '        even = Int16()\n        even.data = msg.data + 1\n'
+                    '        self.publisher.publish(even)\n',
+                    '        self.even.data = msg.data + 1\n\n'
+                    '    def on_timer(self):\n        self.publisher.publish(self.even)\n',
+                ),
+            ),
+            'a timer or a loop publishes it',
+        ),
+        Wrong(
+            'only the first time',
+            changed(
+                _EVENS,
+                (
+                    "super().__init__('evens')\n",
+                    "super().__init__('evens')\n        self.even = None\n",
+                ),
+                (
+                    '        even = Int16()\n        even.data = msg.data + 1\n'
+                    '        self.publisher.publish(even)\n',
+                    '        self.even = self.even or Int16(data=msg.data + 1)\n'
+                    '        self.publisher.publish(self.even)\n',
+                ),
+            ),
+            'does not depend on the number that came',
+        ),
+        Wrong(
+            'positive numbers only',
+            changed(_EVENS, ('even.data = msg.data + 1', 'even.data = abs(msg.data) + 1')),
+            'The sign of the number is lost.',
+        ),
+        Wrong(
+            'ends after five',
+            changed(
+                _EVENS,
+                (
+                    "super().__init__('evens')\n",
+                    "super().__init__('evens')\n        self.count = 0\n",
+                ),
+                (
+                    '        even = Int16()\n',
+                    '        self.count += 1\n        if self.count > 5:\n            return\n'
+                    '        even = Int16()\n',
+                ),
+            ),
+            'messages were answered rightly, others not',
+        ),
+        Wrong(
+            'answers another topic, too',
+            changed(
+                _EVENS,
+                (
+                    "Int16, 'odds', self.on_odd, 10)\n",
+                    "Int16, 'odds', self.on_odd, 10)\n"
+                    "        self.create_subscription(Int16, 'ones', self.on_odd, 10)\n",
+                ),
+            ),
+            'What comes on /ones is answered, too.',
+        ),
+        Wrong(
+            'answers three seconds later',
+            changed(
+                _EVENS,
+                (
+                    "super().__init__('evens')\n",
+                    "super().__init__('evens')\n        self.waiting = []\n"
+                    '        self.create_timer(3.0, self.on_timer)\n',
+                ),
+                (
+                    '        even = Int16()\n        even.data = msg.data + 1\n'
+                    '        self.publisher.publish(even)\n',
+                    '        self.waiting.append(msg.data)\n\n    def on_timer(self):\n'
+                    '        for number in self.waiting:\n'
+                    '            self.publisher.publish(Int16(data=number + 1))\n'
+                    '        self.waiting.clear()\n',
+                ),
+            ),
+            'The answers wait for a timer',
         ),
     ],
 )

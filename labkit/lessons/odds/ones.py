@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from labkit.exercises import Exercise, Outcome, Solution, Style, Wrong, changed
 from labkit.exercises.clauses import Publishes, Says
-from labkit.lessons._script import in_process
+from labkit.lessons._script import in_process, started_by_asyncio, started_by_subprocess
 
 __all__ = ['ones']
 
@@ -93,21 +93,136 @@ node = lab.spin(rclpy.create_node('loop'))
 publisher = node.create_publisher(Int16, 'ones', 10)
 
 
-def work():
+def work(publisher):
     rate = node.create_rate(10)
     for _ in range(600):
         publisher.publish(Int16(data=1))
         rate.sleep()
 
 
-threading.Thread(target=work, daemon=True).start()
+threading.Thread(target=work, args=[publisher], daemon=True).start()
 """,
         ),
         Style(
-            'own process',
-            in_process(_ONES),
-            process=True,
+            'a loop that sleeps, in a thread',
+            """
+import threading
+import time
+
+import rclpy
+from std_msgs.msg import Int16
+
+node = rclpy.create_node('sleeper')
+publisher = node.create_publisher(Int16, 'ones', 10)
+
+
+def work(publisher):
+    while rclpy.ok():
+        publisher.publish(Int16(data=1))
+        time.sleep(0.1)
+
+
+threading.Thread(target=work, args=[publisher], daemon=True).start()
+""",
         ),
+        Style(
+            'a fast timer, and every tenth call counts',
+            changed(
+                _ONES,
+                (
+                    "super().__init__('ones')\n",
+                    "super().__init__('ones')\n        self.calls = 0\n",
+                ),
+                ('create_timer(0.1,', 'create_timer(0.01,'),
+                (
+                    '        msg = Int16()\n',
+                    '        self.calls += 1\n        if self.calls % 10:\n            return\n'
+                    '        msg = Int16()\n',
+                ),
+            ),
+        ),
+        Style(
+            'a fast timer that looks at the clock',
+            changed(
+                _ONES,
+                (
+                    "super().__init__('ones')\n",
+                    "super().__init__('ones')\n        self.due = self.get_clock().now()\n",
+                ),
+                ('create_timer(0.1,', 'create_timer(0.01,'),
+                (
+                    '        msg = Int16()\n',
+                    '        if self.get_clock().now() < self.due:\n            return\n'
+                    '        self.due += Duration(seconds=0.1)\n        msg = Int16()\n',
+                ),
+                ('from rclpy.node', 'from rclpy.duration import Duration\nfrom rclpy.node'),
+            ),
+        ),
+        Style(
+            "a fast timer that looks at the computer's clock",
+            changed(
+                _ONES,
+                (
+                    "super().__init__('ones')\n",
+                    "super().__init__('ones')\n        self.due = time.monotonic()\n",
+                ),
+                ('create_timer(0.1,', 'create_timer(0.02,'),
+                (
+                    '        msg = Int16()\n',
+                    '        if time.monotonic() < self.due:\n            return\n'
+                    '        self.due += 0.1\n        msg = Int16()\n',
+                ),
+                ('from rclpy.node', 'import time\n\nfrom rclpy.node'),
+            ),
+        ),
+        Style(
+            'kept for those who come late',
+            changed(
+                _ONES,
+                (
+                    "create_publisher(Int16, 'ones', 10)",
+                    "create_publisher(\n            Int16, 'ones', "
+                    'QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)\n        )',
+                ),
+                (
+                    'from rclpy.node import Node\n',
+                    'from rclpy.node import Node\n'
+                    'from rclpy.qos import DurabilityPolicy, QoSProfile\n',
+                ),
+            ),
+        ),
+        Style(
+            'a name that the lesson has used, and a name that is remapped',
+            """
+from rclpy.node import Node
+from std_msgs.msg import Int16
+
+counter = Node('counter', cli_args=['--ros-args', '-r', 'number:=/ones'])
+publisher = counter.create_publisher(Int16, 'number', 10)
+counter.create_timer(0.1, lambda: publisher.publish(Int16(data=1)))
+lab.spin(counter)
+""",
+        ),
+        Style(
+            'an executor of its own, in a thread',
+            """
+import threading
+
+import rclpy
+from rclpy.executors import MultiThreadedExecutor
+from std_msgs.msg import Int16
+
+node = rclpy.create_node('ones')
+publisher = node.create_publisher(Int16, 'ones', 10)
+node.create_timer(0.1, lambda: publisher.publish(Int16(data=1)))
+executor = MultiThreadedExecutor()
+executor.add_node(node)
+threading.Thread(target=executor.spin, daemon=True).start()
+""",
+        ),
+        Style('own process', in_process(_ONES), process=True),
+        Style('own process, started here', started_by_subprocess(in_process(_ONES))),
+        Style('own process, started by asyncio', started_by_asyncio(in_process(_ONES))),
     ],
     wrong=[
         Wrong(
@@ -167,6 +282,84 @@ threading.Thread(target=work, daemon=True).start()
             'ten times too fast',
             changed(_ONES, ('create_timer(0.1,', 'create_timer(0.01,')),
             'times too fast',
+        ),
+        Wrong(
+            'a fifth too slow',
+            changed(_ONES, ('create_timer(0.1,', 'create_timer(0.125,')),
+            '1.25 times too slow',
+        ),
+        Wrong(
+            'a quarter too fast',
+            changed(_ONES, ('create_timer(0.1,', 'create_timer(0.08,')),
+            '1.25 times too fast',
+        ),
+        Wrong(
+            'ends after ten',
+            changed(
+                _ONES,
+                ("super().__init__('ones')\n", "super().__init__('ones')\n        self.n = 0\n"),
+                (
+                    '        msg = Int16()\n',
+                    '        self.n += 1\n        if self.n == 10:\n'
+                    '            self.timer.cancel()\n        msg = Int16()\n',
+                ),
+            ),
+            'They stop coming.',
+        ),
+        Wrong(
+            'ten at once, each second',
+            changed(
+                _ONES,
+                ('create_timer(0.1,', 'create_timer(1.0,'),
+                (
+                    '        self.publisher.publish(msg)\n',
+                    '        for _ in range(10):\n            self.publisher.publish(msg)\n',
+                ),
+            ),
+            'They come in bursts, or with pauses.',
+        ),
+        Wrong(
+            'publishes twice',
+            changed(
+                _ONES,
+                (
+                    '        self.publisher.publish(msg)\n',
+                    '        self.publisher.publish(msg)\n        self.publisher.publish(msg)\n',
+                ),
+            ),
+            'Twice as many messages come as were asked for',
+        ),
+        Wrong(
+            'right first, wrong later',
+            changed(
+                _ONES,
+                ("super().__init__('ones')\n", "super().__init__('ones')\n        self.n = 0\n"),
+                ('msg.data = 1', 'self.n += 1\n        msg.data = 1 if self.n < 100 else 0'),
+            ),
+            'that were right',
+        ),
+        Wrong(
+            'a single message',
+            """
+import rclpy
+from std_msgs.msg import Int16
+
+node = lab.spin(rclpy.create_node('ones'))
+publisher = node.create_publisher(Int16, 'ones', 10)
+publisher.publish(Int16(data=1))
+""",
+            'The node has no timer',
+        ),
+        Wrong(
+            'not spun',
+            changed(_ONES, ('lab.spin(Ones())', 'Ones()')),
+            'Hand the node over: lab.spin(node)',
+        ),
+        Wrong(
+            'a quarter too fast, in a process of its own',
+            changed(in_process(_ONES), ('create_timer(0.1,', 'create_timer(0.08,')),
+            '1.25 times too fast',
+            process=True,
         ),
     ],
 )
