@@ -144,7 +144,10 @@ robot = lab.spin(Node('first_node', cli_args=['--ros-args', '-r', '__node:=hello
             'a program that does not spin',
             changed(
                 in_process(_CLASS),
-                ('rclpy.spin(HelloRobot())', 'robot = HelloRobot()\n    time.sleep(60)'),
+                (
+                    'rclpy.spin(HelloRobot())',
+                    'robot = HelloRobot()\n    time.sleep(60)\n    robot.destroy_node()',
+                ),
                 ('import rclpy\nfrom', 'import time\n\nimport rclpy\nfrom'),
             ),
             'Its program does something else',

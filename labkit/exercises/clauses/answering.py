@@ -180,7 +180,8 @@ class Answers(Clause):
             if sent.topic != self.inner
         }
         other = next((v for _, v in left if v in others and v not in rights), None)
-        at, value = left[0]
+        # Of a text without letters, the echo is the answer: another one tells more.
+        at, value = next(((t, v) for t, v in left if v not in rights), left[0])
         answered = [v for t, v in heard if self.answer(v) == value and t <= at]
         before = [v for t, v in heard if t <= at]
         times = max(Counter(v for _, v in left if v in rights).values(), default=0)

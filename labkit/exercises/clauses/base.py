@@ -125,7 +125,8 @@ class Evidence:
         """
         scope, stimuli = self.probe.scope, _in_turn(tests)
         topics = {**scope.publishes, **scope.subscribes}
-        life = self.live(topics, _seconds(stimuli), [clause], stimuli, nodes=[node])
+        seconds = _seconds(stimuli) or LIFE_SEC
+        life = self.live(topics, seconds, [clause], stimuli, nodes=[node])
         evidence = replace(self, life=life)
         evidence.refuse_trouble(())
         return evidence

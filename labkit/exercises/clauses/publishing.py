@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import statistics
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from labkit.exercises.clauses.base import Clause, Evidence, Stream
 from labkit.exercises.expect import timing
 from labkit.exercises.expect.values import show, text_trouble
-from labkit.exercises.life import LIFE_SEC, Life
+from labkit.exercises.life import Life
 from labkit.exercises.verdict import Fail
 from labkit.exercises.watch import Sample, streams_of
 
@@ -122,31 +122,55 @@ class Publishes(Clause):
     def _judge_one_of_several(self, evidence: Evidence) -> str:
         """Judge a publisher of a topic that has several.
 
-        A message does not say who has sent it, so time passes for one node alone. What comes of
-        others meanwhile, of a thread or another process, comes in a count of its own.
+        A message does not say who has sent it, but each publisher counts its own ones.
         """
-        life, stream = self._alone(evidence)
-        if stream is None:
-            self._refuse_regular(life)
-            stream = self._among_others(evidence)
+        nodes = self._nodes(evidence)
+        found = self._right(evidence.life)
+        owners = [end.node for end in evidence.probe.publishers(self.topic) if end.node in nodes]
+        if len(found) == len(nodes) and sorted(owners) == nodes:
+            # One for each, whoever is who.
+            stream = found[nodes.index(self.by)]
+        else:
+            if not found:
+                self._refuse_many(evidence.life)
+            stream = self._alone(evidence) or self._among_others(evidence)
         evidence.streams[self.topic, self.by] = stream
         if not stream.exact:
             return f'{self.by} publishes about {self.hz:.3g} Hz on {self.topic}.'
         return self._say(evidence.publisher(self.topic, self.by), stream)
 
-    def _alone(self, evidence: Evidence) -> tuple[Life, Stream | None]:
-        """Return what came while time passed for this node alone, and its messages if right."""
-        topics = {self.topic: evidence.probe.scope.publishes[self.topic]}
-        life = evidence.live(topics, LIFE_SEC, [self], nodes=[self.by])
-        for samples in streams_of(life.on(self.topic)):
-            if self._trouble(samples, life) is None:
-                return life, Stream(self.topic, tuple(samples), True, life.seconds)
-        return life, None
+    def _nodes(self, evidence: Evidence) -> list[str]:
+        """Return the nodes that clauses ask for on the topic."""
+        ends = [(by, topic) for kind, topic, by in evidence.ends if kind == 'publisher']
+        return sorted(by for by, topic in ends if topic == self.topic)
 
-    def _refuse_regular(self, life: Life) -> None:
+    def _right(self, life: Life) -> list[Stream]:
+        """Return the messages of each publisher that does what the clause asks for."""
+        return [
+            Stream(self.topic, tuple(samples), True, life.seconds)
+            for samples in streams_of(life.on(self.topic))
+            if self._trouble(samples, life) is None
+        ]
+
+    def _alone(self, evidence: Evidence) -> Stream | None:
+        """Return what came while time passed for this node alone.
+
+        None if it is not right, but few messages: they may be of a thread, or another node's.
+
+        Raises:
+            Fail: It is not right.
+        """
+        life = evidence.alone(self, (), self.by).life
+        found = self._right(life)
+        if not found:
+            self._refuse_many(life)
+        return found[0] if found else None
+
+    def _refuse_many(self, life: Life) -> None:
+        """Raise Fail if there are so many messages that they follow ROS time, but wrongly."""
         for samples in streams_of(life.on(self.topic)):
             trouble = self._trouble(samples, life)
-            if trouble is not None and _is_regular(samples):
+            if trouble and (_is_regular(samples) or len(samples) > self.hz * life.seconds / 4):
                 self._refuse(trouble)
 
     def _among_others(self, evidence: Evidence) -> Stream:
@@ -155,21 +179,16 @@ class Publishes(Clause):
         Raises:
             Fail: There are fewer.
         """
-        probe, topic = evidence.probe, self.topic
+        probe, topic, nodes = evidence.probe, self.topic, self._nodes(evidence)
         source = evidence.publisher(topic, self.by)
-        nodes = sorted(
-            {by for kind, at, by in evidence.ends if (kind, at) == ('publisher', topic)}
-        )
         found = timing.at_rate(probe, topic, source.msg_type, self.hz, count=len(nodes))
         if len(found) >= len(nodes):
             samples = [sample for stream in found for sample in stream]
             return Stream(topic, tuple(samples), False, 0.0)
         timing.hanging(probe)
-        others = [replace(self, by=node)._alone(evidence)[1] for node in nodes if node != self.by]
-        # Those that follow ROS time are known. If somebody else talks, it may be this one.
-        exact = sum(stream is not None for stream in others)
         why, todo = timing.reason(probe, source)
-        if len(found) > exact:
+        # Those that follow ROS time are known. If somebody else talks, it may be this one.
+        if len(found) > len(self._right(evidence.life)):
             why = f'One of these nodes does not publish at this rate: {", ".join(nodes)}.'
             todo = 'Compare what they do, line by line.'
         raise Fail(

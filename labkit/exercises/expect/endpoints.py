@@ -216,7 +216,7 @@ def _refuse_qos(subscription: Endpoint) -> None:
 def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str) -> NoReturn:
     """Raise Fail with the likeliest reason why an endpoint is missing, or NotAttempted."""
     nodes = probe.attempt()
-    if not nodes:
+    if not nodes or probe.process_is_starting():
         raise NotAttempted
     expected = f'{by or "a node"} with a {_KINDS[kind][0]} {topic} ({msg_type})'
     others = probe.all_publishers() if kind == PUBLISHER else probe.all_subscriptions()

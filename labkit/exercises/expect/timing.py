@@ -110,7 +110,7 @@ def at_rate(
             if len(stream) > enough and _fits(_intervals(stream), 1.0 / hz, tolerance)
         ]
 
-    probe.wait(lambda: len(fitting()) >= count, (enough + 2) / hz + QUIET_SEC)
+    probe.wait(lambda: len(fitting()) >= count, (enough + 2) / hz + FOUND_SEC / 4)
     return fitting()
 
 
