@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-from labkit.exercises import (
-    Exercise,
-    NotAttempted,
-    Probe,
-    Solution,
-    Style,
-    Wrong,
-    changed,
-    expect,
-)
-from labkit.lessons._script import in_process
+from collections.abc import Collection
+
+from labkit.exercises import Exercise, Fail, NotAttempted, Outcome, Solution, Style, Wrong, changed
+from labkit.exercises.clauses import Clause, Evidence, Publishes
+from labkit.exercises.expect import show
+from labkit.lessons._script import in_process, started_by_subprocess
 from labkit.lessons.odds.stadium import GATES, VISITORS, wrong_gates
 
 __all__ = ['find_gate']
 
 STRING = 'std_msgs/msg/String'
 TOPIC = '/wrong_gate'
-# How long a publisher may be on its way from another process, or from a thread.
-PROCESS_SEC = 2.0
-THREAD_SEC = 0.2
 
 _INSPECTOR = """
 from rclpy.node import Node
@@ -45,49 +37,66 @@ inspector = lab.spin(Inspector())
 _DIFFERS = "!= 'std_msgs/msg/Int16'"
 
 
-def _judge_find_gate(probe: Probe) -> str:
-    from labkit.rosgraph.names import UNKNOWN_NODE
+class _NamesTheGate(Clause):
+    """Each message is the name of the gate that differs from the others."""
 
-    gates = wrong_gates()
-    if not gates:
-        raise NotAttempted('The stadium is closed. Run the cell with open_stadium() first.')
-    # The stadium is a young process itself, so a matcher would wait long for a publisher.
-    elsewhere = any(probe.node_object(name) is None for name in probe.node_names())
-    if not probe.wait(probe.attempt, PROCESS_SEC if elsewhere else THREAD_SEC):
-        raise NotAttempted(
-            f'Not attempted yet. Nobody publishes on {TOPIC}. Write your code in the cell above, '
-            'run that cell, then run this one again.'
-        )
-    source = expect.publisher(probe, TOPIC)
-    watch = expect.messages(probe, source, count=2)
-    probe.wait(lambda: False, 0.3)  # what else is said
-    # What rmw says of a node that the inspector's own process has only half discovered.
-    names = {str(name) for name in watch.values('data')} - {UNKNOWN_NODE}
-    wrong = sorted(name for name in names if f'/{name.strip().lstrip("/")}' not in gates)
-    if wrong:
-        why, todo = _explain(probe, wrong[0], len(names))
-        expect.that(
-            False,
-            expected=f'on {TOPIC} the name of the one gate whose type is not that of the others',
-            seen=f'data = {expect.show(sorted(names))}',
-            why=why,
-            todo=todo,
-        )
-    return f'{gates[0]} publishes another type on {VISITORS}, and you found it.'
+    text = (
+        'each message is the name of the wrong gate, such as `gate_x`; a slash before it is right'
+    )
+
+    def find(self, evidence: Evidence) -> None:
+        """Look whether there is a gate to be found."""
+        if not wrong_gates():
+            raise NotAttempted('The stadium is closed. Run the cell with open_stadium() first.')
+
+    def judge(self, evidence: Evidence) -> str:
+        """Compare the names."""
+        from labkit.rosgraph.names import UNKNOWN_NODE
+
+        gates = wrong_gates()
+        rights = {name for gate in gates for name in (gate, gate.lstrip('/'))}
+        # What rmw says of a node that the inspector's own process has only half discovered.
+        names = [n for n in evidence.streams[TOPIC, ''].values('data') if n != UNKNOWN_NODE]
+        wrong = [name for name in names if name not in rights]
+        if wrong:
+            why, todo = _explain(evidence, wrong[0], rights.intersection(names))
+            raise Fail(
+                f'on {TOPIC} the name of the one gate whose type is not that of the others, and '
+                'nothing else',
+                f'data = {show(list(dict.fromkeys(names)))}',
+                why=why,
+                todo=todo,
+            )
+        return f'{gates[0]} publishes another type on {VISITORS}, and you found it.'
 
 
-def _explain(probe: Probe, name: str, count: int) -> tuple[str, str]:
+def _explain(evidence: Evidence, name: str, found: Collection[str]) -> tuple[str, str]:
+    """Return what a wrong name shows, and the next step.
+
+    Args:
+        evidence: What was seen.
+        name: The wrong name.
+        found: The right names that came besides.
+    """
     look = f"Look at topic_type in get_publishers_info_by_topic('{VISITORS}')."
-    if count > 1:
+    bare = name.strip().lstrip('/')
+    gates = [gate.lstrip('/') for gate in GATES]
+    if found and bare in gates:
         return 'Several gates are named. Only one of them has another type.', look
-    if f'/{name.strip().lstrip("/")}' in GATES:
+    if bare in gates and bare == name.lstrip('/'):
         return f'{name} publishes Int16, as most gates do.', look
-    if name.strip().lower().lstrip('/') in [gate.lstrip('/') for gate in GATES]:
+    if bare in gates:
+        return 'There is a space too many beside the name.', 'Use info.node_name as it is.'
+    if bare.lower() in gates:
         return 'Capital and small letters differ in names.', 'Write the name as the graph does.'
     if '/msg/' in name:
         return 'That is a type. The name of the node is asked for.', 'Use info.node_name.'
-    if name.lstrip('/') in [topic.lstrip('/') for topic in probe.topics()]:
+    if bare in [topic.lstrip('/') for topic in evidence.probe.topics()]:
         return 'That is a topic. The name of the node is asked for.', 'Use info.node_name.'
+    if not name:
+        return 'The message was published as it was made: its field data is an empty text.', look
+    if any(gate in name for gate in gates):
+        return 'There is more in the text than the name.', 'Publish String(data=info.node_name).'
     return f'There is no gate called {name!r}.', look
 
 
@@ -96,7 +105,7 @@ find_gate = Exercise(
     task=f'One gate publishes another type on {VISITORS}. Find it, and publish its name as a '
     f'`String` on {TOPIC}, at least once a second.',
     publishes={TOPIC: STRING},
-    judge=_judge_find_gate,
+    clauses=(Publishes(TOPIC, 1.0, STRING, at_least=True), _NamesTheGate()),
     hints=[
         f'Ask the graph who publishes on {VISITORS}, as the lesson did for /goals.',
         'Each entry of get_publishers_info_by_topic() has a node_name and a topic_type. Print '
@@ -124,6 +133,49 @@ node.create_timer(0.2, lambda: publisher.publish(String(data='/' + name)))
 lab.spin(node)
 """,
         ),
+        Style(
+            'looked up once, in a thread that sleeps',
+            """
+import threading
+import time
+
+import rclpy
+from std_msgs.msg import String
+
+node = rclpy.create_node('referee_assistant')
+publisher = node.create_publisher(String, '/wrong_gate', 1)
+for info in node.get_publishers_info_by_topic('/visitors'):
+    if 'Int16' not in info.topic_type:
+        name = info.node_name
+
+
+def work(publisher, name):
+    while rclpy.ok():
+        publisher.publish(String(data=name))
+        time.sleep(0.7)
+
+
+threading.Thread(target=work, args=[publisher, name], daemon=True).start()
+""",
+        ),
+        Style(
+            'kept for those who come late, once a second',
+            changed(
+                _INSPECTOR,
+                (
+                    "create_publisher(String, 'wrong_gate', 10)",
+                    "create_publisher(\n            String, 'wrong_gate', "
+                    'QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)\n        )',
+                ),
+                (
+                    'from rclpy.node import Node\n',
+                    'from rclpy.node import Node\n'
+                    'from rclpy.qos import DurabilityPolicy, QoSProfile\n',
+                ),
+                ('create_timer(0.2,', 'create_timer(1,'),
+            ),
+        ),
+        Style('own process, started here', started_by_subprocess(in_process(_INSPECTOR))),
         Style(
             'own process',
             in_process(_INSPECTOR),
@@ -174,6 +226,72 @@ lab.spin(node)
             'other topic',
             changed(_INSPECTOR, ("'wrong_gate'", "'WrongGate'")),
             'The names differ in an underscore',
+        ),
+        Wrong(
+            'every 5 s',
+            changed(_INSPECTOR, ('create_timer(0.2,', 'create_timer(5,')),
+            'times too slow',
+        ),
+        Wrong(
+            'ends after ten',
+            changed(
+                _INSPECTOR,
+                (
+                    "super().__init__('inspector')\n",
+                    "super().__init__('inspector')\n        self.n = 0\n",
+                ),
+                (
+                    '    def on_timer(self):\n',
+                    '    def on_timer(self):\n        self.n += 1\n        if self.n > 10:\n'
+                    '            return\n',
+                ),
+            ),
+            'They stop coming.',
+        ),
+        Wrong(
+            'a name in a sentence',
+            changed(_INSPECTOR, ('data=info.node_name', "data=f'It is {info.node_name}'")),
+            'There is more in the text than the name.',
+        ),
+        Wrong(
+            'the right gate first, then all of them',
+            changed(
+                _INSPECTOR,
+                (
+                    "super().__init__('inspector')\n",
+                    "super().__init__('inspector')\n        self.n = 0\n",
+                ),
+                ('    def on_timer(self):\n', '    def on_timer(self):\n        self.n += 1\n'),
+                (f'info.topic_type {_DIFFERS}:', f'self.n > 50 or info.topic_type {_DIFFERS}:'),
+            ),
+            'Several gates are named.',
+        ),
+        Wrong(
+            'also the referee',
+            changed(
+                _INSPECTOR,
+                (
+                    "get_publishers_info_by_topic('/visitors'):",
+                    "get_publishers_info_by_topic('/goals'):\n"
+                    '            self.publisher.publish(String(data=info.node_name))\n'
+                    "        for info in self.get_publishers_info_by_topic('/visitors'):",
+                ),
+            ),
+            "There is no gate called 'referee'.",
+        ),
+        Wrong(
+            'published once',
+            changed(
+                _INSPECTOR,
+                ('self.timer = self.create_timer(0.2, self.on_timer)', 'self.on_timer()'),
+            ),
+            'The node has no timer',
+        ),
+        Wrong(
+            'a number of the graph for its name',
+            changed(_INSPECTOR, ('data=info.node_name', 'data=info.endpoint_type')),
+            'takes values of type str',
+            outcome=Outcome.ERROR,
         ),
     ],
 )
