@@ -2,56 +2,47 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import random
+from collections.abc import Sequence
+from dataclasses import dataclass
 
-from labkit.exercises import (
-    Exercise,
-    Fail,
-    Probe,
-    Solution,
-    Style,
-    Wrong,
-    changed,
-    expect,
+from labkit.exercises import Exercise, Fail, Solution, Style, Wrong, changed
+from labkit.lessons._script import in_process, started_by_subprocess
+from labkit.lessons.turtlebot.clauses import (
+    Begins,
+    DriveClause,
+    Hears,
+    Rate,
+    Stops,
+    driven,
+    short,
 )
-from labkit.lessons._script import in_process
-from labkit.lessons.turtlebot.drawing import observed
-from labkit.lessons.turtlebot.drive import (
-    EMPTY,
-    ODOMETRY,
-    TWIST,
-    Drive,
-    drive,
-    driver,
-    expect_rate,
-    expect_stop,
-    is_zero,
-    stands,
-)
-from labkit.lessons.turtlebot.mistakes import int_for_float, own_clock
-from labkit.sim.kinematics import Pose, Twist2
-
-if TYPE_CHECKING:
-    from labkit.rosgraph.endpoints import Endpoint
+from labkit.lessons.turtlebot.drive import EMPTY, ODOMETRY, TWIST, Drive
+from labkit.lessons.turtlebot.mistakes import first_time_only, int_for_float
+from labkit.lessons.turtlebot.trials import Trial
 
 __all__ = ['bot']
 
 STEPS = 20
+SIGN = '/go_home'
 HOME = (0.0, 0.0)
+# How old the odometry may be that a command follows, s: that of the step before is right, too.
+STEP_SEC = 0.1
+# How far a command may be from what is asked for, m/s.
+SAME = 1e-6
+# A drive that goes on for so long has no end, s; a right one takes 2 s.
+SECONDS = 5.0
 
 _BOT = """
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
-from rclpy.parameter import Parameter
 from std_msgs.msg import Empty
-
-SIM_TIME = Parameter('use_sim_time', value=True)
 
 
 class HomingBot(Node):
     def __init__(self):
-        super().__init__('homing_bot', parameter_overrides=[SIM_TIME])
+        super().__init__('homing_bot')
         self.publisher = self.create_publisher(Twist, 'cmd_vel', 10)
         self.create_subscription(Odometry, 'odom', self.on_odometry, 10)
         self.create_subscription(Empty, 'go_home', self.on_go, 10)
@@ -79,86 +70,122 @@ homing_bot = lab.spin(HomingBot())
 """
 
 
-def _judge_bot(probe: Probe) -> str:
-    source = driver(probe, '/go_home')
-    _expect_odometry(probe, source)
-    go = probe.sender('/go_home', EMPTY)
-    with observed() as drives:
-        for x in (0.2, -0.15):
-            found = drive(
-                probe,
-                source,
-                (x, 0.0, 0.0),
-                lambda: go({}),
-                until=stands(0.4),
-                seconds=5.0,
-                goals=[HOME],
+@dataclass(frozen=True)
+class _Gain(DriveClause):
+    """Each command asks for v = -x."""
+
+    @property
+    def text(self) -> str:
+        return '`linear.x` = -x with the newest odometry (or that of a step before), all else 0.0'
+
+    def look(self, found: Drive) -> None:
+        if not found.commands:
+            return
+        x = found.start.x
+        expected = f'the first command with linear.x = {-x:.2f} m/s where x = {x:.2f} m: v = -x'
+        if not found.moving:
+            raise Fail(
+                expected,
+                'only commands that say stop',
+                why='A robot that stands has the speed 0.0, and twist.twist in an Odometry is the '
+                'speed. The place is in pose.pose.',
+                todo='self.x = msg.pose.pose.position.x',
             )
-            drives.append(found)
-            _judge_drive(found, x)
-    return f'{STEPS} steps from x = 0.20 m to x = {drives[0].end.x:.2f} m, then stop.'
+        first = found.moving[0]
+        if first.v * x > 0:
+            raise Fail(
+                expected,
+                f'linear.x = {first.v:.2f} m/s: it drives away from home',
+                why='The sign is wrong. Where x is below 0 the robot has to drive forwards, where '
+                'it is above 0 backwards.',
+                todo='v = -x',
+            )
+        for number, command in enumerate(found.moving[: STEPS + 1], start=1):
+            known = [
+                pose.x
+                for pose in found.seen(
+                    command.at + found.margin, since=STEP_SEC + 2 * found.margin
+                )
+            ]
+            if command.w or command.others:
+                raise Fail(
+                    'linear.x = -x, and 0.0 in all other numbers',
+                    f'step {number} says {command}',
+                    why='The bot drives straight on: home is where x = 0, whatever y is.',
+                    todo='Set msg.linear.x alone.',
+                )
+            if min(known) - SAME <= -command.v <= max(known) + SAME:
+                continue
+            raise Fail(
+                f'v = -x at every step, so linear.x = {-known[-1]:.3f} m/s where '
+                f'x = {known[-1]:.3f} m',
+                f'linear.x = {command.v:.3f} m/s there, in step {number}',
+                why=_misconception(found, number),
+                todo='Let the callback keep x, and read it anew at each step.',
+            )
 
 
-def _expect_odometry(probe: Probe, source: Endpoint) -> None:
-    def hears(topic: str) -> bool:
-        return source.node in {other.node for other in probe.subscriptions(topic)}
+def _misconception(found: Drive, number: int) -> str:
+    v, x = found.moving[number - 1].v, found.start.x
+    if number == 1 and abs(v + found.start.y) < SAME:
+        return 'That is y. The first number of a position is x.'
+    if number == 1 and abs(x) > SAME:
+        return f'The gain is 1 here: v = -1.0 * x. This is {-v / x:.2g} * x, the other way.'
+    if v == found.moving[0].v:
+        return 'The command does not follow the newest odometry: it stays as it was at the start.'
+    return 'The command does not follow the newest odometry.'
 
-    # What another process subscribes to is seen piece by piece.
-    if not probe.wait_to_appear(lambda: hears('/odom')) and hears('/cmd_vel'):
+
+@dataclass(frozen=True)
+class _Steps(DriveClause):
+    """So many steps are taken."""
+
+    @property
+    def text(self) -> str:
+        return f'publish {STEPS} steps on `/cmd_vel` (`{short(TWIST)}`), ten a second (2 % off)'
+
+    def look(self, found: Drive) -> None:
+        count = len(found.moving)
+        if not count:
+            return
+        Rate().look(found)
+        if count == STEPS:
+            return
+        off = 'One too many.' if count == STEPS + 1 else 'One too few.'
         raise Fail(
-            f'{source.node} with a subscription to /odom ({ODOMETRY})',
-            f'{source.node} subscribes to /cmd_vel',
-            why='A Twist on /cmd_vel says how fast the robot shall be. Where it is, an Odometry '
-            'on /odom tells.',
-            todo="self.create_subscription(Odometry, 'odom', self.on_odometry, 10)",
+            f'{STEPS} steps',
+            f'{count} steps' + (', and no end' if found.cut else ''),
+            why=off
+            if abs(count - STEPS) == 1
+            else 'The steps are not counted, or not to the right number.',
+            todo=f'Count each step, and stop when {STEPS} are done.',
         )
-    expect.subscription(probe, '/odom', by=source.node)
 
 
-def _judge_drive(found: Drive, x: float) -> None:
-    first = found.moving[0].v if found.moving else 0.0
-    expected = f'the first command near linear.x = {-x:.2f} m/s where x = {x:.2f} m: v = -x'
-    if not found.moving:
-        raise Fail(
-            expected,
-            'only commands that say stop',
-            why='A robot that stands has the speed 0.0, and twist.twist in an Odometry is the '
-            'speed. The place is in pose.pose.',
-            todo='self.x = msg.pose.pose.position.x',
+def _draw() -> list[Trial]:
+    """Return two drives, one on each side of home."""
+    side = random.choice((-1, 1))
+    return [
+        Trial(
+            (way, random.uniform(-0.4, 0.4), random.uniform(-0.2, 0.2)),
+            goals=[HOME],
         )
-    if first * x > 0:
-        raise Fail(
-            expected,
-            f'linear.x = {first:.2f} m/s: it drives away from home',
-            why='The sign is wrong. Where x is below 0 the robot has to drive forwards, where it '
-            'is above 0 backwards.',
-            todo='v = -x',
-        )
-    expect_rate(found)
-    gaps = [abs(twist.v + seen.x) for (_, twist), seen in _moves(found)]
-    if max(gaps) > 0.05:
-        twist, seen = max(_moves(found), key=lambda item: abs(item[0][1].v + item[1].x))
-        raise Fail(
-            f'v = -x at every step, so linear.x = {-seen.x:.2f} m/s where x = {seen.x:.2f} m',
-            f'linear.x = {twist[1].v:.2f} m/s there',
-            why='The command does not follow the newest odometry.',
-            todo='Let the callback keep x, and read it anew at each step.',
-        )
-    count = len(found.moving)
-    if not STEPS - 1 <= count <= STEPS + 1:
-        raise Fail(
-            f'{STEPS} steps, then one stop command',
-            f'{count} steps' + (' and no end' if not found.stopped else ''),
-            why='The steps are not counted, or not to the right number.',
-            todo='Count each step, and stop when 20 are done.',
-        )
-    expect_stop(found)
+        for way in (side * random.uniform(0.12, 0.2), -side * random.uniform(0.12, 0.2))
+    ]
 
 
-def _moves(found: Drive) -> list[tuple[tuple[float, Twist2], Pose]]:
-    pairs = zip(found.commands, found.seen, strict=True)
-    return [(command, seen) for command, seen in pairs if not is_zero(command[1])]
+def _tell(drives: Sequence[Drive]) -> str:
+    steps = f'{STEPS} steps from x = {drives[0].start.x:.2f} m to x = {drives[0].end.x:.2f} m'
+    return f'{steps}, then stop. Each of {len(drives)} times.'
 
+
+_CLAUSES = (
+    Begins(SIGN, EMPTY),
+    Hears('/odom', ODOMETRY, SIGN),
+    _Steps(),
+    _Gain(),
+    Stops(),
+)
 
 _LOOP = """
 import threading
@@ -166,10 +193,9 @@ import threading
 import rclpy
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
-from rclpy.parameter import Parameter
 from std_msgs.msg import Empty
 
-node = rclpy.create_node('loop_bot', parameter_overrides=[Parameter('use_sim_time', value=True)])
+node = rclpy.create_node('loop_bot')
 pub = node.create_publisher(Twist, '/cmd_vel', 1)
 state = {'x': 0.0}
 started = threading.Event()
@@ -204,7 +230,8 @@ bot = Exercise(
     subscribes={'/odom': ODOMETRY, '/go_home': EMPTY},
     publishes={'/cmd_vel': TWIST},
     shared=['/cmd_vel'],
-    judge=_judge_bot,
+    clauses=_CLAUSES,
+    judge=driven((SIGN, EMPTY), _CLAUSES, _draw, _tell, seconds=SECONDS),
     hints=[
         'Three callbacks: the odometry keeps x, the message on /go_home sets a counter, the timer '
         'does one step.',
@@ -219,6 +246,58 @@ bot = Exercise(
     ),
     styles=[
         Style('a loop with a rate, in a thread', _LOOP),
+        Style(
+            'a thread that sleeps',
+            changed(
+                _LOOP,
+                ('import threading\n', 'import threading\nimport time\n'),
+                ('        rate = node.create_rate(10)\n', ''),
+                ('rate.sleep()', 'time.sleep(0.1)'),
+            ),
+        ),
+        Style(
+            'each tenth call of a fast timer',
+            changed(
+                _BOT,
+                ('create_timer(0.1,', 'create_timer(0.01,'),
+                ('        self.steps = 0\n', '        self.steps = self.calls = 0\n'),
+                (
+                    '    def on_timer(self):\n        if self.steps == 0:\n',
+                    '    def on_timer(self):\n        self.calls += 1\n'
+                    '        if self.steps == 0 or self.calls % 10:\n',
+                ),
+            ),
+        ),
+        Style(
+            'a fast timer that looks at the clock',
+            changed(
+                _BOT,
+                ('create_timer(0.1,', 'create_timer(0.005,'),
+                ('        self.steps = 0\n', '        self.steps = self.due = 0\n'),
+                (
+                    '    def on_timer(self):\n        if self.steps == 0:\n            return\n',
+                    '    def on_timer(self):\n        now = self.get_clock().now().nanoseconds\n'
+                    '        if self.steps == 0 or now < self.due:\n            return\n'
+                    '        self.due = max(self.due, now - 10**7) + 10**8\n',
+                ),
+            ),
+        ),
+        Style(
+            "a fast timer that looks at the computer's clock",
+            changed(
+                _BOT,
+                ('\nfrom geometry', '\nimport time\n\nfrom geometry'),
+                ('create_timer(0.1,', 'create_timer(0.005,'),
+                ('        self.steps = 0\n', '        self.steps = self.due = 0\n'),
+                (
+                    '    def on_timer(self):\n        if self.steps == 0:\n            return\n',
+                    '    def on_timer(self):\n        now = time.monotonic()\n'
+                    '        if self.steps == 0 or now < self.due:\n            return\n'
+                    '        self.due = max(self.due, now - 0.05) + 0.1\n',
+                ),
+            ),
+        ),
+        Style('started as a process', started_by_subprocess(in_process(_BOT))),
         Style('own process', in_process(_BOT), process=True),
     ],
     wrong=[
@@ -256,7 +335,103 @@ bot = Exercise(
             ),
             'the sensor sets the rate',
         ),
-        own_clock(_BOT),
+        first_time_only(_BOT, 'self.steps = 21'),
+        Wrong(
+            'drives all the time',
+            changed(
+                _BOT,
+                (
+                    '        if self.steps == 0:\n            return\n        self.steps -= 1\n',
+                    '        self.steps = 21\n',
+                ),
+            ),
+            'publishes without being asked to',
+        ),
+        Wrong('a step too few', changed(_BOT, ('steps = 21', 'steps = 20')), 'One too few'),
+        Wrong(
+            'twelve and a half commands a second',
+            changed(_BOT, ('create_timer(0.1,', 'create_timer(0.08,')),
+            'a command every 0.08 s (12.5 Hz)',
+        ),
+        Wrong(
+            'a period of 0',
+            changed(_BOT, ('create_timer(0.1,', 'create_timer(0.0,')),
+            'A timer has no period',
+        ),
+        Wrong(
+            'all at once',
+            changed(
+                _BOT,
+                ('= self.create_timer(0.1, self.on_timer)', '= None'),
+                (
+                    '        self.steps = 21\n',
+                    '        self.steps = 21\n        while self.steps:\n'
+                    '            self.on_timer()\n',
+                ),
+            ),
+            'A loop publishes them without a pause',
+        ),
+        Wrong(
+            'each command twice',
+            changed(
+                _BOT, ('publish(msg)\n', 'publish(msg)\n        self.publisher.publish(msg)\n')
+            ),
+            'is publish() called twice',
+        ),
+        Wrong(
+            'another gain', changed(_BOT, ('= -self.x', '= -1.1 * self.x')), 'The gain is 1 here'
+        ),
+        Wrong('y for x', changed(_BOT, ('position.x', 'position.y')), 'That is y.'),
+        Wrong(
+            'the place at the start',
+            changed(
+                _BOT,
+                ('        self.x = 0.0\n', '        self.x = self.start = 0.0\n'),
+                (
+                    '        self.steps = 21\n',
+                    '        self.steps = 21\n        self.start = self.x\n',
+                ),
+                ('= -self.x', '= -self.start'),
+            ),
+            'it stays as it was at the start',
+        ),
+        Wrong(
+            'turns a little',
+            changed(
+                _BOT,
+                (
+                    '            msg.linear.x = -self.x\n',
+                    '            msg.linear.x = -self.x\n            msg.angular.z = 0.1\n',
+                ),
+            ),
+            'The bot drives straight on',
+        ),
+        Wrong(
+            'a speed that is no number',
+            changed(_BOT, ('= -self.x', "= float('nan')")),
+            'The command does not follow the newest odometry',
+        ),
+        Wrong(
+            'says stop for ever',
+            changed(
+                _BOT,
+                (
+                    '        if self.steps == 0:\n            return\n        self.steps -= 1\n',
+                    '        if self.steps == 0:\n            self.publisher.publish(Twist())\n'
+                    '            return\n        self.steps -= 1\n',
+                ),
+            ),
+            'all of them stop commands',
+        ),
+        Wrong(
+            'says stop three times',
+            changed(
+                _BOT,
+                ('self.steps = 21', 'self.steps = 23'),
+                ('if self.steps > 0:\n            msg', 'if self.steps > 2:\n            msg'),
+            ),
+            'It stands, and still publishes.',
+        ),
         int_for_float(_BOT, '= -self.x', '= -int(10 * self.x)'),
         Wrong(
             'publishes when it is made, and not at the sign',

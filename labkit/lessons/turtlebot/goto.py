@@ -3,38 +3,36 @@
 from __future__ import annotations
 
 import math
+import random
+from collections.abc import Sequence
+from dataclasses import dataclass
 
-from labkit.exercises import (
-    Exercise,
-    Fail,
-    Probe,
-    Solution,
-    Style,
-    Wrong,
-    changed,
-    expect,
-)
+from labkit.exercises import Exercise, Fail, Solution, Style, Wrong, changed
 from labkit.lessons._script import in_process
-from labkit.lessons.turtlebot.drawing import observed
-from labkit.lessons.turtlebot.drive import (
-    ODOMETRY,
-    TWIST,
-    Drive,
-    drive,
-    driver,
-    expect_end,
-    expect_rate,
-    expect_stop,
-    stands,
+from labkit.lessons.turtlebot.clauses import (
+    Begins,
+    DriveClause,
+    Hears,
+    Rate,
+    Sensible,
+    Stops,
+    driven,
+    look_at_time,
 )
-from labkit.lessons.turtlebot.mistakes import int_for_float, own_clock
+from labkit.lessons.turtlebot.drive import ODOMETRY, TWIST, Drive, Point
+from labkit.lessons.turtlebot.mistakes import first_time_only, int_for_float
+from labkit.lessons.turtlebot.trials import Trial
 from labkit.sim.kinematics import wrap_angle
 
 __all__ = ['go_to']
 
 POSE2D = 'geometry_msgs/msg/Pose2D'
-NEAR = 0.1
+SIGN = '/goal'
+# How near it has to come, and how much further off it may stand after braking, m.
+NEAR, BRAKING = 0.05, 0.01
 SECONDS = 14.0
+# Goals are so far away, m.
+WAY = (0.4, 0.5)
 # Turning by less than this from the start is no decision, rad.
 TURNED = 0.15
 
@@ -44,14 +42,11 @@ import math
 from geometry_msgs.msg import Pose2D, Twist
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
-from rclpy.parameter import Parameter
-
-SIM_TIME = Parameter('use_sim_time', value=True)
 
 
 class GoTo(Node):
     def __init__(self):
-        super().__init__('go_to', parameter_overrides=[SIM_TIME])
+        super().__init__('go_to')
         self.publisher = self.create_publisher(Twist, 'cmd_vel', 10)
         self.create_subscription(Odometry, 'odom', self.on_odometry, 10)
         self.create_subscription(Pose2D, 'goal', self.on_goal, 10)
@@ -88,96 +83,115 @@ go_to = lab.spin(GoTo())
 """
 
 
-def _judge_go_to(probe: Probe) -> str:
-    source = driver(probe, '/goal')
-    expect.subscription(probe, '/odom', by=source.node)
-    send = probe.sender('/goal', POSE2D)
-    # The second goal lies where the angle jumps from pi to -pi.
-    trials = (((0.0, 0.0, 0.0), (0.5, 0.3)), ((0.3, 0.2, 2.6), (-0.2, -0.05)))
-    with observed() as drives:
-        for start, goal in trials:
-            found = drive(
-                probe,
-                source,
-                start,
-                lambda goal=goal: send({'x': goal[0], 'y': goal[1]}),  # type: ignore[misc]
-                until=stands(0.4),
-                seconds=SECONDS,
-                goals=[goal],
+@dataclass(frozen=True)
+class _Turns(DriveClause):
+    """It turns to the goal on the shorter way."""
+
+    @property
+    def text(self) -> str:
+        return 'turn towards its `x` and `y` on the shorter way'
+
+    def look(self, found: Drive) -> None:
+        goal, start = found.goals[0], found.start
+        bearing = math.atan2(goal[1] - start.y, goal[0] - start.x)
+        error = wrap_angle(bearing - start.yaw)
+        turns = [wrap_angle(pose.yaw - start.yaw) for _, pose in found.poses]
+        first = next((turn for turn in turns if abs(turn) > TURNED), 0.0)
+        if first * error >= 0:
+            return
+        expected = (
+            f'it turns by {error:.2f} rad, from its heading {start.yaw:.2f} rad to the direction '
+            f'of the goal, {bearing:.2f} rad'
+        )
+        if abs(bearing - start.yaw) > math.pi:
+            raise Fail(
+                expected,
+                'it turns the other way, the long way round',
+                why='Two angles were subtracted, and the difference was not wrapped: '
+                f'{bearing:.2f} - {start.yaw:.2f} = {bearing - start.yaw:.2f} rad is nearly a '
+                'full turn.',
+                todo='error = math.atan2(math.sin(error), math.cos(error))',
             )
-            drives.append(found)
-            _judge_drive(found, goal)
-    away = [
-        math.dist(found.end[:2], goal) for found, (_, goal) in zip(drives, trials, strict=True)
-    ]
-    return f'It came to {away[0]:.2f} m and {away[1]:.2f} m from its goals, and stands.'
-
-
-def _judge_drive(found: Drive, goal: tuple[float, float]) -> None:
-    _expect_turn(found, goal)
-    expect_rate(found)
-    away = math.dist(found.end[:2], goal)
-    if found.silent:
-        expect_stop(found)
-    if away > NEAR:
-        expect_end(found)
         raise Fail(
-            f'it comes to within {NEAR} m of x = {goal[0]} m, y = {goal[1]} m, in less than '
-            f'{SECONDS:.0f} s',
-            f'it came to x = {found.end.x:.2f} m, y = {found.end.y:.2f} m after '
-            f'{found.duration:.0f} s, {away:.2f} m away',
-            why='It does not keep turning towards the goal, or stops before it is there, or '
-            'drives on past it.' + _degrees(found),
+            expected,
+            f'it turns to the {"left" if first > 0 else "right"}, away from the goal',
+            why='The sign is wrong: the error is the direction of the goal minus the heading, and '
+            'a positive angular.z turns to the left.',
+            todo='error = math.atan2(dy, dx) - self.yaw',
+        )
+
+
+@dataclass(frozen=True)
+class _Arrives(DriveClause):
+    """It stands near the goal in the end."""
+
+    @property
+    def text(self) -> str:
+        return (
+            f'stop within {SECONDS:.0f} s, with `x` and `y` up to {NEAR} m off ({BRAKING} m more '
+            'for braking)'
+        )
+
+    def look(self, found: Drive) -> None:
+        look_at_time(found, SECONDS)
+        goal, end = found.goals[0], found.end
+        away = math.dist(end[:2], goal)
+        if not found.commands or away <= NEAR + BRAKING:
+            return
+        nearest = min(math.dist(pose[:2], goal) for _, pose in found.poses)
+        why = 'It does not keep turning towards the goal, or stops before it is there.'
+        if found.cut:
+            why = 'It is not there yet, or turns and drives without an end.'
+        elif nearest <= NEAR:
+            why = f'It came as near as {nearest:.2f} m, and drove on past the goal.'
+        elif away < 4 * NEAR and found.ending:
+            why = f'It stops too early: {NEAR} m are asked for.'
+        raise Fail(
+            f'it stands at x = {goal[0]:.2f} m, y = {goal[1]:.2f} m, up to {NEAR} m off',
+            f'it came to x = {end.x:.2f} m, y = {end.y:.2f} m after {found.duration:.1f} s, '
+            f'{away:.2f} m away',
+            why=why,
             todo='At each step: distance and direction of the goal, seen from the newest '
             'odometry.',
         )
-    expect_stop(found)
 
 
-def _expect_turn(found: Drive, goal: tuple[float, float]) -> None:
-    """Expect that it turns to the goal on the shorter way."""
-    start = found.start
-    bearing = math.atan2(goal[1] - start.y, goal[0] - start.x)
-    error = wrap_angle(bearing - start.yaw)
-    turns = [wrap_angle(pose.yaw - start.yaw) for _, pose in found.poses]
-    first = next((turn for turn in turns if abs(turn) > TURNED), 0.0)
-    expected = (
-        f'it turns by {error:.2f} rad, from its heading {start.yaw:.2f} rad to the direction of '
-        f'the goal, {bearing:.2f} rad'
-    )
-    strong = [abs(twist.w) for _, twist in found.commands[:5]]
-    if strong and max(strong) > 20 * abs(error):
-        raise Fail(
-            expected,
-            f'angular.z = {max(strong):.0f} rad/s at the start',
-            why=_degrees(found).strip() or 'The gain is much too high.',
-            todo='Leave out math.degrees(): math.atan2() gives radians, and ROS wants them.',
-        )
-    if first * error >= 0:
-        return
-    if abs(bearing - start.yaw) > math.pi:
-        raise Fail(
-            expected,
-            'it turns the other way, the long way round',
-            why='Two angles were subtracted, and the difference was not wrapped: '
-            f'{bearing:.2f} - {start.yaw:.2f} = {bearing - start.yaw:.2f} rad is nearly a full '
-            'turn.',
-            todo='error = math.atan2(math.sin(error), math.cos(error))',
-        )
-    raise Fail(
-        expected,
-        f'it turns to the {"left" if first > 0 else "right"}, away from the goal',
-        why='The sign is wrong: the error is the direction of the goal minus the heading, and a '
-        'positive angular.z turns to the left.',
-        todo='error = math.atan2(dy, dx) - self.yaw',
-    )
+def _draw() -> list[Trial]:
+    """Return three drives: to a side, to where the angle jumps from pi to -pi, to the other side.
+
+    In the second one the shorter way leads across the jump.
+    """
+    side = random.choice((-1, 1))
+    turn = random.uniform(0.5, 1.2)
+    return [
+        _trial(random.uniform(-0.6, 0.6), side * random.uniform(0.6, 1.4)),
+        _trial(side * (math.pi - turn / 2), side * turn),
+        _trial(random.uniform(-0.6, 0.6), -side * random.uniform(0.6, 1.4)),
+    ]
 
 
-def _degrees(found: Drive) -> str:
-    if max(abs(twist.w) for _, twist in found.commands) < 10:
-        return ''
-    return ' Its angles are degrees: angular.z of more than 10 rad/s is no turn of a robot.'
+def _trial(yaw: float, turn: float) -> Trial:
+    x, y = random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4)
+    way = random.uniform(*WAY)
+    goal: Point = x + way * math.cos(yaw + turn), y + way * math.sin(yaw + turn)
+    fields = {'x': goal[0], 'y': goal[1], 'theta': random.uniform(-3, 3)}
+    return Trial((x, y, yaw), fields, goals=[goal])
 
+
+def _tell(drives: Sequence[Drive]) -> str:
+    away = [math.dist(found.end[:2], found.goals[0]) for found in drives]
+    return f'It came to {", ".join(f"{d:.2f} m" for d in away)} from its goals, and stands.'
+
+
+_CLAUSES = (
+    Begins(SIGN, POSE2D),
+    Hears('/odom', ODOMETRY, SIGN),
+    Sensible(),
+    _Turns(),
+    Rate(),
+    Stops(),
+    _Arrives(),
+)
 
 go_to = Exercise(
     name='go_to',
@@ -185,7 +199,8 @@ go_to = Exercise(
     subscribes={'/odom': ODOMETRY, '/goal': POSE2D},
     publishes={'/cmd_vel': TWIST},
     shared=['/cmd_vel'],
-    judge=_judge_go_to,
+    clauses=_CLAUSES,
+    judge=driven((SIGN, POSE2D), _CLAUSES, _draw, _tell, seconds=SECONDS),
     hints=[
         'dx and dy lead from the robot to the goal. math.hypot(dx, dy) is how far it is, '
         'math.atan2(dy, dx) is its direction.',
@@ -206,6 +221,39 @@ go_to = Exercise(
                 _GO_TO,
                 ('            if abs(error) < 0.5:\n                msg', '            msg'),
                 ('= 0.2', '= max(0.0, 0.2 * math.cos(error))'),
+            ),
+        ),
+        Style(
+            'backs up where that is shorter, never',
+            changed(_GO_TO, ('1.5 * error', 'max(-2.0, min(2.0, 3.0 * error))')),
+        ),
+        Style(
+            'by math.remainder, with a cosine',
+            changed(
+                _GO_TO,
+                (
+                    'math.atan2(math.sin(error), math.cos(error))',
+                    'math.remainder(error, math.tau)',
+                ),
+                (
+                    '            if abs(error) < 0.5:\n                msg.linear.x = 0.2\n',
+                    '            msg.linear.x = 0.15 * max(0.0, math.cos(error)) ** 3\n',
+                ),
+            ),
+        ),
+        Style(
+            'each tenth call of a fast timer',
+            changed(
+                _GO_TO,
+                ('create_timer(0.1,', 'create_timer(0.01,'),
+                (
+                    '        self.goal = None\n\n',
+                    '        self.goal = None\n        self.calls = 0\n\n',
+                ),
+                (
+                    '        if self.goal is None:\n',
+                    '        self.calls += 1\n        if self.goal is None or self.calls % 10:\n',
+                ),
             ),
         ),
         Style('own process', in_process(_GO_TO), process=True),
@@ -244,7 +292,52 @@ go_to = Exercise(
             changed(_GO_TO, ('< 0.05', '< 0.0')),
             'It does not end',
         ),
-        own_clock(_GO_TO),
+        first_time_only(_GO_TO, 'self.goal = msg'),
+        Wrong(
+            'odometry from another topic',
+            changed(_GO_TO, ("Odometry, 'odom'", "Odometry, 'odometry'")),
+            '/odom',
+        ),
+        Wrong(
+            'eight commands a second',
+            changed(_GO_TO, ('create_timer(0.1,', 'create_timer(0.125,')),
+            'a command every 0.125 s (8 Hz)',
+        ),
+        Wrong('stops too early', changed(_GO_TO, ('< 0.05', '< 0.15')), 'It stops too early'),
+        Wrong(
+            'too slow',
+            changed(_GO_TO, ('= 0.2', '= 0.03')),
+            'after the message',
+        ),
+        Wrong(
+            'stops on its way',
+            changed(
+                _GO_TO,
+                (
+                    '        msg = Twist()\n',
+                    '        msg = Twist()\n        if 0.2 < math.hypot(dx, dy) < 0.22:\n'
+                    '            self.publisher.publish(msg)\n            self.x += 0.02\n'
+                    '            return\n',
+                ),
+            ),
+            'It stops on its way',
+        ),
+        Wrong(
+            'a root of a number below 0',
+            changed(
+                _GO_TO,
+                (
+                    '= 1.5 * error',
+                    "= 1.5 * error if dx else 0.0\n            msg.linear.z = float('nan')",
+                ),
+            ),
+            'linear.z = nan',
+        ),
+        Wrong(
+            'turns to theta',
+            changed(_GO_TO, ('math.atan2(dy, dx) - self.yaw', 'self.goal.theta - self.yaw')),
+            '',
+        ),
         int_for_float(_GO_TO, '= 0.2', '= 1'),
     ],
 )

@@ -4,13 +4,7 @@ from __future__ import annotations
 
 from labkit.exercises import Outcome, Wrong, changed
 
-__all__ = ['int_for_float', 'own_clock']
-
-
-def own_clock(code: str) -> Wrong:
-    """Return a solution without the parameter that lets it follow the clock of the robot."""
-    without = changed(code, (', parameter_overrides=[SIM_TIME]', ''))
-    return Wrong('its own clock', without, 'The node follows its own clock')
+__all__ = ['first_time_only', 'int_for_float']
 
 
 def int_for_float(code: str, old: str, new: str) -> Wrong:
@@ -26,4 +20,21 @@ def int_for_float(code: str, old: str, new: str) -> Wrong:
         changed(code, (old, new)),
         'takes values of type float',
         outcome=Outcome.ERROR,
+    )
+
+
+def first_time_only(code: str, line: str) -> Wrong:
+    """Return a solution that drives at the first sign, and never again.
+
+    Args:
+        code: The solution.
+        line: The line of the callback that begins a drive.
+    """
+    old = f'        {line}\n'
+    new = f'        if not self.used:\n            self.used = True\n            {line}\n'
+    made = '        self.publisher ='
+    return Wrong(
+        'the first time only',
+        changed(code, (made, f'        self.used = False\n{made}'), (old, new)),
+        'Something is used up by the first drive',
     )

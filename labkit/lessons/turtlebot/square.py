@@ -3,52 +3,53 @@
 from __future__ import annotations
 
 import math
+import random
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import NoReturn
 
-from labkit.exercises import Exercise, Fail, Probe, Solution, Style, Wrong, changed
+from labkit.exercises import Exercise, Fail, Solution, Style, Wrong, changed
 from labkit.lessons._script import in_process
-from labkit.lessons.turtlebot.drawing import observed
-from labkit.lessons.turtlebot.drive import (
-    EMPTY,
-    TWIST,
-    Drive,
-    describe,
-    drive,
-    driver,
-    expect_end,
-    expect_rate,
-    expect_stop,
-    stands,
+from labkit.lessons.turtlebot.clauses import (
+    Begins,
+    DriveClause,
+    Rate,
+    Sensible,
+    Stops,
+    driven,
+    look_at_time,
 )
-from labkit.lessons.turtlebot.mistakes import int_for_float, own_clock
-from labkit.sim.kinematics import Motion, Pose
+from labkit.lessons.turtlebot.drive import EMPTY, TWIST, Drive, Point
+from labkit.lessons.turtlebot.mistakes import first_time_only, int_for_float
+from labkit.lessons.turtlebot.trials import Trial
+from labkit.sim.kinematics import Motion, Pose, wrap_angle
 from labkit.views.arena_picture import two
 
 __all__ = ['square']
 
+SIGN = '/go_square'
 SIDE = 0.4
 # How far it may be off a corner, m.
 NEAR = 0.1
 # As long as that a command counts, s.
 STEP_SEC = 0.1
-# Not in the origin, and not along an axis: a square is one wherever it begins.
-START = (0.1, -0.4, 0.3)
 # Seen from the start: x ahead, y to the left, m.
 CORNERS = ((0.0, 0.0), (SIDE, 0.0), (SIDE, SIDE), (0.0, SIDE), (0.0, 0.0))
 SECONDS = 22.0
+# What it turns while it drives is none of the turns on the spot, m/s; it may be so much, rad.
+DRIVES = 0.05
+CURVED = math.pi
 
 _SQUARE = """
 from geometry_msgs.msg import Twist
 from rclpy.node import Node
-from rclpy.parameter import Parameter
 from std_msgs.msg import Empty
-
-SIM_TIME = Parameter('use_sim_time', value=True)
 
 
 class Square(Node):
     def __init__(self):
-        super().__init__('square', parameter_overrides=[SIM_TIME])
+        super().__init__('square')
         self.publisher = self.create_publisher(Twist, 'cmd_vel', 10)
         self.create_subscription(Empty, 'go_square', self.on_go, 10)
         self.timer = self.create_timer(0.1, self.on_timer)
@@ -77,12 +78,9 @@ import math
 import rclpy
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
-from rclpy.parameter import Parameter
 from std_msgs.msg import Empty
 
-node = rclpy.create_node(
-    'by_odometry', parameter_overrides=[Parameter('use_sim_time', value=True)]
-)
+node = rclpy.create_node('by_odometry')
 pub = node.create_publisher(Twist, '/cmd_vel', 10)
 state = {'pose': None, 'todo': []}
 
@@ -124,72 +122,73 @@ lab.spin(node)
 """
 
 
-def _judge_square(probe: Probe) -> str:
-    source = driver(probe, '/go_square')
-    go = probe.sender('/go_square', EMPTY)
-    corners = [_on_floor(corner) for corner in CORNERS[1:]]
-    at_rest = stands(1.2)
-    with observed() as drives:
-        found = drive(
-            probe,
-            source,
-            START,
-            lambda: go({}),
-            until=lambda found: _degrees(found) or at_rest(found),
-            seconds=SECONDS,
-            goals=corners,
+@dataclass(frozen=True)
+class _Sides(DriveClause):
+    """It drives along the sides of a square, and turns at its corners."""
+
+    @property
+    def text(self) -> str:
+        return (
+            f'drive four straight sides of {SIDE} m, and between them turn 90 degrees to the left '
+            f'on the spot (corners up to {NEAR} m off)'
         )
-        drives.append(found)
-        _judge_drive(found)
-    away = math.dist(found.end[:2], found.start[:2])
-    return f'A square of {found.way():.2f} m, closed to {away:.2f} m, in {found.duration:.0f} s.'
+
+    def look(self, found: Drive) -> None:
+        if not found.commands:
+            return
+        path = _from_start(found)
+        near_enough = _near_enough(found)
+        after = 0
+        for number, corner in enumerate(CORNERS[1:], start=1):
+            near = [
+                i for i in range(after, len(path)) if math.dist(path[i], corner) <= near_enough
+            ]
+            if not near:
+                _refuse_corner(found, path[after:], number, corner)
+            after = near[0]
+        outside = max(path[: after + 1], key=_off_outline)
+        if _off_outline(outside) > near_enough:
+            raise Fail(
+                'a way along the sides of the square',
+                f'it came to ({two(outside[0])}, {two(outside[1])}), seen from the start',
+                why='A side is longer than it should be, or it leaves the square on its way.',
+                todo='Four times the same: a side, then a turn.',
+            )
+        curved = _turned_while_driving(found)
+        if found.exact and curved > CURVED:
+            raise Fail(
+                'straight sides, and turns on the spot',
+                f'it turned by {math.degrees(curved):.0f} degrees while it drove',
+                why='It drives a curve, which only passes the corners.',
+                todo='A command for a side has angular.z = 0.0, one for a turn linear.x = 0.0.',
+            )
 
 
-def _judge_drive(found: Drive) -> None:
-    if _degrees(found):
+@dataclass(frozen=True)
+class _Closes(DriveClause):
+    """It ends where it began."""
+
+    @property
+    def text(self) -> str:
+        return f'stop where you began (up to {NEAR} m off), within {SECONDS:.0f} s'
+
+    def look(self, found: Drive) -> None:
+        look_at_time(found, SECONDS)
+        if not found.commands or found.cut:
+            return
+        end = _from_start(found)[-1]
+        away = math.dist(end, CORNERS[-1])
+        if away <= _near_enough(found) and _rounds(found) < 1.5:
+            return
         raise Fail(
-            'turns of 90 degrees, which are 1.57 rad',
-            describe(max(found.moving, key=lambda twist: abs(twist.w))),
-            why='Its angles are degrees. ROS measures angles in radians, and turning rates in '
-            'radians a second. The robot can turn at 2.84 rad/s at most.',
-            todo='math.pi / 2 is a right angle.',
-        )
-    expect_rate(found)
-    path = _from_start(found)
-    # A busy computer holds commands up. Then what was commanded counts, and the drive may be off
-    # twice as far.
-    near_enough = 2 * NEAR if _is_square(_as_commanded(found)) else NEAR
-    expected = (
-        f'corners at {", ".join(f"({x}, {y})" for x, y in CORNERS[1:])} m, seen from the start'
-    )
-    after = 0
-    for number, corner in enumerate(CORNERS[1:], start=1):
-        near = [i for i in range(after, len(path)) if math.dist(path[i], corner) <= near_enough]
-        if not near:
-            if found.silent and number == 4:
-                expect_stop(found)
-            _refuse_corner(found, path[after:], number, corner, expected)
-        after = near[0]
-    if found.silent:
-        expect_stop(found)
-    if math.dist(path[-1], CORNERS[-1]) > near_enough:
-        expect_end(found)
-        raise Fail(
-            'it ends where it began',
-            f'it ends {math.dist(path[-1], CORNERS[-1]):.2f} m away from there',
-            why='It goes on after the fourth side.' + _no_stop(found),
+            'it ends where it began, after four sides',
+            f'it ends {away:.2f} m away from there, after {found.way():.1f} m',
+            why='It goes on after the fourth side.',
             todo='After the fourth side publish an empty Twist().',
         )
-    expect_stop(found)
 
 
-def _refuse_corner(
-    found: Drive,
-    path: list[tuple[float, float]],
-    number: int,
-    corner: tuple[float, float],
-    expected: str,
-) -> NoReturn:
+def _refuse_corner(found: Drive, path: Sequence[Point], number: int, corner: Point) -> NoReturn:
     x, y = min(path, key=lambda point: math.dist(point, corner))
     mirrored = (corner[0], -corner[1])
     if number == 2 and any(math.dist(point, mirrored) <= NEAR for point in path):
@@ -197,13 +196,14 @@ def _refuse_corner(
             'It turns to the right. A positive angular.z turns to the left.',
             'msg.angular.z above 0',
         )
+    elif not any(command.v for command in found.moving):
+        why, todo = 'No command says to drive ahead.', 'msg.linear.x = 0.2'
     elif number == 1:
         why, todo = (
             'The first side has another length, or it did not drive straight on.',
             'Way = speed times time: 0.2 m/s for 2 s, which is 20 steps of 0.1 s.',
         )
     elif number == 4:
-        expect_end(found)
         why, todo = (
             'The fourth side is missing, or the corners are no right angles.',
             'Four times the same: a side, then a turn.',
@@ -211,24 +211,39 @@ def _refuse_corner(
     else:
         why, todo = (
             'The turn is no right angle, or the side has another length. A right angle is '
-            '1.57 rad.' + _no_stop(found),
+            '1.57 rad.',
             'Angle = turning rate times time: 1.57 rad/s for 1 s, which is 10 steps of 0.1 s.',
         )
-    seen = f'it came no nearer to corner {number}, {corner}, than ({two(x)}, {two(y)})'
-    raise Fail(expected, seen, why=why, todo=todo)
+    corners = ', '.join(f'({x:g}, {y:g})' for x, y in CORNERS[1:])
+    raise Fail(
+        f'corners at {corners} m, seen from the start',
+        f'it came no nearer to corner {number}, ({corner[0]:g}, {corner[1]:g}), than '
+        f'({two(x)}, {two(y)})' + (', and was still driving' if found.cut else ''),
+        why=why,
+        todo=todo,
+    )
 
 
-def _as_commanded(found: Drive) -> list[tuple[float, float]]:
+def _near_enough(found: Drive) -> float:
+    """Return how far it may be off, m.
+
+    In real time a busy computer holds commands up. Then what was commanded counts, and the drive
+    may be off twice as far.
+    """
+    return NEAR if found.exact or not _is_square(_as_commanded(found)) else 2 * NEAR
+
+
+def _as_commanded(found: Drive) -> list[Point]:
     """Return the path of a robot that obeys each command for 0.1 s, seen from the start."""
     pose = Pose(0.0, 0.0, 0.0)
     path = [(pose.x, pose.y)]
-    for _, twist in found.commands:
-        pose = Motion(pose, twist).pose_at(STEP_SEC)
+    for command in found.commands:
+        pose = Motion(pose, command.twist).pose_at(STEP_SEC)
         path.append((pose.x, pose.y))
     return path
 
 
-def _is_square(path: list[tuple[float, float]]) -> bool:
+def _is_square(path: Sequence[Point]) -> bool:
     """Tell whether a path comes by all corners, in their order, and ends at the last one."""
     after = 0
     for corner in CORNERS[1:]:
@@ -239,23 +254,39 @@ def _is_square(path: list[tuple[float, float]]) -> bool:
     return math.dist(path[-1], CORNERS[-1]) <= NEAR
 
 
-def _degrees(found: Drive) -> bool:
-    """Tell whether it was told to turn as no robot can."""
-    return any(abs(twist.w) > 10 for twist in found.moving)
+def _off_outline(point: Point) -> float:
+    """Return how far a point is from the nearest side, m."""
+    return min(_away(point, *side) for side in pairwise(CORNERS))
 
 
-def _no_stop(found: Drive) -> str:
-    return '' if found.stopped else ' And it ends without a stop command.'
+def _away(point: Point, one: Point, other: Point) -> float:
+    """Return how far a point is from a line between two others along an axis, m."""
+    (x, y), xs, ys = point, *(sorted(pair) for pair in zip(one, other, strict=True))
+    return math.hypot(x - min(max(x, xs[0]), xs[1]), y - min(max(y, ys[0]), ys[1]))
 
 
-def _on_floor(corner: tuple[float, float]) -> tuple[float, float]:
+def _turned_while_driving(found: Drive) -> float:
+    """Return by how much it turned while it drove, rad."""
+    total = 0.0
+    for (at, one), (later, other) in pairwise(found.poses):
+        if math.dist(one[:2], other[:2]) > DRIVES * (later - at):
+            total += abs(wrap_angle(other.yaw - one.yaw))
+    return total
+
+
+def _rounds(found: Drive) -> float:
+    """Return how many times as long as the sides of the square its way is."""
+    return found.way() / (4 * SIDE)
+
+
+def _on_floor(corner: Point, start: tuple[float, float, float]) -> Point:
     """Return a corner in the frame of the odometry."""
-    (x, y, yaw), (ahead, left) = START, corner
+    (x, y, yaw), (ahead, left) = start, corner
     c, s = math.cos(yaw), math.sin(yaw)
     return x + c * ahead - s * left, y + s * ahead + c * left
 
 
-def _from_start(found: Drive) -> list[tuple[float, float]]:
+def _from_start(found: Drive) -> list[Point]:
     """Return the path as the robot saw it at the start: x ahead, y to the left."""
     start = found.start
     c, s = math.cos(start.yaw), math.sin(start.yaw)
@@ -266,13 +297,75 @@ def _from_start(found: Drive) -> list[tuple[float, float]]:
     return path
 
 
+def _draw() -> list[Trial]:
+    """Return two drives. They are not along an axis: a square is one wherever it begins."""
+    starts = [
+        (random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(-3, 3))
+        for _ in range(2)
+    ]
+    return [
+        Trial(start, goals=[_on_floor(corner, start) for corner in CORNERS[1:]])
+        for start in starts
+    ]
+
+
+def _tell(drives: Sequence[Drive]) -> str:
+    found = drives[0]
+    away = math.dist(found.end[:2], found.start[:2])
+    return f'A square of {found.way():.2f} m, closed to {away:.2f} m, in {found.duration:.0f} s.'
+
+
+_CLAUSES = (
+    Begins(SIGN, EMPTY),
+    Sensible(),
+    Rate(pause=1.0, pauses=8),
+    _Sides(),
+    Stops(rests=True),
+    _Closes(),
+)
+
+_LOOP = """
+import threading
+
+import rclpy
+from geometry_msgs.msg import Twist
+from std_msgs.msg import Empty
+
+node = lab.spin(rclpy.create_node('surveyor'))
+publisher = node.create_publisher(Twist, '/cmd_vel', 10)
+started = threading.Event()
+
+
+def send(v, w, steps):
+    msg = Twist()
+    msg.linear.x, msg.angular.z = v, w
+    for _ in range(steps):
+        publisher.publish(msg)
+        rate.sleep()
+
+
+def work():
+    while started.wait():
+        started.clear()
+        for _ in range(4):
+            send(0.2, 0.0, 20)
+            send(0.0, 1.5708, 10)
+            send(0.0, 0.0, 6)
+
+
+rate = node.create_rate(10)
+node.create_subscription(Empty, '/go_square', lambda msg: started.set(), 10)
+threading.Thread(target=work, daemon=True).start()
+"""
+
 square = Exercise(
     name='square',
     task='On /go_square a node drives a square of 0.4 m to the left, and stops where it began.',
     subscribes={'/go_square': EMPTY},
     publishes={'/cmd_vel': TWIST},
     shared=['/cmd_vel'],
-    judge=_judge_square,
+    clauses=_CLAUSES,
+    judge=driven((SIGN, EMPTY), _CLAUSES, _draw, _tell, seconds=SECONDS),
     hints=[
         'A square is four times the same: a side, then a turn of 90 degrees to the left.',
         'Way = speed * time. 0.2 m/s for 2 s are 0.4 m: 20 steps of 0.1 s. Angle = turning rate '
@@ -287,6 +380,25 @@ square = Exercise(
     ),
     styles=[
         Style('by odometry', _BY_ODOMETRY),
+        Style(
+            'without commands in its pauses',
+            changed(
+                _SQUARE,
+                ('2 * [(0.0, 0.0)]', '[(0.0, 0.0)] + 2 * [None]'),
+                ('5 * [(0.0, 0.0)]', '[(0.0, 0.0)] + 4 * [None]'),
+                (
+                    '        v, w = self.plan.pop(0)\n',
+                    '        step = self.plan.pop(0)\n        if step is None:\n'
+                    '            return\n',
+                ),
+                ('msg.angular.z = v, w', 'msg.angular.z = step'),
+            ),
+        ),
+        Style(
+            'without a last turn',
+            changed(_SQUARE, ('4 * (side + turn)', '(4 * (side + turn))[:-13]')),
+        ),
+        Style('a loop with a rate, in a thread', _LOOP),
         Style('own process', in_process(_SQUARE), process=True),
     ],
     wrong=[
@@ -309,7 +421,61 @@ square = Exercise(
             ),
             'leaves it driving',
         ),
-        own_clock(_SQUARE),
+        first_time_only(_SQUARE, 'self.plan = 4 * (side + turn)'),
+        Wrong('five sides', changed(_SQUARE, ('4 *', '5 *')), 'It goes on after the fourth side'),
+        Wrong('two squares', changed(_SQUARE, ('4 *', '8 *')), ''),
+        Wrong(
+            'twelve and a half commands a second',
+            changed(_SQUARE, ('create_timer(0.1,', 'create_timer(0.08,')),
+            'a command every 0.08 s (12.5 Hz)',
+        ),
+        Wrong(
+            'a circle',
+            changed(_SQUARE, ('4 * (side + turn)', '100 * [(0.178, 0.6283)] + [(0.0, 0.0)]')),
+            'The first side has another length',
+        ),
+        Wrong(
+            'round corners',
+            changed(
+                _SQUARE,
+                ('20 * [(0.2, 0.0)] + 2 * [(0.0, 0.0)]', '14 * [(0.2, 0.0)]'),
+                ('10 * [(0.0, 1.5708)] + 5 * [(0.0, 0.0)]', '8 * [(0.15, 1.96)]'),
+                ('(side + turn)', '(side + turn) + [(0.0, 0.0)]'),
+            ),
+            'It drives a curve',
+        ),
+        Wrong(
+            'never ends',
+            changed(
+                _SQUARE,
+                (
+                    '        self.publisher.publish(msg)\n',
+                    '        self.publisher.publish(msg)\n        self.plan.append((v, w))\n',
+                ),
+            ),
+            '',
+        ),
+        Wrong(
+            'says stop for ever',
+            changed(
+                _SQUARE,
+                (
+                    '            return\n',
+                    '            self.publisher.publish(Twist())\n            return\n',
+                ),
+            ),
+            'all of them stop commands',
+        ),
+        Wrong(
+            'rests for long at its end',
+            changed(_SQUARE, ('4 * (side + turn)', '4 * (side + turn) + 15 * [(0.0, 0.0)]')),
+            'It stands, and still publishes.',
+        ),
+        Wrong(
+            'too slow',
+            changed(_SQUARE, ('20 * [(0.2, 0.0)]', '50 * [(0.08, 0.0)]')),
+            'after the message',
+        ),
         int_for_float(_SQUARE, '(0.0, 1.5708)', '(0, 1.5708)'),
     ],
 )

@@ -2,61 +2,50 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+import random
+from collections.abc import Sequence
+from dataclasses import dataclass
 
-from labkit.exercises import (
-    Exercise,
-    Fail,
-    Probe,
-    Solution,
-    Style,
-    Wrong,
-    changed,
-    expect,
-)
+from labkit.exercises import Exercise, Fail, Solution, Style, Wrong, changed
+from labkit.exercises.clauses import Clause, Evidence
 from labkit.lessons._script import in_process
-from labkit.lessons.turtlebot.drawing import observed
-from labkit.lessons.turtlebot.drive import (
-    EMPTY,
-    TWIST,
-    Drive,
-    drive,
-    driver,
-    expect_end,
-    expect_stop,
-    stands,
-)
-from labkit.lessons.turtlebot.mistakes import int_for_float
+from labkit.lessons.turtlebot.clauses import Begins, DriveClause, Stops, driven, short
+from labkit.lessons.turtlebot.drive import EMPTY, SCAN, TWIST, Drive
+from labkit.lessons.turtlebot.mistakes import first_time_only, int_for_float
+from labkit.lessons.turtlebot.trials import Trial
 from labkit.sim.kinematics import BURGER
-
-if TYPE_CHECKING:
-    from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['wall']
 
-SCAN = 'sensor_msgs/msg/LaserScan'
+SIGN = '/go_wall'
 # The walls of the robot's room stand so far from the origin, m.
 WALL = 2.5
-# The robot shall stop when the wall is nearer than 0.5 m. The scan comes every 0.2 s, and it
-# drives at 0.2 m/s: it may have come a few centimetres nearer.
-NEAREST, FARTHEST = 0.36, 0.56
+# It has to drive so fast, m/s, and to stop if something ahead is nearer than this, m.
+SPEED, NEAR = 0.2, 0.5
+# How far a speed may be off, m/s; and a distance for which both is right, to stop and to go on, m.
+SAME, EITHER = 1e-6, 1e-3
+# Ahead are the first beam, and so many on each side of it.
+BESIDE = 9
+# The fewest commands a second, and how late the stop command may be, s.
+FEWEST_HZ = 5.0
+LATE_SEC = 0.2
+# The longest drive is 1 m, which takes 5 s.
+SECONDS = 9.0
 
 _GUARD = """
 import math
 
 from geometry_msgs.msg import Twist
 from rclpy.node import Node
-from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Empty
 
-SIM_TIME = Parameter('use_sim_time', value=True)
-
 
 class Guard(Node):
     def __init__(self):
-        super().__init__('guard', parameter_overrides=[SIM_TIME])
+        super().__init__('guard')
         self.publisher = self.create_publisher(Twist, 'cmd_vel', 10)
         self.create_subscription(LaserScan, 'scan', self.on_scan, qos_profile_sensor_data)
         self.create_subscription(Empty, 'go_wall', self.on_go, 10)
@@ -65,7 +54,9 @@ class Guard(Node):
         self.driving = False
 
     def on_scan(self, msg):
-        self.ahead = min(msg.ranges[:10] + msg.ranges[-10:])
+        # A distance of 0.0 means that the beam met nothing.
+        ahead = [way for way in msg.ranges[:10] + msg.ranges[-10:] if way > 0.0]
+        self.ahead = min(ahead, default=math.inf)
 
     def on_go(self, msg):
         self.driving = True
@@ -85,67 +76,236 @@ guard = lab.spin(Guard())
 """
 
 
-def _judge_wall(probe: Probe) -> str:
-    source = driver(probe, '/go_wall')
-    scan = expect.subscription(probe, '/scan', by=source.node)
-    _expect_sensor_qos(scan)
-    go = probe.sender('/go_wall', EMPTY)
-    ends = []
-    with observed() as drives:
-        # Ahead is a wall in both; in the second one there is another to the right.
-        for start, along in (((1.4, 0.0, 0.0), 'x'), ((2.1, 1.3, 1.5708), 'y')):
-            found = drive(probe, source, start, lambda: go({}), until=stands(0.4), seconds=14.0)
-            drives.append(found)
-            ends.append(_judge_drive(found, getattr(found.end, along)))
-    return f'It stopped {ends[0]:.2f} m and {ends[1]:.2f} m in front of the walls.'
+@dataclass(frozen=True)
+class _Scans(Clause):
+    """The node subscribes to the scan, as one subscribes to a sensor."""
+
+    @property
+    def text(self) -> str:
+        return f'subscribe to `/scan` (`{short(SCAN)}`), *best effort*'
+
+    def find(self, evidence: Evidence) -> None:
+        scan = evidence.subscription('/scan', evidence.subscription(SIGN).node)
+        if scan.qos.reliability.name != 'BEST_EFFORT':
+            raise Fail(
+                '/scan with reliability best_effort',
+                f'{scan.node} subscribes with reliability {scan.qos.reliability.name.lower()}',
+                why='A sensor sends without waiting for receipts: best effort. A subscription '
+                'that asks for receipts does not match it, and never hears it.',
+                todo='Pass qos_profile_sensor_data in the place of the depth.',
+            )
 
 
-def _expect_sensor_qos(scan: Endpoint) -> None:
-    if scan.qos.reliability.name != 'BEST_EFFORT':
+@dataclass(frozen=True)
+class _Speed(DriveClause):
+    """It drives straight ahead, at one speed."""
+
+    @property
+    def text(self) -> str:
+        return (
+            f'publish `linear.x` = {SPEED}, all else 0.0, on `/cmd_vel` (`{short(TWIST)}`), at '
+            f'least {FEWEST_HZ:.0f} times a second'
+        )
+
+    def look(self, found: Drive) -> None:
+        _look_how_often(found)
+        for command in found.moving:
+            if abs(command.v - SPEED) < SAME and not (command.w or command.others):
+                continue
+            if command.stops:
+                continue  # that is another clause's affair
+            raise Fail(
+                f'linear.x = {SPEED} m/s, and 0.0 in all other numbers',
+                f'a command with {command}',
+                why='It drives backwards.'
+                if command.v == -SPEED
+                else 'It has another speed.'
+                if not command.w
+                else 'It turns, so the beams look elsewhere than it goes.',
+                todo=f'msg.linear.x = {SPEED}',
+            )
+
+
+def _look_how_often(found: Drive) -> None:
+    """Raise Fail if the command is not repeated."""
+    gaps = found.gaps
+    if len(found.moving) == 1 and not found.ending:
+        gaps = [math.inf]
+    longest = 1.25 / FEWEST_HZ + found.margin
+    if not gaps or max(gaps) <= longest:
+        return
+    once = len(found.moving) < 3
+    raise Fail(
+        f'a command every {1 / FEWEST_HZ} s, or more often',
+        'one command' if once else f'{max(gaps):.2g} s from one to the next',
+        why='A robot obeys a command for one second only, and then stops. Whoever wants it '
+        'to drive on has to say so again and again.',
+        todo='Publish in a timer of 0.1 s.',
+    )
+
+
+@dataclass(frozen=True)
+class _StopsInTime(DriveClause):
+    """It stops at the first scan that sees something near ahead."""
+
+    @property
+    def text(self) -> str:
+        return (
+            f'stop within {LATE_SEC} s after the first scan with something ahead nearer than '
+            f'{NEAR} m'
+        )
+
+    def look(self, found: Drive) -> None:
+        near = [
+            at for at, ranges in found.scans if at >= found.sign and _ahead(ranges) < NEAR - EITHER
+        ]
+        expected = f'it stops within {LATE_SEC} s after the first scan below {NEAR} m ahead'
+        stop = found.ending[0].at if found.ending else math.inf
+        if near and stop > near[0] + LATE_SEC + found.margin:
+            way = min(_ahead(ranges) for at, ranges in found.scans if at <= stop)
+            if found.ending or found.cut:
+                raise Fail(
+                    expected,
+                    f'the wall came as near as {way:.2f} m',
+                    why='It saw the wall too late, or looked elsewhere: ranges[0] looks ahead, '
+                    'ranges[180] back.',
+                    todo=f'Compare the nearest of the beams ahead with {NEAR} m at each step.',
+                )
+
+
+@dataclass(frozen=True)
+class _DrivesOn(DriveClause):
+    """Nothing else stops it."""
+
+    @property
+    def text(self) -> str:
+        return 'nothing beside or behind stops it, nor a distance of `inf` or 0.0'
+
+    def look(self, found: Drive) -> None:
+        if not found.ending:
+            return
+        stop = found.ending[0].at + found.margin
+        heard = [ranges for at, ranges in found.scans if at <= stop]
+        if any(_ahead(ranges) < NEAR + EITHER for ranges in heard):
+            return
+        last = heard[-1] if heard else [math.inf]
+        why = 'It stopped too early: by its odometry, or at another distance.'
+        todo = f'Compare msg.ranges[:10] and msg.ranges[-10:] with {NEAR} m.'
+        if last[0] == 0.0:
+            why = '0.0 m was taken for a wall. A real scanner says 0.0 where a beam met nothing.'
+            todo = 'Leave distances of 0.0 out before you look for the nearest one.'
+        elif min((way for way in last if way > 0), default=math.inf) < NEAR:
+            why = 'Something beside or behind the robot was taken for the wall ahead. ranges[0] '
+            why += 'looks ahead, and the next beams go round to the left.'
+            todo = 'Look at the beams around index 0 only: msg.ranges[:10] and msg.ranges[-10:]'
+        elif found.way() < 0.02 and math.isinf(_ahead(last)):
+            why = 'It has hardly moved: it takes inf for a wall, or looks at a wrong beam.'
+        ahead = _ahead(last)
+        seen = 'nothing' if math.isinf(ahead) else f'{ahead:.2f} m'
         raise Fail(
-            '/scan with reliability best_effort',
-            f'{scan.node} subscribes with reliability {scan.qos.reliability.name.lower()}',
-            why='A sensor sends without waiting for receipts: best effort. A subscription that '
-            'asks for receipts does not match it, and never hears it.',
-            todo='Pass qos_profile_sensor_data in the place of the depth.',
+            f'it drives on until something ahead is nearer than {NEAR} m',
+            f'it stopped after {found.way():.2f} m, and the scan sees {seen} ahead',
+            why=why,
+            todo=todo,
         )
 
 
-def _judge_drive(found: Drive, reached: float) -> float:
-    """Return how far before the wall it stopped, m."""
-    gap = WALL - reached - BURGER.scan_x
-    expected = 'it drives on, and stops when something ahead is nearer than 0.5 m'
-    seen = f'it drove {found.way():.2f} m, and the wall ahead is {gap:.2f} m away'
-    if found.way() < 0.05:
-        raise Fail(
-            expected,
-            seen,
-            why='Something beside or behind the robot was taken for the wall ahead, or inf '
-            'for a wall. ranges[0] looks ahead, and the next beams go round to the left.',
-            todo='Look at the beams around index 0 only: msg.ranges[:10] and msg.ranges[-10:]',
-        )
-    if gap < NEAREST:
-        if found.silent:
-            expect_stop(found)
-        raise Fail(
-            expected,
-            seen,
-            why='It saw the wall too late, or looked elsewhere: ranges[0] looks ahead, '
-            'ranges[180] back.',
-            todo='Compare the nearest of the beams ahead with 0.5 m at each step.',
-        )
-    if gap > FARTHEST:
-        expect_end(found)
-        raise Fail(
-            expected,
-            seen,
-            why='It stopped too early: by its odometry, by a beam that does not look ahead, or '
-            'at another distance.',
-            todo='Look at msg.ranges[:10] and msg.ranges[-10:], and compare with 0.5 m.',
-        )
-    expect_stop(found)
-    return gap
+def _ahead(ranges: Sequence[float]) -> float:
+    """Return the nearest distance ahead, m; inf if there is nothing."""
+    beams = (*ranges[: BESIDE + 1], *ranges[-BESIDE:])
+    return min((way for way in beams if way > 0), default=math.inf)
 
+
+def _draw() -> list[Trial]:
+    """Return drives with nothing beside, with a wall beside, a post behind, and 0.0 for nothing.
+
+    Facing one of the four walls, as seen from the middle: `ahead` is how far it is, `side` how far
+    to the left the robot stands.
+    """
+    nine = math.pi / 2
+
+    def facing(turns: int, ahead: float, side: float) -> tuple[float, float, float]:
+        x, y = WALL - ahead - BURGER.scan_x, side
+        for _ in range(turns % 4):
+            x, y = -y, x
+        return x, y, turns * nine
+
+    # Lanes in which no post is nearer than 0.5 m; and those along a wall, in the corner at x = 2.5
+    # m, y = -2.5 m, where there is no post.
+    free = [(0, -0.6, 0.6), (1, -0.6, 0.6), (2, -0.5, 0.6), (3, -0.2, 0.9)]
+    turns, low, high = random.choice(free)
+    other, least, most = random.choice(free)
+    beside = WALL - random.uniform(0.3, 0.4)
+    along = random.choice(
+        (
+            facing(0, random.uniform(0.75, 1.0), -beside),
+            facing(3, random.uniform(0.75, 1.0), beside),
+        )
+    )
+    off = random.uniform(0.0, 0.05)
+    behind = random.choice(((-1.7, 1.62 + off, nine), (-1.62 - off, -1.7, 2 * nine)))
+    return [
+        Trial(facing(turns, random.uniform(0.8, 1.2), random.uniform(low, high))),
+        Trial(along),
+        Trial(behind),
+        Trial(
+            facing(other, random.uniform(1.2, 1.3), random.uniform(least, most)),
+            short_sighted=True,
+        ),
+    ]
+
+
+def _tell(drives: Sequence[Drive]) -> str:
+    gaps = [_ahead(found.scans[-1][1]) for found in drives]
+    return f'It stopped {", ".join(f"{gap:.2f} m" for gap in gaps)} in front of the walls.'
+
+
+_CLAUSES = (
+    Begins(SIGN, EMPTY),
+    _Scans(),
+    _Speed(),
+    _StopsInTime(),
+    _DrivesOn(),
+    Stops(),
+)
+
+_LOOP = """
+import math
+import threading
+
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import LaserScan
+from std_msgs.msg import Empty
+
+node = lab.spin(rclpy.create_node('look_out'))
+pub = node.create_publisher(Twist, '/cmd_vel', 10)
+state = {'ahead': math.inf}
+started = threading.Event()
+
+
+def on_scan(msg):
+    state['ahead'] = msg.ranges[0] or math.inf
+
+
+def run():
+    rate = node.create_rate(10)
+    while True:
+        started.wait()
+        started.clear()
+        while state['ahead'] >= 0.5:
+            msg = Twist()
+            msg.linear.x = 0.2
+            pub.publish(msg)
+            rate.sleep()
+        pub.publish(Twist())
+
+
+node.create_subscription(LaserScan, '/scan', on_scan, qos_profile_sensor_data)
+node.create_subscription(Empty, '/go_wall', lambda msg: started.set(), 1)
+threading.Thread(target=run, daemon=True).start()
+"""
 
 wall = Exercise(
     name='wall',
@@ -153,7 +313,8 @@ wall = Exercise(
     subscribes={'/scan': SCAN, '/go_wall': EMPTY},
     publishes={'/cmd_vel': TWIST},
     shared=['/cmd_vel'],
-    judge=_judge_wall,
+    clauses=_CLAUSES,
+    judge=driven((SIGN, EMPTY), _CLAUSES, _draw, _tell, seconds=SECONDS),
     hints=[
         'The scan has 360 distances. Number 0 looks ahead, number 90 to the left, 180 back.',
         'msg.ranges[:10] and msg.ranges[-10:] are the beams ahead. min() finds the nearest. A '
@@ -168,8 +329,25 @@ wall = Exercise(
     styles=[
         Style(
             'one beam',
-            changed(_GUARD, ('min(msg.ranges[:10] + msg.ranges[-10:])', 'msg.ranges[0]')),
+            changed(_GUARD, ('msg.ranges[:10] + msg.ranges[-10:]', 'msg.ranges[:1]')),
         ),
+        Style(
+            'in the callback of the scan',
+            changed(
+                _GUARD,
+                ('        self.timer = self.create_timer(0.1, self.on_timer)\n', ''),
+                ('default=math.inf)\n', 'default=math.inf)\n        self.on_timer()\n'),
+            ),
+        ),
+        Style(
+            'twenty commands a second, by the range of the sensor',
+            changed(
+                _GUARD,
+                ('create_timer(0.1,', 'create_timer(0.05,'),
+                ('if way > 0.0', 'if msg.range_min <= way <= msg.range_max'),
+            ),
+        ),
+        Style('functions and a loop with a rate', _LOOP),
         Style('own process', in_process(_GUARD), process=True),
     ],
     wrong=[
@@ -196,18 +374,55 @@ wall = Exercise(
         ),
         Wrong(
             'looks back',
-            changed(_GUARD, ('min(msg.ranges[:10] + msg.ranges[-10:])', 'msg.ranges[180]')),
+            changed(_GUARD, ('msg.ranges[:10] + msg.ranges[-10:]', 'msg.ranges[180:181]')),
             'ranges[180] back',
         ),
         Wrong(
             'does not wait for the next sign',
             changed(_GUARD, ('        else:\n            self.driving = False\n', '')),
-            'drives without being asked',
+            'It stands, and still publishes',
         ),
         Wrong(
             'another distance',
             changed(_GUARD, ('self.ahead > 0.5', 'self.ahead > 1.0')),
             'It stopped too early',
+        ),
+        first_time_only(_GUARD, 'self.driving = True'),
+        Wrong(
+            '0.0 is a wall',
+            changed(_GUARD, (' if way > 0.0]', ']'), ('[way for way in ', '['), (']]', ']')),
+            'A real scanner says 0.0 where a beam met nothing',
+        ),
+        Wrong('another speed', changed(_GUARD, ('= 0.2', '= 0.22')), 'It has another speed'),
+        Wrong('backwards', changed(_GUARD, ('= 0.2', '= -0.2')), 'It drives backwards'),
+        Wrong(
+            'says it once',
+            changed(
+                _GUARD,
+                (
+                    '            msg.linear.x = 0.2\n',
+                    '            msg.linear.x = 0.2\n            self.driving = False\n',
+                ),
+            ),
+            'has to say so again and again',
+        ),
+        Wrong(
+            'two commands a second',
+            changed(_GUARD, ('create_timer(0.1,', 'create_timer(0.5,')),
+            'has to say so again and again',
+        ),
+        Wrong('too near', changed(_GUARD, ('> 0.5', '> 0.4')), 'It saw the wall too late'),
+        Wrong(
+            'to the left',
+            changed(_GUARD, ('msg.ranges[:10] + msg.ranges[-10:]', 'msg.ranges[80:100]')),
+            'or looked elsewhere',
+        ),
+        Wrong(
+            'inf is a wall',
+            changed(
+                _GUARD, ('default=math.inf', 'default=0.0'), ('if way > 0.0', 'if 0.0 < way < 1.0')
+            ),
+            'takes inf for a wall',
         ),
         int_for_float(_GUARD, '= 0.2', '= 1'),
     ],

@@ -1,0 +1,352 @@
+"""How a check drives: it puts the robot somewhere, gives the sign to start, and looks on.
+
+The robot and the node under test step together, in virtual time: see `labkit.exercises.life`. So a
+drive takes a fraction of its time, and is the same on a busy machine. A node that keeps a time of
+its own, such as a thread with `time.sleep()`, is noticed and drives in real time.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import statistics
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+from labkit.exercises import Fail, Probe
+from labkit.exercises.clauses import Evidence
+from labkit.exercises.life import Life, Stimulus, live
+from labkit.lessons.turtlebot.drive import (
+    ODOMETRY,
+    SCAN,
+    TWIST,
+    Drive,
+    EndOfDrive,
+    Point,
+)
+from labkit.lessons.turtlebot.robot import OtherDrivers, place, short_sighted, walls_near
+
+if TYPE_CHECKING:
+    from labkit.exercises.virtual_time import VirtualTime
+    from labkit.exercises.watch import Watch
+    from labkit.rosgraph.endpoints import Endpoint
+
+__all__ = ['Trial', 'Trials']
+
+# The sign is given when time has passed for so long, s; no timer of a node ticks just then.
+SIGN_SEC = 0.25
+# How long nothing may be commanded before the first sign, s of virtual time.
+QUIET_SEC = 2.0
+# How exactly time is known for nodes of other processes, s.
+TICK_SEC = 0.05
+# Commands of nodes whose time is not exact are known to so much, s.
+REMOTE_MARGIN_SEC = 0.08
+REAL_MARGIN_SEC = 0.25
+# In real time: how long nothing may be commanded before a drive, and after it, s.
+REAL_QUIET_SEC = 0.4
+REAL_TAIL_SEC = 0.7
+# How long a drive may take longer than the task allows, until it is cut, s.
+LONGER_SEC = 1.0
+# After so much real time no further drive is begun in real time, s.
+ENOUGH_SEC = 8.0
+# How long it is looked whether commands come while time stands still, s of real time.
+STILL_SEC = 0.6
+# So many commands tell how long the time between two of them is.
+FEW, FEW_SEC = 4, 0.8
+# The usual time between commands differs by more than this share if a node keeps its own time.
+SAME = 0.3
+# More commands a second than this are a loop without a pause.
+FLOOD_HZ = 200.0
+POLL_SEC = 0.005
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A drive that is to be made.
+
+    Attributes:
+        start: Where the robot is put: x and y in m, yaw in rad.
+        fields: Fields of the message that gives the sign.
+        goals: Where the robot should come by, for the picture, m.
+        short_sighted: Whether the scanner says 0.0 where it sees nothing.
+    """
+
+    start: tuple[float, float, float]
+    fields: Mapping[str, Any] = field(default_factory=dict)
+    goals: Sequence[Point] = ()
+    short_sighted: bool = False
+
+
+@dataclass
+class Trials:
+    """The drives of one check.
+
+    Attributes:
+        probe: The probe of the check.
+        robot: The robot.
+        source: The publisher of the node under test.
+        sign: The topic on which it hears the sign to start, and the type there.
+        seconds: How long a drive may take, s.
+        real: Whether the node keeps a time of its own.
+    """
+
+    probe: Probe
+    robot: Any
+    source: Endpoint
+    sign: tuple[str, str]
+    seconds: float
+    real: bool = False
+
+    def __post_init__(self) -> None:
+        self._others = OtherDrivers(self.probe, self.source)
+        self._name = self.robot.get_fully_qualified_name()
+        self._began = 0.0
+        self._topics = {'/cmd_vel': TWIST, '/odom': ODOMETRY, self.sign[0]: self.sign[1]}
+
+    def run(
+        self, trials: Sequence[Trial], judge: Callable[[Drive], None], drives: list[Drive]
+    ) -> None:
+        """Make the drives, one after the other, and judge each of them.
+
+        Args:
+            trials: What is to be driven.
+            judge: Raises Fail if a drive is not what the task asks for.
+            drives: Gets the drives.
+
+        Raises:
+            Fail: One is not, or another node drives.
+            LearnerError: A callback has raised.
+        """
+        for trial in trials:
+            if self.real and time.monotonic() - self._began > ENOUGH_SEC:
+                return
+            with short_sighted(self.robot) if trial.short_sighted else contextlib.nullcontext():
+                self._make(trial, judge, drives)
+
+    def _make(self, trial: Trial, judge: Callable[[Drive], None], drives: list[Drive]) -> None:
+        if not self.real:
+            found = self._in_virtual_time(trial)
+            try:
+                if not self.real:
+                    self._note(found, drives)
+                    judge(found)
+                    return
+            except Fail:
+                if not self._keeps_own_time(trial, found):
+                    raise
+                drives.pop()
+            self.real = True
+            self._began = time.monotonic()
+        with self._others.counted():
+            found = self._in_real_time(trial)
+        self._note(found, drives)
+        judge(found)
+
+    def _note(self, found: Drive, drives: list[Drive]) -> None:
+        found.number = len(drives)
+        if found.poses:
+            found.walls = walls_near(self.robot, found.end)
+        drives.append(found)
+
+    # -- virtual time ---------------------------------------------------------------------------
+
+    def wait_until_quiet(self) -> None:
+        """Let time pass until nothing is commanded: an earlier drive may not be over.
+
+        Raises:
+            Fail: It goes on and on.
+        """
+        seen, last, waited = 0, 0.0, False
+
+        def quiet(now: float, watches: Mapping[str, Watch]) -> bool:
+            nonlocal seen, last, waited
+            if not waited:
+                self._others.wait(watches['/cmd_vel'])
+                waited = True
+            if len(watches['/cmd_vel']) > seen:
+                seen, last = len(watches['/cmd_vel']), now
+            return now > last + QUIET_SEC
+
+        with self._others.counted():
+            limit = self.seconds + LONGER_SEC + QUIET_SEC
+            life = self._live(limit, (), until=quiet)
+        commands = life.on('/cmd_vel')
+        if life.seconds >= limit:
+            found = Drive()
+            found.take((), commands)
+            still = ', all of them stop commands' if not found.moving else ''
+            raise Fail(
+                'a robot that nobody drives, before the sign to start is given',
+                f'{len(commands)} commands on /cmd_vel in {life.seconds:.0f} s{still}',
+                why=f'{self.source.node} publishes without being asked to, and does not end.',
+                todo=f'Begin when a message comes on {self.sign[0]}, and return in the timer as '
+                'long as there is nothing to do.',
+            )
+
+    def _in_virtual_time(self, trial: Trial) -> Drive:
+        stimulus = Stimulus(SIGN_SEC, *self.sign, trial.fields, ('/cmd_vel',))
+        with self._others.counted():
+            life = self._live(
+                SIGN_SEC + self.seconds + LONGER_SEC,
+                (stimulus,),
+                until=EndOfDrive(SIGN_SEC),
+                start=trial.start,
+            )
+        found = Drive(sign=SIGN_SEC, goals=trial.goals)
+        if life.remote:
+            found.margin = REMOTE_MARGIN_SEC
+        found.take(life.on('/odom'), life.on('/cmd_vel'), life.on('/scan'))
+        found.cut = life.seconds >= SIGN_SEC + self.seconds + LONGER_SEC
+        return found
+
+    def _live(
+        self,
+        seconds: float,
+        stimuli: Sequence[Stimulus],
+        *,
+        until: Callable[[float, Mapping[str, Watch]], bool],
+        start: tuple[float, float, float] | None = None,
+    ) -> Life:
+        """Let time pass for the robot and the node under test.
+
+        Raises:
+            Fail: Another node drives, a callback does not return, or there is no end of them.
+            LearnerError: A callback has raised.
+        """
+
+        def begin(passing: VirtualTime) -> None:
+            if start is not None:
+                place(self.robot, start)
+            passing.restart_timers()
+
+        life = live(
+            self.probe,
+            self._topics,
+            seconds,
+            stimuli=stimuli,
+            also={'/scan': SCAN},
+            nodes={self._name, self.source.node},
+            tick=TICK_SEC,
+            rest=TICK_SEC,
+            before=begin,
+            until=until,
+        )
+        self._others.refuse(life.on('/cmd_vel'))
+        evidence = Evidence(self.probe)
+        evidence.life = life
+        evidence.refuse_trouble(())
+        if not self.probe.in_this_process(self.source) and not life.remote:
+            self.real = True
+        return life
+
+    # -- a time of its own ----------------------------------------------------------------------
+
+    def _keeps_own_time(self, trial: Trial, found: Drive) -> bool:
+        """Tell whether the node does not follow the time of ROS, after a drive that is not right.
+
+        Such a node goes on while time stands still; or it looks at the computer's clock, and
+        commands as often in real time as it should.
+        """
+        if found.is_even or not found.commands:
+            return False
+        if self._goes_on_while_time_stands_still(trial):
+            return True
+        with self._others.counted():
+            real = self._in_real_time(trial, enough=FEW)
+        if len(real.commands) < FEW:
+            return False
+        period = statistics.median(b.at - a.at for a, b in pairwise(real.commands[:FEW]))
+        return not found.period or abs(period / found.period - 1.0) > SAME
+
+    def _goes_on_while_time_stands_still(self, trial: Trial) -> bool:
+        count = 0
+
+        def stand_still(now: float, watches: Mapping[str, Watch]) -> bool:
+            nonlocal count
+            commands = watches['/cmd_vel']
+            if now < SIGN_SEC or not len(commands):
+                return now > SIGN_SEC + 1.0
+            before, end = len(commands), time.monotonic() + STILL_SEC
+            while count < 2 and time.monotonic() < end:
+                time.sleep(POLL_SEC)
+                commands.pump()
+                count = len(commands) - before
+            return True
+
+        stimulus = Stimulus(SIGN_SEC, *self.sign, trial.fields)
+        with self._others.counted():
+            self._live(SIGN_SEC + 2.0, (stimulus,), until=stand_still, start=trial.start)
+        return count >= 2
+
+    # -- real time ------------------------------------------------------------------------------
+
+    def _in_real_time(self, trial: Trial, *, enough: int = 0) -> Drive:
+        """Let the robot and the node run, as they do without a check.
+
+        Args:
+            trial: What is to be driven.
+            enough: After so many commands it is enough, or after `FEW_SEC`; 0 for all of it.
+        """
+        probe, topics = self.probe, {**self._topics, '/scan': SCAN}
+        watches = {topic: probe.watch(topic, msg_type) for topic, msg_type in topics.items()}
+        try:
+            self._expect_quiet(watches['/cmd_vel'])
+            send = probe.sender(*self.sign)
+            place(self.robot, trial.start)
+            for watch in watches.values():
+                watch.clear()
+            probe.wait(lambda: len(watches['/odom']) > 1, 1.0)
+            sign = send(trial.fields)
+            found = Drive(sign=sign, goals=trial.goals, exact=False, margin=REAL_MARGIN_SEC)
+            ended, commands = EndOfDrive(sign, REAL_TAIL_SEC), watches['/cmd_vel']
+            end = sign + (FEW_SEC if enough else self.seconds + LONGER_SEC)
+            while (now := time.time()) < end and not ended(now, watches):
+                time.sleep(POLL_SEC)
+                for watch in watches.values():
+                    watch.pump()
+                probe.look(now - sign)
+                self._others.refuse(commands.samples)
+                if 0 < enough <= len(commands):
+                    break
+                self._refuse_flood(len(commands), now - sign)
+            found.cut = now >= end
+            found.take(watches['/odom'].samples, commands.samples, watches['/scan'].samples)
+            return found
+        finally:
+            for watch in watches.values():
+                watch.close()
+            probe.forget(watches.values())
+
+    def _expect_quiet(self, commands: Watch) -> None:
+        """Wait until nothing is commanded.
+
+        Raises:
+            Fail: It goes on and on.
+        """
+        end = time.monotonic() + self.seconds + LONGER_SEC
+        seen, last = 0, time.monotonic()
+        while time.monotonic() < last + REAL_QUIET_SEC:
+            time.sleep(POLL_SEC)
+            commands.pump()
+            self.probe.look(0.0)
+            self._others.refuse(commands.samples)
+            if len(commands) > seen:
+                seen, last = len(commands), time.monotonic()
+            if time.monotonic() > end:
+                raise Fail(
+                    'a robot that nobody drives, before the sign to start is given',
+                    f'{len(commands)} commands on /cmd_vel',
+                    why=f'{self.source.node} publishes without being asked to.',
+                    todo=f'Begin when a message comes on {self.sign[0]}.',
+                )
+
+    def _refuse_flood(self, count: int, seconds: float) -> None:
+        if count > FLOOD_HZ * (seconds + 1.0):
+            raise Fail(
+                'ten commands a second, or about so',
+                f'{count} commands on /cmd_vel in {seconds:.1f} s',
+                why='A loop publishes without a pause.',
+                todo='Publish in a timer of 0.1 s, one command each time.',
+            )
