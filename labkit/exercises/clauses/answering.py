@@ -134,6 +134,7 @@ class Answers(Clause):
             todo = 'Compare the value that is wanted with the one seen.'
         if not why and len(missing) < count:
             why = f'{count - len(missing)} of {count} messages were answered rightly, others not.'
+            todo = 'Do the same for each message that comes, whatever it says, and each time.'
         if not why:
             why = f'The message reached {hears.node}, but its callback did not publish.'
             todo = f'Publish on {self.outer} in the callback of the subscription to {self.inner}.'
@@ -282,7 +283,7 @@ class Logs(Clause):
                 'The callback does not log. print() shows a text here; the logger also tells all '
                 'other nodes of it.'
             )
-        if some:
+        if some and not here:
             why = 'Some messages are logged as they came, and this one is not.'
         raise Fail(
             f'{source.node} logs a line with {show([text])} when that comes on {self.topic}',
