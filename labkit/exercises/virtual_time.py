@@ -51,6 +51,9 @@ class VirtualTime:
         tick: As above; it may be changed on the way.
     """
 
+    # Where the last stretch of virtual time in this process ended, ns.
+    _latest = 0
+
     def __init__(
         self,
         moving: Sequence[Node],
@@ -80,8 +83,9 @@ class VirtualTime:
     def __enter__(self) -> VirtualTime:
         from labkit.background import compat
 
-        # Timers are due at this time by the computer's clock, so none is late or early.
-        self._start = self._now = time.time_ns()
+        # Timers are due at this time by the computer's clock, so none is late or early. But time
+        # does not go back from one stretch to the next: a node may have noted when to act again.
+        self._start = self._now = max(time.time_ns(), VirtualTime._latest)
         for node in self._all:
             clock: Any = node.get_clock()
             if clock.ros_time_is_active:
@@ -103,6 +107,7 @@ class VirtualTime:
         from labkit.background import compat
         from labkit.background.nodes import node_exists
 
+        VirtualTime._latest = self._now
         for node in self._all:
             if node not in self._was_active and node_exists(node):
                 compat.set_ros_time_is_active(node.get_clock(), False)  # type: ignore[arg-type]
