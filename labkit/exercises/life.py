@@ -179,6 +179,8 @@ def live(
         life.samples[topic] = [
             replace(sample, at=moments[max(bisect_right(starts, sample.stamp) - 1, 0)][1])
             for sample in watch.samples
+            # One that was published before may arrive only now.
+            if sample.stamp >= starts[0]
         ]
         watch.close()
     probe.forget(watches.values())
