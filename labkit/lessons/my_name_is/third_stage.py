@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass
 
-from labkit.exercises import Exercise, Outcome, Probe, Solution, Style, Wrong, changed, expect
-from labkit.lessons._script import in_process
-from labkit.lessons._stage import find_stage
+from labkit.exercises import Exercise, Outcome, Solution, Style, Wrong, changed, expect
+from labkit.exercises.clauses import Answers, Evidence
+from labkit.exercises.draws import draw_texts
+from labkit.lessons._script import in_process, started_by_subprocess
 from labkit.lessons.my_name_is.two_stages import STRING
 
 __all__ = ['third_stage']
 
 ENDING = '. Nice to meet you.'
-TESTS = ('My name is Zoe', 'They call me Tim')
 
 _POLITE = """
 from rclpy.node import Node
@@ -35,45 +35,36 @@ polite = lab.spin(Polite())
 _SUM = "msg.data + '. Nice to meet you.'"
 
 
-def _judge_third_stage(probe: Probe) -> str:
-    _refuse_shortcut(probe)
-    hears, says = find_stage(probe, '/complete', '/greeting', {'data': TESTS[0]})
-    expect.replies(
-        probe,
-        hears,
-        [{'data': text} for text in TESTS],
-        says,
-        lambda sent: sent['data'] + ENDING,
-        explain=_explain,
-    )
-    done = f'{hears.node} says {TESTS[0] + ENDING!r} when {TESTS[0]!r} comes.'
-    greetings = probe.watch('/greeting', STRING)
-    if probe.publishers('/complete') and probe.wait(lambda: len(greetings), 1.0):
-        return f'{done}\nThe whole chain says {greetings.values("data")[0]!r}.'
-    return f'{done}\nThe stages before it do not run at this moment.'
+@dataclass(frozen=True, eq=False)
+class _AtTheEnd(Answers):
+    """The last stage of a chain hears the one before it, and no earlier one."""
+
+    def find(self, evidence: Evidence) -> None:
+        """Look for the stage."""
+        probe = evidence.probe
+        names = {endpoint.node for endpoint in probe.publishers(self.outer)}
+        hears = {endpoint.node for endpoint in probe.subscriptions(self.inner)}
+        for endpoint in probe.subscriptions('/incomplete'):
+            expect.that(
+                endpoint.node not in names - hears,
+                expected=f'a third stage that subscribes to {self.inner}',
+                seen=f'{endpoint.node} subscribes to /incomplete',
+                why='It hears stage one and goes past stage two, so the first name is missing.',
+                todo=f"Write the topic as '{self.inner}'.",
+            )
+        super().find(evidence)
 
 
-def _refuse_shortcut(probe: Probe) -> None:
-    names = {endpoint.node for endpoint in probe.publishers('/greeting')}
-    hears = {endpoint.node for endpoint in probe.subscriptions('/complete')}
-    for endpoint in probe.subscriptions('/incomplete'):
-        expect.that(
-            endpoint.node not in names - hears,
-            expected='a third stage that subscribes to /complete',
-            seen=f'{endpoint.node} subscribes to /incomplete',
-            why='It hears stage one and goes past stage two, so the first name is missing.',
-            todo="Write the topic as '/complete'.",
-        )
-
-
-def _explain(sent: Mapping[str, Any], came: list[Any]) -> tuple[str, str]:
-    text = sent['data']
+def _explain(text: str, came: Sequence[str]) -> tuple[str, str]:
+    if not came:
+        return '', ''
     if text in came:
         return 'The text is passed on as it came: nothing is added.', f'msg.data + {ENDING!r}'
-    if came and not any(text in other for other in came):
+    if not any(text in other for other in came):
         return (
-            'What goes out does not hold the text that came in: the string is made beforehand.',
-            'Make the string in the callback, of msg.data.',
+            'What goes out does not hold the text that came in: the string is made beforehand, or '
+            'the text is changed.',
+            'Make the string in the callback, of msg.data as it is.',
         )
     beginning = next((other for other in came if other.startswith(text)), '')
     return expect.text_trouble(beginning, text + ENDING), 'Compare the two texts.'
@@ -85,7 +76,17 @@ third_stage = Exercise(
     '/greeting.',
     subscribes={'/complete': STRING},
     publishes={'/greeting': STRING},
-    judge=_judge_third_stage,
+    clauses=(
+        _AtTheEnd(
+            '/complete',
+            '/greeting',
+            f'for each text on `/complete`, publish that text with `{ENDING}` right behind it on '
+            '`/greeting` (both `std_msgs/msg/String`), once, within a second',
+            answer=lambda text: f'{text}{ENDING}',
+            draw=draw_texts,
+            explain=_explain,
+        ),
+    ),
     hints=[
         'Stage three is like stage two: it hears one topic and publishes on another one.',
         'It hears /complete. Stages one and two need not be changed.',
@@ -115,6 +116,66 @@ node.create_subscription(String, '/complete', bow, 5)
 lab.spin(node)
 """,
         ),
+        Style(
+            'a list and a timer',
+            """
+from rclpy.node import Node
+from std_msgs.msg import String
+
+
+class Patient(Node):
+    def __init__(self):
+        super().__init__('converter')
+        self.waiting = []
+        self.create_subscription(String, 'complete', self.waiting.append, 10)
+        self.publisher = self.create_publisher(String, 'greeting', 10)
+        self.create_timer(0.2, self.greet)
+
+    def greet(self):
+        while self.waiting:
+            text = self.waiting.pop(0).data
+            self.publisher.publish(String(data=text + '. Nice to meet you.'))
+
+
+patient = lab.spin(Patient())
+""",
+        ),
+        Style(
+            'names that are remapped',
+            """
+from rclpy.node import Node
+from std_msgs.msg import String
+
+names = ['--ros-args', '-r', 'heard:=/complete', '-r', 'said:=/greeting']
+node = Node('polite', namespace='house', cli_args=names)
+publisher = node.create_publisher(String, 'said', 10)
+
+
+def bow(text):
+    publisher.publish(String(data=''.join([text.data, '. Nice to meet you.'])))
+
+
+node.create_subscription(String, 'heard', bow, 10)
+lab.spin(node)
+""",
+        ),
+        Style(
+            'an executor of its own, in a thread',
+            changed(
+                _POLITE,
+                (
+                    'from rclpy.node',
+                    'import threading\n\nfrom rclpy.executors import MultiThreadedExecutor\n'
+                    'from rclpy.node',
+                ),
+                (
+                    'polite = lab.spin(Polite())\n',
+                    'executor = MultiThreadedExecutor()\nexecutor.add_node(Polite())\n'
+                    'threading.Thread(target=executor.spin, daemon=True).start()\n',
+                ),
+            ),
+        ),
+        Style('own process, started here', started_by_subprocess(in_process(_POLITE))),
         Style(
             'own process',
             in_process(_POLITE),
@@ -162,6 +223,103 @@ lab.spin(node)
             'misspelt',
             changed(_POLITE, ("'greeting'", "'greetings'")),
             'names must be equal to the last letter',
+        ),
+        Wrong(
+            'answers twice',
+            changed(
+                _POLITE,
+                (
+                    f'        self.publisher.publish(String(data={_SUM}))\n',
+                    f'        msg.data = {_SUM}\n        self.publisher.publish(msg)\n'
+                    '        self.publisher.publish(msg)\n',
+                ),
+            ),
+            'A message is answered more than once.',
+        ),
+        Wrong(
+            'passes on, and answers',
+            changed(
+                _POLITE,
+                (
+                    '        self.publisher.publish(',
+                    '        self.publisher.publish(msg)\n        self.publisher.publish(',
+                ),
+            ),
+            'What came in goes out as well',
+        ),
+        Wrong(
+            'small letters',
+            changed(_POLITE, ('msg.data + ', 'msg.data.lower() + ')),
+            'Make the string in the callback, of msg.data as it is.',
+        ),
+        Wrong(
+            'only texts of the chain',
+            changed(
+                _POLITE,
+                (
+                    '        self.publisher.publish(',
+                    "        if not msg.data.startswith('My name is '):\n            return\n"
+                    '        self.publisher.publish(',
+                ),
+            ),
+            'nothing on /greeting',
+        ),
+        Wrong(
+            'no empty text',
+            changed(
+                _POLITE,
+                (
+                    '        self.publisher.publish(',
+                    '        if not msg.data:\n            return\n'
+                    '        self.publisher.publish(',
+                ),
+            ),
+            'messages were answered rightly, others not',
+        ),
+        Wrong(
+            'repeats its answer',
+            changed(
+                _POLITE,
+                (
+                    "super().__init__('polite')\n",
+                    "super().__init__('polite')\n        self.text = ''\n"
+                    '        self.timer = self.create_timer(0.5, self.on_timer)\n',
+                ),
+                (
+                    f'        self.publisher.publish(String(data={_SUM}))\n',
+                    f'        self.text = {_SUM}\n\n    def on_timer(self):\n'
+                    '        self.publisher.publish(String(data=self.text))\n',
+                ),
+            ),
+            'a timer or a loop publishes it',
+        ),
+        Wrong(
+            'answers both stages',
+            changed(
+                _POLITE,
+                (
+                    "String, 'complete', self.on_text, 10)\n",
+                    "String, 'complete', self.on_text, 10)\n"
+                    "        self.create_subscription(String, 'incomplete', self.on_text, 10)\n",
+                ),
+            ),
+            'What comes on /incomplete is answered, too.',
+        ),
+        Wrong(
+            'only the first text',
+            changed(
+                _POLITE,
+                (
+                    "super().__init__('polite')\n",
+                    "super().__init__('polite')\n        self.text = ''\n",
+                ),
+                (
+                    f'        self.publisher.publish(String(data={_SUM}))\n',
+                    f'        self.text = self.text or {_SUM}\n'
+                    '        self.publisher.publish(String(data=self.text))\n',
+                ),
+            ),
+            'does not hold the text that came in',
         ),
     ],
 )

@@ -2,30 +2,20 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
-from labkit.exercises import (
-    Exercise,
-    Fail,
-    Probe,
-    Solution,
-    Style,
-    Wrong,
-    changed,
-    expect,
-)
-from labkit.lessons.my_name_is.two_stages import STRING
-
-if TYPE_CHECKING:
-    from labkit.rosgraph.endpoints import Endpoint
+from labkit.exercises import Exercise, Fail, Solution, Style, Wrong, changed, expect
+from labkit.exercises.clauses import Clause, Evidence, Test
+from labkit.exercises.draws import draw_texts
+from labkit.lessons.my_name_is.two_stages import OPENING, STRING, name_trouble
 
 __all__ = ['two_names']
 
-TEST = 'Her name is '
-# How long two answers may take, and the second name after them.
-ANSWER_SEC = 1.2
-AFTER_SEC = 0.2
+INNER, OUTER = '/incomplete', '/names'
+# How soon an answer has to come, s.
+WITHIN_SEC = 1.0
 
 _NAMES = """
 from rclpy.node import Node
@@ -46,77 +36,163 @@ class Introducer(Node):
 ada = lab.spin(Introducer('ada', 'Ada'))
 bob = lab.spin(Introducer('bob', 'Bob'))
 """
+_PUBLISH = '        self.publisher.publish(String(data=msg.data + self.first_name))\n'
 _START = _NAMES[_NAMES.index('ada = ') :].strip()
 
 
-def _judge_two_names(probe: Probe) -> str:
-    first = expect.publisher(probe, '/names')
-    # Nodes of a process of their own come into the graph one after the other.
-    probe.wait_to_appear(lambda: len({end.node for end in probe.publishers('/names')}) > 1)
-    _expect_two_nodes(probe, probe.publishers('/names'))
-    expect.subscription(probe, '/incomplete', by=first.node)
-    watch = probe.watch('/names', STRING)
-    probe.sender('/incomplete', STRING)({'data': TEST})
+class _TwoNodes(Clause):
+    """There are at least two nodes of different names, and each has both ends."""
 
-    def names() -> list[str]:
-        texts = [str(text) for text in watch.values('data')]
-        return [text.removeprefix(TEST) for text in texts if text.startswith(TEST)]
-
-    probe.wait(lambda: len(names()) > 1, ANSWER_SEC)
-    if not probe.wait(lambda: len(set(names())) > 1, AFTER_SEC):
-        expect.hanging(probe)
-        _refuse(names(), watch.values('data'))
-    both = sorted(set(names()))
-    expect.that(
-        all(name and name == name.strip() for name in both),
-        expected=f'{TEST!r} and a first name, on /names',
-        seen=f'data = {expect.show([TEST + name for name in both])}',
-        why='A name is missing, or there is a space too many beside it.',
-        todo='Publish msg.data + self.first_name.',
-    )
-    return f'On /names came {" and ".join(repr(TEST + name) for name in both)}.'
-
-
-def _expect_two_nodes(probe: Probe, publishers: Sequence[Endpoint]) -> None:
-    nodes = {endpoint.node for endpoint in publishers}
-    if len(nodes) > 1:
-        return
-    (name,) = nodes
-    why = (
-        'Were two nodes of the same name started? lab.spin() ends the first of them when the '
-        'second one comes.'
-    )
-    if probe.node_names().count(name) > 1:
-        why = 'Two nodes have the same name. ROS allows it, and nobody can tell them apart.'
-    elif len(publishers) > 1:
-        why = 'One node has two publishers. Two nodes are asked for.'
-    raise Fail(
-        'two nodes, of different names, that publish on /names',
-        f'{len(publishers)} publisher{"s" * (len(publishers) > 1)} on /names, of {name} alone',
-        why=why,
-        todo="Give the name of the node as an argument, too: Introducer('ada', 'Ada')",
+    text = (
+        'two nodes of different names, or more, subscribe to `/incomplete` and publish on '
+        '`/names` (both `std_msgs/msg/String`)'
     )
 
-
-def _refuse(names: Sequence[str], texts: Sequence[str]) -> NoReturn:
-    seen = f'data = {expect.show(texts)}' if texts else 'nothing on /names'
-    if len(names) > 1:
-        why = (
-            f'Both say {names[0]!r}: they share the name. A variable of the notebook or of the '
-            'class is the same for all objects.'
+    def find(self, evidence: Evidence) -> None:
+        """Look for the nodes."""
+        probe = evidence.probe
+        expect.publisher(probe, OUTER)
+        # Nodes of a process of their own come into the graph one after the other.
+        probe.wait_to_appear(lambda: len({end.node for end in probe.publishers(OUTER)}) > 1)
+        publishers = [end.node for end in probe.publishers(OUTER)]
+        if len(set(publishers)) == 1:
+            self._refuse_one_node(evidence, publishers)
+        for node in sorted(set(publishers)):
+            evidence.publisher(OUTER, node)
+            evidence.subscription(INNER, node)
+        expect.that(
+            len(publishers) == len(set(publishers)),
+            expected=f'one publisher on {OUTER} for each node',
+            seen=', '.join(f'{count} of {node}' for node, count in Counter(publishers).items()),
+            why='A node has more than one publisher, or two nodes have the same name.',
+            todo='Make one publisher in __init__, and give each node a name of its own.',
         )
-        todo = 'Keep the name in the object: self.first_name = first_name in __init__'
-    elif names:
-        why = f'Only one of the nodes answers, with {names[0]!r}.'
-        todo = 'Start both with lab.spin(...).'
-    elif texts:
-        why = 'The text that came in is not used, so the answer is always the same.'
-        todo = 'Publish msg.data + self.first_name.'
-    else:
-        why = 'The message came, but the callback of neither node did publish.'
+
+    def _refuse_one_node(self, evidence: Evidence, publishers: Sequence[str]) -> NoReturn:
+        name, count = publishers[0], len(publishers)
+        why = (
+            'Were two nodes of the same name started? lab.spin() ends the first of them when the '
+            'second one comes.'
+        )
+        if evidence.probe.node_names().count(name) > 1:
+            why = 'Two nodes have the same name. ROS allows it, and nobody can tell them apart.'
+        elif count > 1:
+            why = 'One node has two publishers. Two nodes are asked for.'
+        raise Fail(
+            f'two nodes, of different names, that publish on {OUTER}',
+            f'{count} publisher{"s" * (count > 1)} on {OUTER}, of {name} alone',
+            why=why,
+            todo="Give the name of the node as an argument, too: Introducer('ada', 'Ada')",
+        )
+
+
+class _EachAnswers(Clause):
+    """Each node answers each text once. What it appends, the first answers tell."""
+
+    text = (
+        'for each text on `/incomplete`, each of them publishes that text with a first name right '
+        'behind it, once, within a second'
+    )
+
+    def tests(self, evidence: Evidence) -> Sequence[Test]:
+        """Return texts to be completed."""
+        for (kind, _, _), end in evidence.ends.items():
+            if kind == 'subscription':
+                expect.spun(evidence.probe, end)
+        texts = [OPENING, *draw_texts()]
+        return [Test(INNER, STRING, {'data': text}, (OUTER,)) for text in texts]
+
+    def judge(self, evidence: Evidence) -> str:
+        """Judge the answers to each text, of whomever it is."""
+        life, nodes = evidence.life, _nodes(evidence)
+        heard = [(s.at, s.message.data) for s in life.on(INNER)]
+        came = [(s.at, s.message.data) for s in life.on(OUTER)]
+        names = _names(evidence)
+        texts, answers = Counter(text for _, text in heard), Counter(text for _, text in came)
+        # Of two equal texts of one check each may be answered twice, by mistake.
+        pairs = [(text, name) for text in texts for name in names]
+        often = any(answers[t + n] > 2 * texts[t] * names.count(n) for t, n in pairs)
+        if often and all(answers[text + name] for text, name in pairs):
+            self._refuse_more(evidence, list(answers.elements()), often=True)
+        left = list(came)
+        for at, text in heard:
+            for name in names or ['']:
+                answer = text + name if names else None
+                found = next((i for i, (t, v) in enumerate(left) if t >= at and v == answer), None)
+                if found is not None:
+                    del left[found]
+                elif at < life.seconds - WITHIN_SEC:
+                    here = [v for t, v in came if at <= t < at + WITHIN_SEC]
+                    _refuse(text, here, nodes)
+        extra = [text for at, text in left if at >= WITHIN_SEC]
+        if extra:
+            self._refuse_more(evidence, extra, often=False)
+        shown = ' and '.join(repr(OPENING + name) for name in names)
+        return f'Each of {len(heard)} texts was completed by {len(nodes)} nodes: {shown}.'
+
+    def _refuse_more(self, evidence: Evidence, texts: Sequence[str], *, often: bool) -> NoReturn:
+        raise Fail(
+            f'{len(_nodes(evidence))} texts on {OUTER} for each one on {INNER}, one of each node',
+            f'{len(texts)} texts{"" if often else " more"}: data = {expect.show(texts)}',
+            why='The answers are repeated, again and again: a timer or a loop publishes them.'
+            if often
+            else 'A node publishes more than one text for each one that comes.',
+            todo='Publish once, in the callback of the subscription, and nowhere else.',
+        )
+
+
+class _NamesDiffer(Clause):
+    """Each node has a first name of its own."""
+
+    text = 'the first names are different, and each node stays with its own'
+
+    def judge(self, evidence: Evidence) -> str:
+        """Compare the names."""
+        names = _names(evidence)
+        same = next((name for name, count in Counter(names).items() if count > 1), '')
+        expect.that(
+            not same,
+            expected=f'texts on {OUTER} with different names',
+            seen=f'data = {expect.show([OPENING + name for name in names])}',
+            why=f'Both say {same!r}: they share the name. A variable of the notebook or of the '
+            'class is the same for all objects.',
+            todo='Keep the name in the object: self.first_name = first_name in __init__',
+        )
+        return ''
+
+
+def _nodes(evidence: Evidence) -> list[str]:
+    """Return the names of the nodes that answer."""
+    return sorted(by for kind, _, by in evidence.ends if kind == 'publisher')
+
+
+def _names(evidence: Evidence) -> list[str]:
+    """Return what was appended to the first text that was sent; none if that is not known."""
+    life = evidence.life
+    start = next((sent.at for sent in life.sent if sent.topic == INNER), None)
+    if start is None:
+        return []
+    answers = [s.message.data for s in life.on(OUTER) if start <= s.at < start + WITHIN_SEC]
+    right = [text for text in answers if not any(name_trouble(OPENING, text))]
+    return [text.removeprefix(OPENING) for text in right][: len(_nodes(evidence))]
+
+
+def _refuse(text: str, came: Sequence[str], nodes: Sequence[str]) -> NoReturn:
+    """Raise Fail with the reason why a text was not answered as it should be."""
+    seen = f'data = {expect.show(came)}' if came else f'nothing on {OUTER}'
+    troubles = [name_trouble(text, answer) for answer in came]
+    why, todo = next((trouble for trouble in troubles if any(trouble)), ('', ''))
+    if not came:
+        why = 'The message came, but the callback of no node did publish.'
         todo = 'Publish in the callback of the subscription, and start both with lab.spin(...).'
+    elif not why and len(came) < len(nodes):
+        why = f'Only {len(came)} of {len(nodes)} nodes answered: {", ".join(nodes)}.'
+        todo = 'Do the same in each node, for each text.'
+    elif not why:
+        why = 'The names are others than those that came with the first text.'
+        todo = 'Keep the name in the object, self.first_name, and do not change it.'
     raise Fail(
-        f'two texts on /names when {TEST!r} comes on /incomplete, with different names',
+        f'{len(nodes)} texts on {OUTER} when {expect.show([text])} comes on {INNER}',
         seen,
         why=why,
         todo=todo,
@@ -130,7 +206,7 @@ two_names = Exercise(
     subscribes={'/incomplete': STRING},
     publishes={'/names': STRING},
     shared=['/names'],
-    judge=_judge_two_names,
+    clauses=(_TwoNodes(), _EachAnswers(), _NamesDiffer()),
     hints=[
         'A class is a plan: two objects of it are two nodes. In what do the two differ?',
         'In two things: the name of the node and the first name. Both can be arguments of '
@@ -189,6 +265,55 @@ lab.spin(Bob())
             ),
         ),
         Style(
+            'one more, and a list and a timer',
+            """
+from rclpy.node import Node
+from std_msgs.msg import String
+
+
+class Guest(Node):
+    def __init__(self, name):
+        super().__init__(f'{name.lower()}_node', namespace='party')
+        self.name = name
+        self.waiting = []
+        self.publisher = self.create_publisher(String, '/names', 10)
+        self.create_subscription(String, '/incomplete', self.waiting.append, 10)
+        self.create_timer(0.3, self.speak)
+
+    def speak(self):
+        while self.waiting:
+            self.publisher.publish(String(data=self.waiting.pop(0).data + self.name))
+
+
+guests = [lab.spin(Guest(name)) for name in ('Ada', 'Bob', 'Zoe')]
+""",
+        ),
+        Style(
+            'names that the lesson has used',
+            changed(
+                _NAMES, ("'ada', 'Ada'", "'observer', 'Ada'"), ("'bob', 'Bob'", "'display', 'Bob'")
+            ),
+        ),
+        Style(
+            'executors of their own, in threads',
+            changed(
+                _NAMES,
+                (
+                    'from rclpy.node',
+                    'import threading\n\nfrom rclpy.executors import SingleThreadedExecutor\n'
+                    'from rclpy.node',
+                ),
+                (
+                    _START,
+                    """for name in ('Ada', 'Bob'):
+    executor = SingleThreadedExecutor()
+    executor.add_node(Introducer(name.lower(), name))
+    threading.Thread(target=executor.spin, daemon=True).start()
+""",
+                ),
+            ),
+        ),
+        Style(
             'own process',
             changed(
                 _NAMES,
@@ -237,17 +362,17 @@ executor.spin()
         Wrong(
             'second one not spun',
             changed(_NAMES, ("lab.spin(Introducer('bob', 'Bob'))", "Introducer('bob', 'Bob')")),
-            "Only one of the nodes answers, with 'Ada'",
+            '/bob is there, but it is not spun',
         ),
         Wrong(
             'string built once',
             changed(_NAMES, ('msg.data + self', "'My name is ' + self")),
-            'The text that came in is not used',
+            'The text that came in is not part of what goes out.',
         ),
         Wrong(
             'space too many',
             changed(_NAMES, ('msg.data + self', "msg.data + ' ' + self")),
-            'there is a space too many beside it',
+            'There is a space too many beside the name.',
         ),
         Wrong(
             'one node with two publishers',
@@ -270,6 +395,81 @@ executor.spin()
             'capital letter',
             changed(_NAMES, ("String, 'names', 10", "String, 'Names', 10")),
             'Capital and small letters differ in names',
+        ),
+        Wrong(
+            'answers twice',
+            changed(_NAMES, (_PUBLISH, _PUBLISH + _PUBLISH)),
+            'A node publishes more than one text',
+        ),
+        Wrong(
+            'passes on, and answers',
+            changed(_NAMES, (_PUBLISH, _PUBLISH + '        self.publisher.publish(msg)\n')),
+            'A node publishes more than one text',
+        ),
+        Wrong(
+            'a name that changes',
+            changed(
+                _NAMES,
+                (_PUBLISH, _PUBLISH + '        self.first_name = self.first_name[::-1]\n'),
+            ),
+            'The names are others than those that came with the first text.',
+        ),
+        Wrong(
+            'only the first time',
+            changed(
+                _NAMES,
+                (
+                    _PUBLISH,
+                    '        if self.first_name:\n    '
+                    + _PUBLISH
+                    + "        self.first_name = ''\n",
+                ),
+            ),
+            'nothing on /names',
+        ),
+        Wrong(
+            'one of them knows one text only',
+            changed(
+                _NAMES,
+                (
+                    _PUBLISH,
+                    "        if self.first_name == 'Ada' or msg.data == 'My name is ':\n    "
+                    + _PUBLISH,
+                ),
+            ),
+            'Only 1 of 2 nodes answered',
+        ),
+        Wrong(
+            'repeats its answer',
+            changed(
+                _NAMES,
+                (
+                    '        self.first_name = first_name\n',
+                    '        self.first_name = first_name\n        self.heard = None\n'
+                    '        self.timer = self.create_timer(0.2, self.on_timer)\n',
+                ),
+                (
+                    _PUBLISH,
+                    '        self.heard = msg\n\n    def on_timer(self):\n'
+                    '        if self.heard:\n'
+                    '            self.publisher.publish('
+                    'String(data=self.heard.data + self.first_name))\n',
+                ),
+            ),
+            'a timer or a loop publishes them',
+        ),
+        Wrong(
+            'one of them listens elsewhere',
+            changed(
+                _NAMES,
+                ("String, 'incomplete', self", 'String, self.inner, self'),
+                (
+                    '        self.first_name = first_name\n',
+                    '        self.first_name = first_name\n'
+                    "        self.inner = 'incomplete' if first_name == 'Ada' else 'complete'\n",
+                ),
+            ),
+            '/bob with a subscription to /incomplete',
         ),
     ],
 )

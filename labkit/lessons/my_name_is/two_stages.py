@@ -2,32 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from dataclasses import dataclass
 
-from labkit.exercises import (
-    Exercise,
-    Fail,
-    Outcome,
-    Probe,
-    Solution,
-    Style,
-    Wrong,
-    changed,
-    expect,
-)
-from labkit.lessons._stage import find_stage
+from labkit.exercises import Exercise, Fail, Outcome, Solution, Style, Wrong, changed, expect
+from labkit.exercises.clauses import Answers, Clause, Evidence, Publishes, Says, Test
+from labkit.exercises.draws import draw_texts
 
-if TYPE_CHECKING:
-    from labkit.rosgraph.endpoints import Endpoint
-
-__all__ = ['OPENING', 'STRING', 'two_stages']
+__all__ = ['OPENING', 'STRING', 'name_trouble', 'says_opening', 'two_stages']
 
 STRING = 'std_msgs/msg/String'
 OPENING = 'My name is '
-TESTS = ('Her name is ', 'They call me ')
-# At 2 Hz a text is on its way within this time, on a busy machine too.
-FIRST_TEXT_SEC = 1.2
 
 _CHAIN = """
 from rclpy.node import Node
@@ -61,59 +46,106 @@ _START = 'completer = lab.spin(Completer())\nopener = lab.spin(Opener())'
 _SUM = "msg.data + 'Ada'"
 
 
-def _judge_two_stages(probe: Probe) -> str:
-    one = expect.publisher(probe, '/incomplete')
-    try:
-        texts = expect.messages(probe, one, count=2, hz=2.0)
-    except Fail:
-        expect.hanging(probe)  # the second stage may keep the first one from its work
-        raise
-    expect.equal(texts, 'data', OPENING, todo=f'Publish {OPENING!r}, with a space at the end.')
-    hears, says = find_stage(probe, '/incomplete', '/complete', {'data': TESTS[0]})
-    expect.that(
-        hears.node != one.node,
-        expected='two nodes, one for each stage',
-        seen=f'{one.node} publishes on /incomplete and subscribes to it',
-        why='One node does the work of both stages, so neither can be replaced without the other.',
-        todo='Write a class for each stage.',
-    )
-    name = _name(probe, hears, says)
-    expect.replies(
-        probe,
-        hears,
-        [{'data': text} for text in TESTS],
-        says,
-        lambda sent: sent['data'] + name,
-        explain=_explain,
-    )
-    return f'{one.node} -> /incomplete -> {hears.node} -> /complete: {OPENING + name!r}'
+@dataclass(frozen=True)
+class _Completes(Clause):
+    """A stage appends a first name to each text. Which one that is, its first answer tells."""
 
+    inner: str = '/incomplete'
+    outer: str = '/complete'
+    text = (
+        'for each text on `/incomplete`, publish that text with your first name right behind it '
+        'on `/complete` (both `std_msgs/msg/String`), once, within a second'
+    )
 
-def _name(probe: Probe, hears: Endpoint, says: Endpoint) -> str:
-    """Return the first name that the second stage appends."""
-    watch = probe.watch(says.topic, STRING)
-    if not probe.wait(lambda: len(watch), FIRST_TEXT_SEC):
-        expect.hanging(probe)
-        raise Fail(
-            'a text on /complete for each one on /incomplete',
-            'nothing on /complete',
-            why=f'The message reached {hears.node}, but its callback did not publish.',
-            todo='Publish on /complete in the callback of the subscription to /incomplete.',
+    def find(self, evidence: Evidence) -> None:
+        """Look for the stage."""
+        self._answers('').find(evidence)
+
+    def judge(self, evidence: Evidence) -> str:
+        """Judge the answers to what stage one says, and to texts of the check alone."""
+        hears = evidence.subscription(self.inner)
+        texts = [OPENING, *draw_texts()]
+        tests = [Test(self.inner, STRING, {'data': text}, (self.outer,)) for text in texts]
+        # Stage one stands still meanwhile, so that its own messages are its own.
+        tested = evidence.alone(self, tests, hears.node)
+        came = [sample.message.data for sample in tested.life.on(self.outer)]
+        name = self._name(came) if came else ''
+        answers = self._answers(name)
+        answers.judge(tested)
+        answers.judge(evidence)
+        one = evidence.publisher(self.inner)
+        return (
+            f'{one.node} -> {self.inner} -> {hears.node} -> {self.outer}: {OPENING + name!r}\n'
+            f'{len(texts)} texts of the check have got the name, too.'
         )
-    text = watch.values('data')[0]
-    name: str = text.removeprefix(OPENING)
-    why, todo = _what_is_wrong(text, name)
-    if why:
-        raise Fail(f'{OPENING!r} and your first name', f'data = {text!r}', why=why, todo=todo)
-    return name
+
+    def _answers(self, name: str) -> Answers:
+        return Answers(
+            self.inner,
+            self.outer,
+            self.text,
+            answer=lambda text: f'{text}{name}',
+            draw=lambda: [OPENING],
+            explain=_explain,
+        )
+
+    def _name(self, came: Sequence[str]) -> str:
+        name = came[0].removeprefix(OPENING)
+        why, todo = name_trouble(OPENING, came[0])
+        if why:
+            raise Fail(
+                f'{OPENING!r} and your first name',
+                f'data = {expect.show(came[:1])}',
+                why=why,
+                todo=todo,
+            )
+        return name
 
 
-def _what_is_wrong(text: str, name: str) -> tuple[str, str]:
+class _TwoNodes(Clause):
+    """Each stage is a node."""
+
+    text = 'the two stages are two nodes'
+
+    def find(self, evidence: Evidence) -> None:
+        """Compare their names."""
+        one = evidence.publisher('/incomplete').node
+        expect.that(
+            evidence.subscription('/incomplete').node != one,
+            expected='two nodes, one for each stage',
+            seen=f'{one} publishes on /incomplete and subscribes to it',
+            why='One node does the work of both stages, so neither can be replaced without the '
+            'other.',
+            todo='Write a class for each stage.',
+        )
+
+
+def says_opening() -> Says:
+    """Return what the messages of stage one have to say."""
+    return Says(
+        '/incomplete',
+        OPENING,
+        words=f'each message says `{OPENING}`, with the space at the end',
+        todo=f'Publish {OPENING!r}, with a space at the end.',
+    )
+
+
+def name_trouble(text: str, answer: str) -> tuple[str, str]:
+    """Say what is wrong with a text and a name that was appended, and what to do.
+
+    Args:
+        text: The text that came.
+        answer: What was made of it.
+
+    Returns:
+        Two empty texts if it is the text with a name right behind it.
+    """
     put = 'String(data=msg.data + ...), with your name for the dots.'
-    if not name.strip():
+    name = answer.removeprefix(text)
+    if answer == text or not name.strip():
         return 'The text is passed on as it came: no name is added.', put
-    if text.startswith(OPENING):
-        if OPENING in name:
+    if answer.startswith(text):
+        if text in name:
             return (
                 'The texts of earlier messages are still in it: the string grows.',
                 'Make a new string from msg.data each time.',
@@ -121,17 +153,18 @@ def _what_is_wrong(text: str, name: str) -> tuple[str, str]:
         if name != name.strip():
             return 'There is a space too many beside the name.', put
         return '', ''
-    if text.startswith(OPENING.rstrip()):
+    if answer.startswith(text.rstrip()):
         return 'The space between the text and the name is missing.', put
-    if OPENING.strip() in text:
+    if text.strip() in answer:
         return 'The name stands before the text.', put
     return 'The text that came in is not part of what goes out.', put
 
 
-def _explain(sent: Mapping[str, Any], came: list[Any]) -> tuple[str, str]:
-    if came and not any(text.startswith(sent['data']) for text in came):
+def _explain(text: str, came: Sequence[str]) -> tuple[str, str]:
+    if came and text.strip() and not any(text in other for other in came):
         return (
-            'The string is always the same: it is not made of the message that came.',
+            'The string is always the same, or is changed: it is not made of the message that '
+            'came, as it came.',
             'Use msg.data in the callback.',
         )
     return '', ''
@@ -143,7 +176,7 @@ two_stages = Exercise(
     'first name and publishes the whole on /complete.',
     publishes={'/incomplete': STRING, '/complete': STRING},
     subscribes={'/incomplete': STRING},
-    judge=_judge_two_stages,
+    clauses=(Publishes('/incomplete', 2.0, STRING), says_opening(), _Completes(), _TwoNodes()),
     hints=[
         'Thermometer and Converter are such a chain. Which lines have to change?',
         'Stage one: a timer of 0.5 s and a publisher. Stage two: a subscription and a publisher, '
@@ -195,6 +228,48 @@ def work():
 
 threading.Thread(target=work, daemon=True).start()
 """,
+                ),
+            ),
+        ),
+        Style(
+            'stage one sleeps in a thread',
+            changed(
+                _CHAIN,
+                ('        self.timer = self.create_timer(0.5, self.on_timer)\n', ''),
+                (
+                    'opener = lab.spin(Opener())',
+                    """
+import threading
+import time
+
+opener = lab.spin(Opener())
+
+
+def work(opener):
+    for _ in range(240):
+        opener.on_timer()
+        time.sleep(0.5)
+
+
+threading.Thread(target=work, args=[opener], daemon=True).start()
+""",
+                ),
+            ),
+        ),
+        Style(
+            'names that the lesson has used, and a fast timer',
+            changed(
+                _CHAIN,
+                (
+                    "super().__init__('opener')\n",
+                    "super().__init__('thermometer')\n        self.n = 0\n",
+                ),
+                ("'completer'", "'observer'"),
+                ('create_timer(0.5,', 'create_timer(0.1,'),
+                (
+                    "        self.publisher.publish(String(data='My name is '))\n",
+                    '        self.n += 1\n        if self.n % 5 == 0:\n'
+                    "            self.publisher.publish(String(data='My name is '))\n",
                 ),
             ),
         ),
@@ -317,6 +392,113 @@ lab.spin(Both())
             'off by ten',
             changed(_CHAIN, ('create_timer(0.5,', 'create_timer(0.05,')),
             'times too fast',
+        ),
+        Wrong(
+            'three times in two seconds',
+            changed(_CHAIN, ('create_timer(0.5,', 'create_timer(0.6,')),
+            '1.2 times too slow',
+        ),
+        Wrong(
+            'stage one ends after ten',
+            changed(
+                _CHAIN,
+                (
+                    "super().__init__('opener')\n",
+                    "super().__init__('opener')\n        self.n = 0\n",
+                ),
+                (
+                    "        self.publisher.publish(String(data='My name is '))\n",
+                    '        self.n += 1\n        if self.n <= 10:\n'
+                    "            self.publisher.publish(String(data='My name is '))\n",
+                ),
+            ),
+            'They stop coming.',
+        ),
+        Wrong(
+            'stage one says something else later',
+            changed(
+                _CHAIN,
+                (
+                    "super().__init__('opener')\n",
+                    "super().__init__('opener')\n        self.n = 0\n",
+                ),
+                (
+                    "        self.publisher.publish(String(data='My name is '))\n",
+                    '        self.n += 1\n'
+                    "        text = 'My name is ' if self.n < 30 else 'Hello, '\n"
+                    '        self.publisher.publish(String(data=text))\n',
+                ),
+            ),
+            'that were right',
+        ),
+        Wrong(
+            'stage two answers twice',
+            changed(
+                _CHAIN,
+                (
+                    f'        self.publisher.publish(String(data={_SUM}))\n',
+                    f'        msg.data = {_SUM}\n        self.publisher.publish(msg)\n'
+                    '        self.publisher.publish(msg)\n',
+                ),
+            ),
+            'A message is answered more than once.',
+        ),
+        Wrong(
+            'stage two passes on, and answers',
+            changed(
+                _CHAIN,
+                (
+                    f'        self.publisher.publish(String(data={_SUM}))\n',
+                    f'        self.publisher.publish(String(data={_SUM}))\n'
+                    '        self.publisher.publish(msg)\n',
+                ),
+            ),
+            'What came in goes out as well',
+        ),
+        Wrong(
+            'stage two has a timer',
+            changed(
+                _CHAIN,
+                (
+                    "super().__init__('completer')\n",
+                    "super().__init__('completer')\n        self.text = 'My name is '\n"
+                    '        self.timer = self.create_timer(0.5, self.on_timer)\n',
+                ),
+                (
+                    f'        self.publisher.publish(String(data={_SUM}))\n',
+                    '        self.text = msg.data\n\n    def on_timer(self):\n'
+                    "        self.publisher.publish(String(data=self.text + 'Ada'))\n",
+                ),
+            ),
+            'a timer or a loop publishes it',
+        ),
+        Wrong(
+            'stage two knows one text only',
+            changed(
+                _CHAIN,
+                (
+                    f'        self.publisher.publish(String(data={_SUM}))\n',
+                    "        if msg.data == 'My name is ':\n"
+                    f'            self.publisher.publish(String(data={_SUM}))\n',
+                ),
+            ),
+            'nothing on /complete',
+        ),
+        Wrong(
+            'a name that changes',
+            changed(
+                _CHAIN,
+                (
+                    "super().__init__('completer')\n",
+                    "super().__init__('completer')\n        self.names = ['Ada', 'Bob']\n",
+                ),
+                (
+                    f'        self.publisher.publish(String(data={_SUM}))\n',
+                    '        self.names.reverse()\n'
+                    '        self.publisher.publish(String(data=msg.data + self.names[0]))\n',
+                ),
+            ),
+            'messages were answered rightly, others not',
         ),
     ],
 )
