@@ -18,15 +18,15 @@ from labkit.exercises import (
     expect,
 )
 from labkit.exercises.watch import Sample
-from labkit.lessons.command_line.last_command import explain_last_command, forget_commands
 from labkit.lessons.command_line.sent import (
+    Asked,
+    OnTopic,
     Sent,
     is_every,
+    judge_sent,
     messages_at_once,
     newest_run,
     period,
-    refuse_other_topics,
-    sent_to,
 )
 
 __all__ = ['drive']
@@ -46,36 +46,16 @@ _ONCE = changed(_LINE, ('--times 5', '--once'))
 
 
 def _judge_drive(probe: Probe) -> str:
-    sent = sent_to(probe, TOPIC, EXPECTED, is_whole=_is_whole, is_too_much=_is_too_much)
-    try:
-        _judge_run(sent)
-        refuse_other_topics(probe, TOPIC, TWIST)
-    except Fail:
-        sent.recording.keep(sent.samples)
-        explain_last_command(TOPIC, EXPECTED)
-        raise
-    forget_commands()
-    return f'{COUNT} messages came, ten a second: forwards, and to the left.'
-
-
-def _judge_run(sent: Sent) -> None:
-    run = newest_run(sent.samples)
-    for sample in run:
-        _expect_fields(sample.message)
-    if sent.is_running and not _is_whole(run) and not _is_too_much(run):
-        raise NotAttempted(
-            f'{len(run)} of {COUNT} messages have come on {TOPIC}, and the command still runs. '
-            'Run this cell again when it has ended.'
-        )
-    if not (sent.is_running and _is_slow(run)):
-        _expect_count(sent.samples, run)
-    expect.that(
-        is_every(PERIOD_SEC, run),
-        expected=f'a message every {PERIOD_SEC} s (9.5 to 10.5 a second)',
-        seen=f'a message every {period(run):.3g} s ({1 / period(run):.3g} a second)',
-        why='The option --rate says how many messages are sent in a second. Without it, it is 1.',
-        todo='Use --rate 10.',
+    judge_sent(
+        probe,
+        _WHERE,
+        _CLAUSES,
+        EXPECTED,
+        is_whole=_is_whole,
+        is_too_much=_is_too_much,
+        keep=lambda sent: sent.samples,
     )
+    return f'{COUNT} messages came, ten a second: forwards, and to the left.'
 
 
 def _is_whole(samples: Sequence[Sample]) -> bool:
@@ -92,7 +72,12 @@ def _is_slow(run: Sequence[Sample]) -> bool:
     return len(run) > 2 and period(run) > 1.5 * PERIOD_SEC
 
 
-def _expect_fields(message: Any) -> None:
+def _expect_fields(sent: Sent) -> None:
+    for sample in newest_run(sent.samples):
+        _expect_twist(sample.message)
+
+
+def _expect_twist(message: Any) -> None:
     seen = {
         f'{part}.{axis}': getattr(getattr(message, part), axis)
         for part in ('linear', 'angular')
@@ -130,7 +115,15 @@ def _misconception(used: Mapping[str, float]) -> str:
     )
 
 
-def _expect_count(samples: Sequence[Sample], run: Sequence[Sample]) -> None:
+def _expect_count(sent: Sent) -> None:
+    samples, run = sent.samples, newest_run(sent.samples)
+    if sent.is_running and _is_slow(run):
+        return  # the rate says so at once
+    if sent.is_running and not _is_whole(run) and not _is_too_much(run):
+        raise NotAttempted(
+            f'{len(run)} of {COUNT} messages have come on {TOPIC}, and the command still runs. '
+            'Run this cell again when it has ended.'
+        )
     first, last = run[0].number, run[-1].number
     # A message that was lost on its way was sent all the same.
     count, others = last - first + 1, messages_at_once(samples, run)
@@ -156,10 +149,34 @@ def _expect_count(samples: Sequence[Sample], run: Sequence[Sample]) -> None:
     )
 
 
+def _expect_rate(sent: Sent) -> None:
+    run = newest_run(sent.samples)
+    expect.that(
+        is_every(PERIOD_SEC, run),
+        expected=f'a message every {PERIOD_SEC} s (9.5 to 10.5 a second)',
+        seen=f'a message every {period(run):.3g} s ({1 / period(run):.3g} a second)',
+        why='The option --rate says how many messages are sent in a second. Without it, it is 1.',
+        todo='Use --rate 10.',
+    )
+
+
+_WHERE = OnTopic(TOPIC, TWIST)
+_CLAUSES = (
+    Asked(
+        f'forwards at {FORWARD} m/s (`linear`, `x`), turning to the left at {LEFT} rad/s '
+        '(`angular`, `z`), all other fields 0, in every message',
+        _expect_fields,
+    ),
+    Asked(
+        f'five messages (`--times {COUNT}`) of one command, no more and no fewer', _expect_count
+    ),
+    Asked('ten a second (`--rate 10`); the check allows 9.5 to 10.5', _expect_rate),
+)
+
 drive = Exercise(
     name='drive',
-    task=f'Publish {COUNT} messages on {TOPIC} as `{TWIST}`, ten a second (9.5 to 10.5): '
-    f'{FORWARD} m/s forwards and {LEFT} rad/s to the left, all other fields 0.',
+    task='Let a robot drive, from the command line.',
+    clauses=[_WHERE, *_CLAUSES],
     publishes={TOPIC: TWIST},
     shared=[TOPIC],
     judge=_judge_drive,
@@ -280,7 +297,11 @@ for _ in range(5):
             'Use --rate 10.',
         ),
         Wrong('one more', changed(_LINE, ('--times 5', '--times 6')), '6 of them'),
-        Wrong('a sideways speed', changed(_LINE, ('0.2}', '0.2, y: 0.1}')), 'stay 0'),
+        Wrong(
+            'a sideways speed',
+            changed(_LINE, ('0.2}', '0.2, y: 0.1}')),
+            'Fields that are not named stay 0.',
+        ),
         Wrong('not a number', changed(_LINE, ('0.2}', '0.2, y: .nan}')), 'nan is none'),
         Wrong('another speed', changed(_LINE, ('0.2', '0.25')), 'linear.x = 0.25'),
         Wrong(

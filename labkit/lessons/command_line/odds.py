@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import NoReturn
 
 from labkit.exercises import (
     Exercise,
@@ -18,8 +17,7 @@ from labkit.exercises import (
     expect,
 )
 from labkit.exercises.watch import Sample
-from labkit.lessons.command_line.last_command import explain_last_command, forget_commands
-from labkit.lessons.command_line.sent import Sent, refuse_other_topics, sent_to
+from labkit.lessons.command_line.sent import Asked, OnTopic, Sent, judge_sent
 
 __all__ = ['odds']
 
@@ -33,25 +31,15 @@ _COMMANDS = ''.join(changed(_ONE, ('1}', f'{number}}}')) for number in WANTED)
 
 
 def _judge_odds(probe: Probe) -> str:
-    sent = sent_to(probe, TOPIC, EXPECTED, is_whole=_is_whole, is_too_much=_is_repeated)
-    try:
-        expect.that(
-            not sent.goes_on,
-            expected=EXPECTED,
-            seen=f'messages that go on coming: data = {expect.show(_values(sent.new))}',
-            why='Without --once a command goes on publishing, as a loop without an end does.',
-            todo='End it, and publish the three numbers once.',
-        )
-        if not _is_whole(sent.samples):
-            _refuse_early(sent)
-            _refuse(sent)
-        refuse_other_topics(probe, TOPIC, INT16)
-    except Fail:
-        sent.recording.keep(_right_so_far(sent))
-        explain_last_command(TOPIC, EXPECTED)
-        forget_commands()
-        raise
-    forget_commands()
+    judge_sent(
+        probe,
+        _WHERE,
+        _CLAUSES,
+        EXPECTED,
+        is_whole=_is_whole,
+        is_too_much=_is_repeated,
+        keep=_right_so_far,
+    )
     return 'The numbers 1, 3 and 5 came on /odds, one message each.'
 
 
@@ -98,38 +86,63 @@ def _right_so_far(sent: Sent) -> Sequence[Sample]:
     return begun if 0 < len(begun) < len(WANTED) else sent.earlier
 
 
-def _refuse_early(sent: Sent) -> None:
-    """Raise NotAttempted if a command still runs, and what it has sent is right so far."""
+def _expect_once(sent: Sent) -> None:
+    seen = f'data = {expect.show(_values(sent.samples))}'
+    why = 'Without --once a command goes on publishing, as a loop without an end does.'
+    expect.that(
+        not sent.goes_on,
+        expected=EXPECTED,
+        seen=f'messages that go on coming: {seen}',
+        why=why,
+        todo='End it, and publish the three numbers once.',
+    )
+    expect.that(
+        _is_whole(sent.samples) or not _is_repeated(sent.samples),
+        expected=EXPECTED,
+        seen=seen,
+        why=f'The same number came more than once. {why}',
+        todo=_next_step(sent),
+    )
+
+
+def _expect_numbers(sent: Sent) -> None:
+    if _is_whole(sent.samples):
+        return
+    values = _values(sent.samples)
     if sent.is_running and _beginning(sent.samples):
         raise NotAttempted(
-            f'data = {expect.show(_values(sent.samples))} so far, and a command still runs. Run '
-            'this cell again when it has ended.'
+            f'data = {expect.show(values)} so far, and a command still runs. Run this cell again '
+            'when it has ended.'
         )
-
-
-def _refuse(sent: Sent) -> NoReturn:
-    values, kept = _values(sent.samples), len(_right_so_far(sent))
     missing = [number for number in WANTED if number not in values]
-    todo = 'Publish all three numbers again: 1, then 3, then 5.'
-    if kept:
-        todo = f'Go on with {", then ".join(map(str, WANTED[kept:]))}.'
     if all(value % 2 == 0 for value in _values(sent.new)):
         why = 'These are even numbers. An odd number leaves 1 when it is divided by 2.'
-    elif _is_repeated(sent.samples):
-        why = 'The same number came more than once: without --once a command goes on publishing.'
     elif missing:
         why = f'Still missing: {", ".join(map(str, missing))}.'
     elif sorted(values) == WANTED:
         why = 'All three came, but in another order.'
     else:
         why = 'Other numbers came as well, or a number came twice.'
-    raise Fail(EXPECTED, f'data = {expect.show(values)}', why=why, todo=todo)
+    raise Fail(EXPECTED, f'data = {expect.show(values)}', why=why, todo=_next_step(sent))
 
+
+def _next_step(sent: Sent) -> str:
+    kept = len(_right_so_far(sent))
+    if not kept:
+        return 'Publish all three numbers again: 1, then 3, then 5.'
+    return f'Go on with {", then ".join(map(str, WANTED[kept:]))}.'
+
+
+_WHERE = OnTopic(TOPIC, INT16)
+_CLAUSES = (
+    Asked('one message for each number', _expect_once),
+    Asked('1, then 3, then 5, and nothing after them', _expect_numbers),
+)
 
 odds = Exercise(
     name='odds',
-    task=f'Publish the numbers 1, 3 and 5 on {TOPIC} from the command line, as `{INT16}`, in this '
-    'order, one message each, and nothing else.',
+    task='Publish three odd numbers from the command line.',
+    clauses=[_WHERE, *_CLAUSES],
     publishes={TOPIC: INT16},
     shared=[TOPIC],
     judge=_judge_odds,
@@ -196,7 +209,7 @@ for number in (1, 3, 5):
         Wrong(
             'without --once',
             changed(_ONE, ('--once', '--rate 20 --timeout 0.3')),
-            'without --once a command goes on publishing',
+            'Without --once a command goes on publishing',
         ),
         Wrong(
             'capital letter',

@@ -10,21 +10,31 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 from statistics import median
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from labkit.exercises import Fail, NotAttempted, Probe
+from labkit.exercises.clauses import Clause
+from labkit.exercises.clauses.base import naming
 from labkit.exercises.recorder import Recording
 from labkit.exercises.watch import Sample
-from labkit.lessons.command_line.last_command import explain_last_command, other_topic
+from labkit.lessons.command_line.last_command import (
+    explain_last_command,
+    forget_commands,
+    other_topic,
+)
+
+if TYPE_CHECKING:
+    from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = [
+    'Asked',
+    'OnTopic',
     'Sent',
     'is_every',
+    'judge_sent',
     'messages_at_once',
     'newest_run',
     'period',
-    'refuse_other_topics',
-    'sent_to',
 ]
 
 Samples = Sequence[Sample]
@@ -66,27 +76,94 @@ class Sent:
         return [*self.earlier, *self.new]
 
 
-def sent_to(
+@dataclass(frozen=True)
+class OnTopic(Clause):
+    """Messages of a type are sent to a topic, and to no other one.
+
+    Attributes:
+        topic: Full name of the topic.
+        msg_type: Name of the type.
+    """
+
+    topic: str
+    msg_type: str
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return f'on `{self.topic}` and no other topic, with the type `{self.msg_type}`'
+
+
+@dataclass(frozen=True)
+class Asked(Clause):
+    """What else a task asks of the messages.
+
+    Attributes:
+        words: What is asked for, in words of the task.
+        look: Raises Fail if the messages are otherwise, NotAttempted if it is too early to tell.
+    """
+
+    words: str
+    look: Callable[[Sent], None]
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return self.words
+
+
+def judge_sent(
     probe: Probe,
-    topic: str,
+    where: OnTopic,
+    clauses: Sequence[Asked],
     expected: str,
     *,
     is_whole: Callable[[Samples], bool],
     is_too_much: Callable[[Samples], bool],
-) -> Sent:
-    """Wait as long as a command runs or messages keep coming; return what was sent.
+    keep: Callable[[Sent], Samples],
+) -> None:
+    """Wait for what commands send, and look at it clause by clause.
 
     Args:
-        probe: The probe of the check. Its time bounds the wait.
-        topic: Full name of the topic.
+        probe: The probe of the check.
+        where: The first clause of the task.
+        clauses: The others.
         expected: What should have come, in words.
         is_whole: Whether nothing is missing.
         is_too_much: Whether it is clear already that it is not what was asked for.
+        keep: Which messages count for the next check, if this is no PASS.
 
     Raises:
-        Fail: Nothing has come, and the last command, or a publisher elsewhere, says why.
-        NotAttempted: Nothing has come.
+        Fail: A clause is not fulfilled; the exception names it.
+        NotAttempted: Nothing has come, or it is too early to tell.
     """
+    with naming(where):
+        sent = _sent_to(probe, where, expected, is_whole, is_too_much)
+    try:
+        for clause in clauses:
+            with naming(clause):
+                clause.look(sent)
+        with naming(where):
+            _refuse_other_topics(probe, where)
+    except Fail:
+        sent.recording.keep(keep(sent))
+        # A command that was refused later explains why the messages are not all there.
+        with naming(where):
+            explain_last_command(where.topic, expected)
+        forget_commands()
+        raise
+    forget_commands()
+
+
+def _sent_to(
+    probe: Probe,
+    where: OnTopic,
+    expected: str,
+    is_whole: Callable[[Samples], bool],
+    is_too_much: Callable[[Samples], bool],
+) -> Sent:
+    """Wait as long as a command runs or messages keep coming; return what was sent."""
+    topic = where.topic
     recording = probe.recorded[topic]
     assert isinstance(recording, Recording)
     started = time.monotonic()
@@ -116,9 +193,9 @@ def sent_to(
     probe.wait_to_appear(is_there)
     count = len(recording.samples)
     in_time = probe.wait(is_over, MOST_SEC)
-    _refuse_other_type(probe, topic, expected)
+    _refuse_other_type(probe, where, expected)
     if not recording.samples:
-        _refuse_nothing(probe, topic, expected, recording.earlier)
+        _refuse_nothing(probe, where, expected, recording.earlier)
     is_running = _commands(probe, topic)
     keeps_coming = not in_time and not is_running and silent_sec() < SILENT_SEC
     return Sent(
@@ -174,15 +251,11 @@ def period(run: Samples) -> float:
     )
 
 
-def refuse_other_topics(probe: Probe, topic: str, msg_type: str) -> None:
+def _refuse_other_topics(probe: Probe, where: OnTopic) -> None:
     """Raise Fail if messages of the type of the task are sent to another topic as well."""
-    known = probe.scope.known
-    found = [
-        end.topic
-        for end in probe.all_publishers()
-        if end.msg_type == msg_type and end.topic not in known
-    ]
-    other = found[0] if found else other_topic(topic, msg_type, known)
+    topic = where.topic
+    found = [end.topic for end in _elsewhere(probe, where)]
+    other = found[0] if found else other_topic(topic, where.msg_type, probe.scope.known)
     if other:
         raise Fail(
             f'messages on {topic}, and on no other topic',
@@ -192,26 +265,33 @@ def refuse_other_topics(probe: Probe, topic: str, msg_type: str) -> None:
         )
 
 
-def _refuse_nothing(probe: Probe, topic: str, expected: str, earlier: Samples) -> NoReturn:
+def _elsewhere(probe: Probe, where: OnTopic) -> list[Endpoint]:
+    """Return the learner's publishers of the type on topics that the lesson does not know."""
+    return [
+        end
+        for end in probe.all_publishers()
+        if end.msg_type == where.msg_type and end.topic not in probe.scope.known
+    ]
+
+
+def _refuse_nothing(probe: Probe, where: OnTopic, expected: str, earlier: Samples) -> NoReturn:
     """Raise what explains why nothing new has come."""
+    topic = where.topic
     explain_last_command(topic, expected)
     if earlier:
         raise NotAttempted(f'Nothing new has come on {topic} since the last check.')
-    for end in probe.all_publishers():
-        if end.topic not in probe.scope.known and end.msg_type == probe.scope.publishes[topic]:
-            raise Fail(
-                expected,
-                f'{end.node} publishes on {end.topic}',
-                why=f'{end.topic} is not {topic}: names must be equal to the last letter.',
-                todo=f'Write the topic as {topic}.',
-            )
+    for end in _elsewhere(probe, where):
+        raise Fail(
+            expected,
+            f'{end.node} publishes on {end.topic}',
+            why=f'{end.topic} is not {topic}: names must be equal to the last letter.',
+            todo=f'Write the topic as {topic}.',
+        )
     if _commands(probe, topic) or probe.publishers(topic):
         raise NotAttempted(
             f'Somebody is going to publish on {topic}, but nothing has come yet. Run this cell '
             'again when the command has ended.'
         )
-    if probe.something_is_starting():
-        raise NotAttempted
     raise NotAttempted(
         f'Not attempted yet: nothing has come on {topic}. Write your commands in the cell above, '
         'run that cell, then run this one again. If a command says that something is wrong, '
@@ -219,16 +299,15 @@ def _refuse_nothing(probe: Probe, topic: str, expected: str, earlier: Samples) -
     )
 
 
-def _refuse_other_type(probe: Probe, topic: str, expected: str) -> None:
+def _refuse_other_type(probe: Probe, where: OnTopic, expected: str) -> None:
     """Raise Fail if a command, of a terminal perhaps, is there with another type."""
-    wanted = probe.scope.publishes[topic]
-    for info in probe.node.get_publishers_info_by_topic(topic):
-        if info.topic_type != wanted:
+    for info in probe.node.get_publishers_info_by_topic(where.topic):
+        if info.topic_type != where.msg_type:
             raise Fail(
                 expected,
-                f'a publisher on {topic} with messages of type {info.topic_type}',
+                f'a publisher on {where.topic} with messages of type {info.topic_type}',
                 why='A topic carries one type of message. Nobody hears messages of another type.',
-                todo=f'Stop that command with Ctrl-C, and use {wanted}.',
+                todo=f'Stop that command with Ctrl-C, and use {where.msg_type}.',
             )
 
 
