@@ -43,7 +43,7 @@ class VirtualTime:
         moving: Nodes for which time passes when `advance` is called.
         standing: Nodes for which it does not.
         remote: Nodes of other processes, for which it passes too.
-        tick: How often it is looked at them at least, s: their timers are not known here.
+        tick: How often they are told the time, s: their timers are not known here.
 
     Attributes:
         flooded: Whether more callbacks came in one moment than could be run.
@@ -69,7 +69,7 @@ class VirtualTime:
         self._all = [*moving, *(node for node in standing if node not in moving)]
         self._remote = remote
         self.tick = tick
-        self._start = self._now = 0
+        self._start = self._now = self._told = 0
         self._given_up: set[Timer] = set()
         self._was_active: list[Node] = []
         self.flooded = False
@@ -98,6 +98,7 @@ class VirtualTime:
         self._now = self._start = self._start + 1
         for node in self._all:
             self._set(node)
+        self._told = self._now
         if self._remote is not None:
             self._remote.set(self._now)
         self.settle()
@@ -140,7 +141,9 @@ class VirtualTime:
             for node in self._moving:
                 self._set(node)
             self._settle_all([timer for timer, due in ticked.items() if due <= self._now])
-            if self._remote is not None:
+            if self._remote is not None and self._now >= self._next_tick():
+                # Not at each event: to ask another process takes several times as long.
+                self._told = self._now
                 self._remote.set(self._now)
                 self._settle()
             if not look():
@@ -159,7 +162,7 @@ class VirtualTime:
     def _next_tick(self) -> int:
         if self._remote is None or not self._remote.names:
             return self._now + NANOSECONDS * 3600
-        return self._now + round(self.tick * NANOSECONDS)
+        return self._told + round(self.tick * NANOSECONDS)
 
     def _next(self, end: int) -> dict[Timer, int]:
         """Return the timers that are due before `end`, and when."""
