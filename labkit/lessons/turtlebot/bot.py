@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -92,6 +93,13 @@ class _Gain(DriveClause):
                 todo='self.x = msg.pose.pose.position.x',
             )
         first = found.moving[0]
+        if abs(first.v + found.start.y) < SAME:
+            raise Fail(
+                expected,
+                f'linear.x = {first.v:.2f} m/s, where y = {found.start.y:.2f} m',
+                why='That is y. Home is where x = 0.',
+                todo='self.x = msg.pose.pose.position.x',
+            )
         if first.v * x > 0:
             raise Fail(
                 expected,
@@ -127,8 +135,8 @@ class _Gain(DriveClause):
 
 def _misconception(found: Drive, number: int) -> str:
     v, x = found.moving[number - 1].v, found.start.x
-    if number == 1 and abs(v + found.start.y) < SAME:
-        return 'That is y. The first number of a position is x.'
+    if math.isnan(v):
+        return 'nan is no number: something was divided by 0.0, or never set.'
     if number == 1 and abs(x) > SAME:
         return f'The gain is 1 here: v = -1.0 * x. This is {-v / x:.2g} * x, the other way.'
     if v == found.moving[0].v:
@@ -409,7 +417,7 @@ bot = Exercise(
         Wrong(
             'a speed that is no number',
             changed(_BOT, ('= -self.x', "= float('nan')")),
-            'The command does not follow the newest odometry',
+            'nan is no number',
         ),
         Wrong(
             'says stop for ever',

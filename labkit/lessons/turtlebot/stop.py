@@ -257,8 +257,8 @@ stop = Exercise(
                     '        self.publisher.publish(Twist())\n',
                 ),
             ),
-            'The node ends without a word.',
-            outcome=Outcome.FAIL,
+            'destroy_node of /cruiser raised InvalidHandle',
+            outcome=Outcome.ERROR,
         ),
         int_for_float(_CRUISER, '= 0.1', '= 1'),
         Wrong(

@@ -8,11 +8,10 @@ its own, such as a thread with `time.sleep()`, is noticed and drives in real tim
 from __future__ import annotations
 
 import contextlib
-import statistics
+import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from labkit.exercises import Fail, Probe
@@ -39,24 +38,26 @@ __all__ = ['Trial', 'Trials']
 SIGN_SEC = 0.25
 # How long nothing may be commanded before the first sign, s of virtual time.
 QUIET_SEC = 2.0
-# How exactly time is known for nodes of other processes, s.
-TICK_SEC = 0.05
+# How often nodes of other processes are told the time, s: at first so often that their rate is
+# known, and then once a command, to be quicker.
+TICK_SEC, FINE_SEC, LATER_TICK_SEC = 0.05, 3.5, 0.1
 # Commands of nodes whose time is not exact are known to so much, s.
-REMOTE_MARGIN_SEC = 0.08
+REMOTE_MARGIN_SEC = 0.11
 REAL_MARGIN_SEC = 0.25
 # In real time: how long nothing may be commanded before a drive, and after it, s.
 REAL_QUIET_SEC = 0.4
 REAL_TAIL_SEC = 0.7
 # How long a drive may take longer than the task allows, until it is cut, s.
 LONGER_SEC = 1.0
-# After so much real time no further drive is begun in real time, s.
-ENOUGH_SEC = 8.0
+# After so much real time no further drive is begun, where drives are long, s.
+ENOUGH_SEC = 6.0
 # How long it is looked whether commands come while time stands still, s of real time.
 STILL_SEC = 0.6
-# So many commands tell how long the time between two of them is.
-FEW, FEW_SEC = 4, 0.8
-# The usual time between commands differs by more than this share if a node keeps its own time.
-SAME = 0.3
+# A node that keeps its own time sends more commands within so long a time, s, in real time than in
+# virtual time; more by this share at least.
+FEW_SEC, SAME = 0.8, 0.3
+# In real time the first command comes within this time, s.
+BEGIN_SEC = 1.0
 # More commands a second than this are a loop without a pause.
 FLOOD_HZ = 200.0
 POLL_SEC = 0.005
@@ -101,8 +102,8 @@ class Trials:
 
     def __post_init__(self) -> None:
         self._others = OtherDrivers(self.probe, self.source)
-        self._name = self.robot.get_fully_qualified_name()
         self._began = 0.0
+        self._name = self.robot.get_fully_qualified_name()
         self._topics = {'/cmd_vel': TWIST, '/odom': ODOMETRY, self.sign[0]: self.sign[1]}
 
     def run(
@@ -119,8 +120,9 @@ class Trials:
             Fail: One is not, or another node drives.
             LearnerError: A callback has raised.
         """
+        self._began = time.monotonic()
         for trial in trials:
-            if self.real and time.monotonic() - self._began > ENOUGH_SEC:
+            if drives and time.monotonic() - self._began > ENOUGH_SEC:
                 return
             with short_sighted(self.robot) if trial.short_sighted else contextlib.nullcontext():
                 self._make(trial, judge, drives)
@@ -134,15 +136,20 @@ class Trials:
                     judge(found)
                     return
             except Fail:
-                if not self._keeps_own_time(trial, found):
+                began = time.monotonic()
+                again = self._again_in_real_time(trial, found)
+                if again is None:
                     raise
                 drives.pop()
-            self.real = True
-            self._began = time.monotonic()
+                self.real, self._began = True, began
+                self._note(again, drives)
+                judge(again)
+                return
         with self._others.counted():
-            found = self._in_real_time(trial)
-        self._note(found, drives)
-        judge(found)
+            real = self._in_real_time(trial)
+        assert real is not None
+        self._note(real, drives)
+        judge(real)
 
     def _note(self, found: Drive, drives: list[Drive]) -> None:
         found.number = len(drives)
@@ -229,7 +236,8 @@ class Trials:
             also={'/scan': SCAN},
             nodes={self._name, self.source.node},
             tick=TICK_SEC,
-            rest=TICK_SEC,
+            fine_sec=FINE_SEC,
+            rest=LATER_TICK_SEC,
             before=begin,
             until=until,
         )
@@ -243,22 +251,25 @@ class Trials:
 
     # -- a time of its own ----------------------------------------------------------------------
 
-    def _keeps_own_time(self, trial: Trial, found: Drive) -> bool:
-        """Tell whether the node does not follow the time of ROS, after a drive that is not right.
+    def _again_in_real_time(self, trial: Trial, found: Drive) -> Drive | None:
+        """Drive once more, in real time, if the node does not follow the time of ROS.
 
-        Such a node goes on while time stands still; or it looks at the computer's clock, and
-        commands as often in real time as it should.
+        Args:
+            trial: What is to be driven.
+            found: What it drove in virtual time, which is not right.
+
+        Returns:
+            The drive; None if the node follows.
         """
         if found.is_even or not found.commands:
-            return False
-        if self._goes_on_while_time_stands_still(trial):
-            return True
+            return None
+        few = sum(command.at < found.commands[0].at + FEW_SEC for command in found.commands)
         with self._others.counted():
-            real = self._in_real_time(trial, enough=FEW)
-        if len(real.commands) < FEW:
-            return False
-        period = statistics.median(b.at - a.at for a, b in pairwise(real.commands[:FEW]))
-        return not found.period or abs(period / found.period - 1.0) > SAME
+            again = self._in_real_time(trial, unless=few)
+        if again is None and self._goes_on_while_time_stands_still(trial):
+            with self._others.counted():
+                again = self._in_real_time(trial)
+        return again
 
     def _goes_on_while_time_stands_still(self, trial: Trial) -> bool:
         count = 0
@@ -282,12 +293,16 @@ class Trials:
 
     # -- real time ------------------------------------------------------------------------------
 
-    def _in_real_time(self, trial: Trial, *, enough: int = 0) -> Drive:
+    def _in_real_time(self, trial: Trial, *, unless: int | None = None) -> Drive | None:
         """Let the robot and the node run, as they do without a check.
 
         Args:
             trial: What is to be driven.
-            enough: After so many commands it is enough, or after `FEW_SEC`; 0 for all of it.
+            unless: If not many more commands than these come within `FEW_SEC`, give it up: the
+                node is no quicker in real time than in virtual time.
+
+        Returns:
+            What was seen; None if it was given up.
         """
         probe, topics = self.probe, {**self._topics, '/scan': SCAN}
         watches = {topic: probe.watch(topic, msg_type) for topic, msg_type in topics.items()}
@@ -301,15 +316,19 @@ class Trials:
             sign = send(trial.fields)
             found = Drive(sign=sign, goals=trial.goals, exact=False, margin=REAL_MARGIN_SEC)
             ended, commands = EndOfDrive(sign, REAL_TAIL_SEC), watches['/cmd_vel']
-            end = sign + (FEW_SEC if enough else self.seconds + LONGER_SEC)
+            end = sign + self.seconds + LONGER_SEC
+            first = math.inf
             while (now := time.time()) < end and not ended(now, watches):
                 time.sleep(POLL_SEC)
                 for watch in watches.values():
                     watch.pump()
                 probe.look(now - sign)
                 self._others.refuse(commands.samples)
-                if 0 < enough <= len(commands):
-                    break
+                first = min(first, now) if len(commands) else first
+                if unless is not None and now > min(first, sign + BEGIN_SEC) + FEW_SEC:
+                    if len(commands) < (1 + SAME) * unless + 2:
+                        return None
+                    unless = None
                 self._refuse_flood(len(commands), now - sign)
             found.cut = now >= end
             found.take(watches['/odom'].samples, commands.samples, watches['/scan'].samples)
