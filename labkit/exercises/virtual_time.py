@@ -15,6 +15,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 if TYPE_CHECKING:
     from rclpy.executors import Executor
@@ -36,6 +37,10 @@ RATE_SEC = 0.5
 POLL_SEC = 0.0002
 
 
+# Where the last stretch of virtual time of a node ended, ns.
+_latest: WeakKeyDictionary[Node, int] = WeakKeyDictionary()
+
+
 class VirtualTime:
     """The ROS time of some nodes of this process, for a `with` block. It stands still at first.
 
@@ -50,9 +55,6 @@ class VirtualTime:
         hanging: Whether a callback has not returned.
         tick: As above; it may be changed on the way.
     """
-
-    # Where the last stretch of virtual time in this process ended, ns.
-    _latest = 0
 
     def __init__(
         self,
@@ -84,8 +86,10 @@ class VirtualTime:
         from labkit.background import compat
 
         # Timers are due at this time by the computer's clock, so none is late or early. But time
-        # does not go back from one stretch to the next: a node may have noted when to act again.
-        self._start = self._now = max(time.time_ns(), VirtualTime._latest)
+        # does not go back from one stretch of a node to its next: it may have noted when to act
+        # again. A node that has had none may have noted the time, too, and is not to be late.
+        latest = (_latest[node] for node in self._moving if node in _latest)
+        self._start = self._now = max([time.time_ns(), *latest])
         for node in self._all:
             clock: Any = node.get_clock()
             if clock.ros_time_is_active:
@@ -108,7 +112,7 @@ class VirtualTime:
         from labkit.background import compat
         from labkit.background.nodes import node_exists
 
-        VirtualTime._latest = self._now
+        _latest.update(dict.fromkeys(self._moving, self._now))
         for node in self._all:
             if node not in self._was_active and node_exists(node):
                 compat.set_ros_time_is_active(node.get_clock(), False)  # type: ignore[arg-type]
