@@ -6,14 +6,16 @@ from labkit.exercises import (
     Exercise,
     Fail,
     NotAttempted,
-    Probe,
     Solution,
     Style,
     Wrong,
     changed,
     expect,
 )
-from labkit.lessons.my_name_is.two_stages import OPENING, STRING
+from labkit.exercises.clauses import Clause, Evidence, Publishes
+from labkit.lessons._script import started_by_asyncio, started_by_subprocess
+from labkit.lessons.my_name_is.programs import last_program
+from labkit.lessons.my_name_is.two_stages import STRING, says_opening
 
 __all__ = ['own_process']
 
@@ -37,74 +39,69 @@ rclpy.init()
 rclpy.spin(Opener())
 """
 
-_START = f'''
-import subprocess
-import sys
+_BEFORE = 'from labkit.lessons.my_name_is.programs import start_program\n\n'
+_DOCSTRING = '"""Say how a sentence begins, twice a second."""'
+_START = f"""{_BEFORE}program = r'''
+{_DOCSTRING}
+{_SCRIPT}'''
 
-from std_msgs.msg import String
-
-earlier = globals().get('process')
-if earlier is not None:
-    earlier.terminate()
-
-program = """{_SCRIPT}"""
-
-process = subprocess.Popen([sys.executable, '-c', program])
-print(lab.wait_for_message('/incomplete', String, timeout_sec=20))
-'''
+process = start_program(program)
+"""
 
 
-def _judge_own_process(probe: Probe) -> str:
-    try:
-        one = expect.publisher(probe, '/incomplete')
-    except NotAttempted:
-        _refuse_ended_process()
-        raise
-    expect.that(
-        not probe.in_this_process(one),
-        expected='/incomplete with a publisher in a process of its own',
-        seen=str(one),
-        why='lab.spin() runs a node in the process of this notebook.',
-        todo='End it with lab.remove(...), and start a program with subprocess.Popen(...).',
-    )
-    texts = expect.messages(probe, one, count=2, hz=2.0)
-    expect.equal(texts, 'data', OPENING, todo=f'Publish {OPENING!r}, with a space at the end.')
-    done = f'{one.node} runs in a process of its own.'
-    if {endpoint.msg_type for endpoint in probe.publishers('/complete')} != {STRING}:
-        return done
-    complete = probe.watch('/complete', STRING)
-    if probe.wait(lambda: len(complete), 1.0):
-        text = complete.values('data')[0]
-        return f'{done}\nThe stage in this notebook has noticed nothing, and says {text!r}.'
-    return done
+class _InAnotherProcess(Clause):
+    """The publisher is not in this notebook's process."""
 
+    text = 'the publisher is in another process than this notebook'
 
-def _refuse_ended_process() -> None:
-    """Raise Fail if a process that this notebook has started is over already."""
-    import psutil  # type: ignore[import-untyped]
-
-    children = psutil.Process().children()
-    if any(child.status() == psutil.STATUS_ZOMBIE for child in children):
-        raise Fail(
-            'a process that publishes on /incomplete',
-            'a process that this notebook has started, and that is over',
-            why='A program ends when its last line is done or when an error comes up. '
-            'rclpy.spin(node) in the last line keeps it going.',
-            todo='See what it says: print(subprocess.run([sys.executable, "-c", program], '
-            'capture_output=True, text=True).stderr)',
+    def find(self, evidence: Evidence) -> None:
+        """Look where the publisher is."""
+        try:
+            one = evidence.publisher('/incomplete')
+        except NotAttempted:
+            _refuse_ended_program()
+            raise
+        expect.that(
+            not evidence.probe.in_this_process(one),
+            expected='/incomplete with a publisher in a process of its own',
+            seen=f'{one.node} {evidence.probe.place(one)}',
+            why='lab.spin() runs a node in the process of this notebook.',
+            todo='End it with lab.remove(...), and start a program with start_program(program).',
         )
+
+    def judge(self, evidence: Evidence) -> str:
+        """Say where it is."""
+        one = evidence.publisher('/incomplete')
+        return f'{one.node} runs {evidence.probe.place(one)}.'
+
+
+def _refuse_ended_program() -> None:
+    """Raise Fail if the program that this notebook has started last is over."""
+    program = last_program()
+    if program is None or program.running:
+        return
+    last = program.output[-1] if program.output else 'nothing'
+    raise Fail(
+        'a program that goes on, and publishes on /incomplete',
+        f'a program that has ended, with exit code {program.exit_code}; its last line is: {last}',
+        why='An error has ended it. Its last line says which.'
+        if program.exit_code
+        else 'A program ends when its last line is done. rclpy.spin(node) in the last line keeps '
+        'it going.',
+        todo='Change the program, and run its cell again. That cell shows all that it says.',
+    )
 
 
 own_process = Exercise(
     name='own_process',
-    task=f'Publish {OPENING!r} on /incomplete, twice a second, from a process of its own.',
+    task="Publish 'My name is ' on /incomplete, twice a second, from a process of its own.",
     publishes={'/incomplete': STRING},
-    judge=_judge_own_process,
+    clauses=(_InAnotherProcess(), Publishes('/incomplete', 2.0, STRING), says_opening()),
     hints=[
         'The class of stage one stays as it is. What does a program need besides the class?',
         'Imports at the top; at the end rclpy.init() and rclpy.spin(...). lab is not needed '
         'there.',
-        'Put all of it between the quotation marks, and remove the # from the last lines.',
+        'Put all of it between the quotation marks, and remove the # from the last line.',
     ],
     answer=Solution(
         _START,
@@ -132,6 +129,62 @@ while rclpy.ok():
 """,
             process=True,
         ),
+        Style(
+            'a fast timer, and every fifth call counts',
+            changed(
+                _SCRIPT,
+                (
+                    "super().__init__('opener')\n",
+                    "super().__init__('thermometer')\n        self.n = 0\n",
+                ),
+                ('create_timer(0.5,', 'create_timer(0.1,'),
+                (
+                    "        self.publisher.publish(String(data='My name is '))\n",
+                    '        self.n += 1\n        if self.n % 5 == 0:\n'
+                    "            self.publisher.publish(String(data='My name is '))\n",
+                ),
+            ),
+            process=True,
+        ),
+        Style(
+            'an executor with many threads',
+            changed(
+                _SCRIPT,
+                ('rclpy.spin(Opener())', 'rclpy.spin(Opener(), executor=MultiThreadedExecutor())'),
+                (
+                    'from rclpy.node',
+                    'from rclpy.executors import MultiThreadedExecutor\nfrom rclpy.node',
+                ),
+            ),
+            process=True,
+        ),
+        Style(
+            'a clock in seconds, asked often',
+            """
+import rclpy
+from rclpy.duration import Duration
+from std_msgs.msg import String
+
+rclpy.init()
+node = rclpy.create_node('clock_watcher')
+publisher = node.create_publisher(String, '/incomplete', 1)
+due = node.get_clock().now()
+
+
+def look():
+    global due
+    if node.get_clock().now() >= due:
+        due = node.get_clock().now() + Duration(seconds=0.5)
+        publisher.publish(String(data='My name is '))
+
+
+node.create_timer(0.1, look)
+rclpy.spin(node)
+""",
+            process=True,
+        ),
+        Style('started by subprocess', started_by_subprocess(_SCRIPT)),
+        Style('started by asyncio', started_by_asyncio(_SCRIPT)),
     ],
     wrong=[
         Wrong(
@@ -144,17 +197,19 @@ while rclpy.ok():
         ),
         Wrong(
             'does not spin',
-            f'''
-import subprocess
-import sys
-from pathlib import Path
-
-program = """{changed(_SCRIPT, ('rclpy.spin(Opener())', 'Opener()'))}"""
-process = subprocess.Popen([sys.executable, '-c', program])
-status = Path(f'/proc/{{process.pid}}/status')
-lab.wait_until(lambda: 'zombie' in status.read_text(), timeout_sec=20)
-''',
+            changed(_START, ('rclpy.spin(Opener())', 'Opener()')),
             'rclpy.spin(node) in the last line keeps it going',
+        ),
+        Wrong(
+            'does not spin, started by subprocess',
+            started_by_subprocess(changed(_SCRIPT, ('rclpy.spin(Opener())', 'Opener()')))
+            + 'process.wait()\n',
+            'rclpy.spin(node) in the last line keeps it going',
+        ),
+        Wrong(
+            'an import is missing',
+            changed(_START, ('from rclpy.node import Node\n', '')),
+            "its last line is: NameError: name 'Node' is not defined",
         ),
         Wrong(
             'space missing',
@@ -166,6 +221,53 @@ lab.wait_until(lambda: 'zombie' in status.read_text(), timeout_sec=20)
             'two copies running',
             changed(_SCRIPT, ('rclpy.spin(', 'copy = Opener()\nrclpy.spin(')),
             'Two copies of the node run at once',
+            process=True,
+        ),
+        Wrong(
+            'three times in two seconds',
+            changed(_SCRIPT, ('create_timer(0.5,', 'create_timer(0.6,')),
+            '1.2 times too slow',
+            process=True,
+        ),
+        Wrong(
+            'every 2 s',
+            changed(_SCRIPT, ('create_timer(0.5,', 'create_timer(2,')),
+            'A rate in Hz and a period in seconds were mixed up',
+            process=True,
+        ),
+        Wrong(
+            'ends after fifty',
+            changed(
+                _SCRIPT,
+                (
+                    "super().__init__('opener')\n",
+                    "super().__init__('opener')\n        self.n = 0\n",
+                ),
+                (
+                    "        self.publisher.publish(String(data='My name is '))\n",
+                    '        self.n += 1\n        if self.n < 50:\n'
+                    "            self.publisher.publish(String(data='My name is '))\n",
+                ),
+            ),
+            'They stop coming.',
+            process=True,
+        ),
+        Wrong(
+            'twice each time',
+            changed(
+                _SCRIPT,
+                (
+                    "        self.publisher.publish(String(data='My name is '))\n",
+                    "        self.publisher.publish(String(data='My name is '))\n" * 2,
+                ),
+            ),
+            'Twice as many messages come as were asked for',
+            process=True,
+        ),
+        Wrong(
+            'another callback',
+            changed(_SCRIPT, ('create_timer(0.5, self.on_timer)', 'create_timer(0.5, print)')),
+            'publish() was called too early, once, or never',
             process=True,
         ),
     ],
