@@ -19,5 +19,13 @@ LESSON = Lesson(
     exercises=[ones, count_up, stay_within, evens, find_gate],
     quizzes=[QUIZ],
     topics=['/high', '/burst', GOALS, VISITORS],
-    given={'/announcer': 'stadium repair', **dict.fromkeys(NODES, '')},
+    given={
+        '/counter': 'counter',
+        '/one': 'add-one',
+        '/add_one': 'add-one',
+        '/reader': 'burst',
+        '/sprinter': 'burst',
+        '/announcer': 'stadium repair',
+        **dict.fromkeys(NODES, ''),
+    },
 )

@@ -41,7 +41,8 @@ class _NamesTheGate(Clause):
     """Each message is the name of the gate that differs from the others."""
 
     text = (
-        'each message is the name of the wrong gate, such as `gate_x`; a slash before it is right'
+        'each message is the name of the wrong gate and nothing else; a slash in front of it does '
+        'no harm'
     )
 
     def find(self, evidence: Evidence) -> None:
