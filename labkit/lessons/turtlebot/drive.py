@@ -145,9 +145,15 @@ class Drive:
 
     @property
     def gaps(self) -> list[float]:
-        """The time from each command to the next one, s, until the first that ends the drive."""
+        """The time from each command to the next one, s, until the first that ends the drive.
+
+        Without the first one if that is short: a rate that has ticked before does not sleep, and
+        the second command comes at once.
+        """
         times = [command.at for command in self.commands[: len(self.moving) + 1]]
-        return [later - earlier for earlier, later in pairwise(times)]
+        gaps = [later - earlier for earlier, later in pairwise(times)]
+        usual = statistics.median(gaps) if gaps else 0.0
+        return gaps[1:] if len(gaps) > 3 and gaps[0] < usual / 2 else gaps
 
     @property
     def is_even(self) -> bool:

@@ -136,13 +136,11 @@ class _Arrives(DriveClause):
         look_at_time(found, SECONDS)
         goal, end = found.goals[0], found.end
         away = math.dist(end[:2], goal)
-        if not found.commands or away <= NEAR + BRAKING:
+        if not found.ending or away <= NEAR + BRAKING:
             return
         nearest = min(math.dist(pose[:2], goal) for _, pose in found.poses)
         why = 'It does not keep turning towards the goal, or stops before it is there.'
-        if found.cut:
-            why = 'It is not there yet, or turns and drives without an end.'
-        elif nearest <= NEAR:
+        if nearest <= NEAR:
             why = f'It came as near as {nearest:.2f} m, and drove on past the goal.'
         elif away < 4 * NEAR and found.ending:
             why = f'It stops too early: {NEAR} m are asked for.'
@@ -189,8 +187,8 @@ _CLAUSES = (
     Sensible(),
     _Turns(),
     Rate(),
-    Stops(),
     _Arrives(),
+    Stops(),
 )
 
 go_to = Exercise(
@@ -290,7 +288,7 @@ go_to = Exercise(
         Wrong(
             'never there',
             changed(_GO_TO, ('< 0.05', '< 0.0')),
-            'It does not end',
+            'goes on and on',
         ),
         first_time_only(_GO_TO, 'self.goal = msg'),
         Wrong(
@@ -314,10 +312,13 @@ go_to = Exercise(
             changed(
                 _GO_TO,
                 (
-                    '        msg = Twist()\n',
-                    '        msg = Twist()\n        if 0.2 < math.hypot(dx, dy) < 0.22:\n'
-                    '            self.publisher.publish(msg)\n            self.x += 0.02\n'
-                    '            return\n',
+                    '        self.goal = None\n\n',
+                    '        self.goal = None\n        self.rests = 1\n\n',
+                ),
+                (
+                    '        if math.hypot',
+                    '        if math.hypot(dx, dy) < 0.3 and self.rests:\n'
+                    '            self.rests = 0\n        elif math.hypot',
                 ),
             ),
             'It stops on its way',
@@ -332,11 +333,6 @@ go_to = Exercise(
                 ),
             ),
             'linear.z = nan',
-        ),
-        Wrong(
-            'turns to theta',
-            changed(_GO_TO, ('math.atan2(dy, dx) - self.yaw', 'self.goal.theta - self.yaw')),
-            '',
         ),
         int_for_float(_GO_TO, '= 0.2', '= 1'),
     ],

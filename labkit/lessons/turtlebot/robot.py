@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import math
-import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
@@ -13,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 from labkit.errors import LabError
 from labkit.exercises import Fail, Probe
-from labkit.lessons.turtlebot.drive import Point
+from labkit.lessons.turtlebot.drive import ODOMETRY, TWIST, Point
 from labkit.sim.kinematics import BURGER, Pose
 from labkit.sim.world import playground
 
 if TYPE_CHECKING:
-    from labkit.exercises.watch import Sample, Watch
+    from labkit.exercises.watch import Sample
     from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['OtherDrivers', 'find_robot', 'place', 'short_sighted', 'walls_near']
@@ -29,10 +28,9 @@ RUN_AGAIN = f'Run the cell again that says: {CELL}'
 NEAR_WALL = 0.8
 # As far as a short-sighted scanner sees, m.
 SHORT_SIGHT = 1.0
-# How long it is looked whether somebody else drives, s of real time: commands mostly come ten
-# times a second.
-OTHERS_SEC = 0.25
-POLL_SEC = 0.01
+# How long it is looked whether somebody else drives, in rounds of the robot, of which there are 30
+# in a second; and s at most. Commands mostly come ten times a second.
+ROUNDS, OTHERS_SEC = 8, 2.0
 
 
 def find_robot(probe: Probe) -> Any:
@@ -191,17 +189,26 @@ class OtherDrivers:
 
         publisher.publish = counting
 
-    def wait(self, commands: Watch) -> None:
-        """Wait until one of them has been seen to drive, if there are any; time stands still.
+    def look(self) -> None:
+        """Look for a moment whether one of them drives, in real time.
+
+        As long as that is, the robot itself says: it is spun as they are, also on a busy machine.
 
         Raises:
             Fail: One drives.
         """
-        end = time.monotonic() + OTHERS_SEC
-        while self._ends() and time.monotonic() < end:
-            commands.pump()
-            self.refuse(commands.samples)
-            time.sleep(POLL_SEC)
+        if not self._ends():
+            return
+        probe = self._probe
+        commands, odometry = probe.watch('/cmd_vel', TWIST), probe.watch('/odom', ODOMETRY)
+        try:
+            with self.counted():
+                probe.wait(lambda: len(odometry) >= ROUNDS, OTHERS_SEC)
+                self.refuse(commands.samples)
+        finally:
+            commands.close()
+            odometry.close()
+            probe.forget((commands, odometry))
 
     def refuse(self, commands: Sequence[Sample]) -> None:
         """Raise Fail if another node has published on /cmd_vel meanwhile, and name it.
@@ -219,11 +226,12 @@ class OtherDrivers:
             return
         name = min(driving)
         end = next(end for end in ends if end.node == name)
-        count = f', {driving[name]} commands' if driving[name] else ''
+        count = driving[name]
+        often = f', {count} command{"s" * (count > 1)}' if count else ''
         teleop = name.endswith('teleop')
         raise Fail(
             f'commands of {self._source.node} alone on /cmd_vel',
-            f'{name} {self._probe.place(end)} drives the robot as well{count}',
+            f'{name} {self._probe.place(end)} drives the robot as well{often}',
             why='A key of the teleop is held, or its knob.'
             if teleop
             else 'The robot obeys whoever spoke last. Commands that say stop count, too.',

@@ -189,6 +189,8 @@ class _Closes(DriveClause):
 
 
 def _refuse_corner(found: Drive, path: Sequence[Point], number: int, corner: Point) -> NoReturn:
+    if found.cut:
+        look_at_time(found, SECONDS)
     x, y = min(path, key=lambda point: math.dist(point, corner))
     mirrored = (corner[0], -corner[1])
     if number == 2 and any(math.dist(point, mirrored) <= NEAR for point in path):
@@ -396,7 +398,7 @@ square = Exercise(
         ),
         Style(
             'without a last turn',
-            changed(_SQUARE, ('4 * (side + turn)', '(4 * (side + turn))[:-13]')),
+            changed(_SQUARE, ('4 * (side + turn)', '(4 * (side + turn))[:-15]')),
         ),
         Style('a loop with a rate, in a thread', _LOOP),
         Style('own process', in_process(_SQUARE), process=True),
@@ -423,7 +425,7 @@ square = Exercise(
         ),
         first_time_only(_SQUARE, 'self.plan = 4 * (side + turn)'),
         Wrong('five sides', changed(_SQUARE, ('4 *', '5 *')), 'It goes on after the fourth side'),
-        Wrong('two squares', changed(_SQUARE, ('4 *', '8 *')), ''),
+        Wrong('two squares', changed(_SQUARE, ('4 *', '8 *')), 'It does not end'),
         Wrong(
             'twelve and a half commands a second',
             changed(_SQUARE, ('create_timer(0.1,', 'create_timer(0.08,')),
@@ -431,7 +433,11 @@ square = Exercise(
         ),
         Wrong(
             'a circle',
-            changed(_SQUARE, ('4 * (side + turn)', '100 * [(0.178, 0.6283)] + [(0.0, 0.0)]')),
+            changed(
+                _SQUARE,
+                ('20 * [(0.2, 0.0)] + 2 * [(0.0, 0.0)]', '25 * [(0.178, 0.6283)]'),
+                ('10 * [(0.0, 1.5708)] + 5 * [(0.0, 0.0)]', '[(0.0, 0.0)]'),
+            ),
             'The first side has another length',
         ),
         Wrong(
@@ -453,7 +459,7 @@ square = Exercise(
                     '        self.publisher.publish(msg)\n        self.plan.append((v, w))\n',
                 ),
             ),
-            '',
+            'It does not end',
         ),
         Wrong(
             'says stop for ever',

@@ -165,17 +165,15 @@ class Trials:
         Raises:
             Fail: It goes on and on.
         """
-        seen, last, waited = 0, 0.0, False
+        seen, last = 0, 0.0
 
         def quiet(now: float, watches: Mapping[str, Watch]) -> bool:
-            nonlocal seen, last, waited
-            if not waited:
-                self._others.wait(watches['/cmd_vel'])
-                waited = True
+            nonlocal seen, last
             if len(watches['/cmd_vel']) > seen:
                 seen, last = len(watches['/cmd_vel']), now
             return now > last + QUIET_SEC
 
+        self._others.look()
         with self._others.counted():
             limit = self.seconds + LONGER_SEC + QUIET_SEC
             life = self._live(limit, (), until=quiet)

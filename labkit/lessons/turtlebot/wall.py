@@ -344,7 +344,7 @@ wall = Exercise(
             changed(
                 _GUARD,
                 ('create_timer(0.1,', 'create_timer(0.05,'),
-                ('if way > 0.0', 'if msg.range_min <= way <= msg.range_max'),
+                ('if way > 0.0', 'if way >= msg.range_min'),
             ),
         ),
         Style('functions and a loop with a rate', _LOOP),
