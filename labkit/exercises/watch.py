@@ -75,7 +75,11 @@ class Watch:
         """Take what has arrived."""
         handle, msg_class = self._subscription.handle, self._subscription.msg_type
         with handle:
-            while (taken := handle.take_message(msg_class, False)) is not None:
+            # No more than the queue holds: a flood may come faster than it is taken.
+            for _ in range(DEPTH):
+                taken = handle.take_message(msg_class, False)
+                if taken is None:
+                    break
                 message, info = taken
                 number = info.get('publication_sequence_number') or 0
                 self.samples.append(Sample(message, info['source_timestamp'] * 1e-9, number))
