@@ -1,4 +1,4 @@
-"""The check of the square: a busy computer is no mistake of the learner's."""
+"""The square as the check sees it: sides, turns and corners, and what a busy computer spoils."""
 
 from __future__ import annotations
 
@@ -7,28 +7,29 @@ import math
 import pytest
 
 from labkit.exercises import Fail
-from labkit.lessons.turtlebot.drive import Drive
-from labkit.lessons.turtlebot.square import _judge_drive
+from labkit.lessons.turtlebot.clauses import DriveClause
+from labkit.lessons.turtlebot.drive import Command, Drive
+from labkit.lessons.turtlebot.square import square
 from labkit.sim.kinematics import Motion, Pose, Twist2
 
 SIDE, TURN, REST = Twist2(0.2, 0.0), Twist2(0.0, math.pi / 2), Twist2(0.0, 0.0)
 
 
-def driven(third_side: int, held_up: float) -> Drive:
+def driven(third_side: int, held_up: float, *, exact: bool = False) -> Drive:
     """Return a drive round a square.
 
     Args:
         third_side: How many commands the third side has; 20 are right.
         held_up: How much longer than 0.1 s the last of them was obeyed, s.
+        exact: Whether time was virtual, so that nothing can be held up.
     """
-    found = Drive(poses=[(0.0, Pose(0.0, 0.0, 0.0))])
+    found = Drive(poses=[(0.0, Pose(0.0, 0.0, 0.0))], exact=exact, margin=0.25)
     time, pose = 0.0, Pose(0.0, 0.0, 0.0)
     for side in range(4):
         steps = [SIDE] * (third_side if side == 2 else 20) + [TURN] * 10
         for number, twist in enumerate([*steps, REST] if side == 3 else steps):
             late = held_up if side == 2 and number == third_side - 1 else 0.0
-            found.commands.append((time, twist))
-            found.sent.append(time)
+            found.commands.append(Command(time, (twist.v, 0.0, 0.0, 0.0, 0.0, twist.w)))
             for _ in range(10):
                 pose = Motion(pose, twist).pose_at((0.1 + late) / 10)
                 time += (0.1 + late) / 10
@@ -36,15 +37,35 @@ def driven(third_side: int, held_up: float) -> Drive:
     return found
 
 
-def test_drive_that_a_busy_computer_has_spoilt_passes():
-    _judge_drive(driven(third_side=20, held_up=0.75))
+def judge(found: Drive) -> None:
+    for clause in square.clauses:
+        assert isinstance(clause, DriveClause)
+        clause.look(found)
 
 
-def test_same_drive_fails_where_the_commands_ask_for_it():
+def test_drive_that_a_busy_computer_has_spoilt_passes() -> None:
+    judge(driven(third_side=20, held_up=0.75))
+
+
+def test_same_drive_fails_where_time_was_exact() -> None:
     with pytest.raises(Fail, match='corner 4'):
-        _judge_drive(driven(third_side=27, held_up=0.05))
+        judge(driven(third_side=20, held_up=0.75, exact=True))
 
 
-def test_drive_far_off_fails_whatever_was_commanded():
+def test_same_drive_fails_where_the_commands_ask_for_it() -> None:
+    with pytest.raises(Fail, match='corner 4'):
+        judge(driven(third_side=27, held_up=0.05))
+
+
+def test_drive_far_off_fails_whatever_was_commanded() -> None:
     with pytest.raises(Fail):
-        _judge_drive(driven(third_side=20, held_up=1.5))
+        judge(driven(third_side=20, held_up=1.5))
+
+
+def test_drive_that_was_cut_is_not_judged_as_if_it_had_ended() -> None:
+    found = driven(third_side=20, held_up=0.0, exact=True)
+    found.margin = 1e-6
+    del found.commands[-12:]
+    found.cut = True
+    with pytest.raises(Fail, match='It does not end'):
+        judge(found)

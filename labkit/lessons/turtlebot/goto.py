@@ -294,7 +294,7 @@ go_to = Exercise(
         Wrong(
             'odometry from another topic',
             changed(_GO_TO, ("Odometry, 'odom'", "Odometry, 'odometry'")),
-            '/odom',
+            'subscription to /odom',
         ),
         Wrong(
             'eight commands a second',
