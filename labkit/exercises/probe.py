@@ -204,7 +204,7 @@ class Probe:
         """Return the learner's publishers on a topic."""
         from labkit.rosgraph import endpoints
 
-        return self._learners(endpoints.publishers(self.node, topic))
+        return self._learners(endpoints.publishers(self.node, topic), commands=True)
 
     def subscriptions(self, topic: str) -> list[Endpoint]:
         """Return the learner's subscriptions to a topic."""
@@ -217,7 +217,7 @@ class Probe:
         from labkit.rosgraph.endpoints import publishers
 
         found = (end for topic in self.topics() for end in publishers(self.node, topic))
-        return self._learners(found)
+        return self._learners(found, commands=True)
 
     def all_subscriptions(self) -> list[Endpoint]:
         """Return the learner's subscriptions to all topics."""
@@ -277,8 +277,17 @@ class Probe:
 
         return whose.place(endpoint.gid, self.node)
 
-    def _learners(self, found: Iterable[Endpoint]) -> list[Endpoint]:
-        return [e for e in found if not is_hidden(e.node) and not is_given(e.node, self.scope)]
+    def _learners(self, found: Iterable[Endpoint], commands: bool = False) -> list[Endpoint]:
+        """Leave out what is not the learner's. The hidden node of a command may be."""
+        return [
+            end
+            for end in found
+            if not is_given(end.node, self.scope)
+            and (not is_hidden(end.node) or (commands and self._is_of_command(end)))
+        ]
+
+    def _is_of_command(self, end: Endpoint) -> bool:
+        return end.is_known and not self.in_this_process(end)
 
     # -- messages -------------------------------------------------------------------------------
 

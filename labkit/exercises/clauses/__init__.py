@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from labkit.exercises.clauses.answering import Answers, Logs, find_stage
 from labkit.exercises.clauses.base import Clause, Evidence, Stream, Test, judge
+from labkit.exercises.clauses.messages import HasText, Messages, Says
 from labkit.exercises.clauses.nodes import Named, Runs, Subscribes
-from labkit.exercises.clauses.publishing import HasText, Messages, Publishes, Says, often
+from labkit.exercises.clauses.publishing import Publishes, often
 
 __all__ = [
     'Answers',

@@ -75,7 +75,7 @@ class Runs(Clause):
         """What is asked for."""
         return self.words
 
-    def judge(self, evidence: Evidence) -> str:
+    def find(self, evidence: Evidence) -> None:
         """Ask the node."""
         probe = evidence.probe
         name = self.node or evidence.publisher(self.topic).node
@@ -91,4 +91,3 @@ class Runs(Clause):
                 'takes messages nor answers questions.',
                 todo=timing.how_to_spin(probe, name),
             )
-        return f'{name} runs.'

@@ -1,30 +1,31 @@
-"""Clauses on what is published: how often, without an end, and what the messages say."""
+"""A clause on what is published: how often, and without an end."""
 
 from __future__ import annotations
 
 import statistics
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from labkit.exercises.clauses.base import Clause, Evidence, Stream
 from labkit.exercises.expect import timing
-from labkit.exercises.expect.values import show, text_trouble
-from labkit.exercises.life import LIFE_SEC, Life
+from labkit.exercises.life import LIFE_SEC, Life, live
 from labkit.exercises.verdict import Fail
 from labkit.exercises.watch import Sample, streams_of
 
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
 
-__all__ = ['HasText', 'Messages', 'Publishes', 'Says', 'often']
+__all__ = ['Publishes', 'often']
 
 # How far a rate may be off, as a part of it, where time is exact. Where a node keeps a time of its
 # own, `timing.TOLERANCE` holds.
 TOLERANCE = 0.02
 # How far a single gap may be off: a node may look at the clock in steps of its own.
 GAP_TOLERANCE = 0.5
+# So many calls of a timer may pass until it has made its publisher.
+FIRST_CALLS = 3
 # Gaps that differ by less than this are equal, s: that is what a timer of ROS makes.
 REGULAR_SEC = 1e-6
 # So much a rate in real time may differ from that in virtual time if both are one.
@@ -89,8 +90,19 @@ class Publishes(Clause):
         return f'{who} `{self.msg_type}` on `{self.topic}`, {rate}{end}'
 
     def find(self, evidence: Evidence) -> None:
-        """Look for the publisher."""
+        """Look for the publisher. One that is made in a callback may not be there yet."""
+        if not evidence.probe.publishers(self.topic):
+            self._let_it_be_made(evidence)
         evidence.publisher(self.topic, self.by)
+
+    def _let_it_be_made(self, evidence: Evidence) -> None:
+        """Let some time pass for nodes of this notebook that do not publish at all yet."""
+        probe = evidence.probe
+        silent = set(probe.node_names()) - {end.node for end in probe.all_publishers()}
+        nodes = [name for name in sorted(silent) if probe.node_object(name) is not None]
+        if nodes:
+            evidence.life = live(probe, {}, FIRST_CALLS * self.period, nodes=nodes)
+            evidence.refuse_trouble(())
 
     def judge(self, evidence: Evidence) -> str:
         """Judge the rate, and whether it goes on."""
@@ -108,7 +120,7 @@ class Publishes(Clause):
             trouble = self._trouble(samples, life)
             if trouble is not None and not 0 < _period(_fine(samples, life)) < 0.8 * period:
                 self._refuse(first)
-        elif trouble is not None and _is_regular(samples):
+        elif trouble is not None and self._follows(samples, life):
             self._refuse(trouble)
         if trouble is not None:
             watch = self._in_real_time(evidence, trouble, samples)
@@ -159,6 +171,10 @@ class Publishes(Clause):
         ends = [(by, topic) for kind, topic, by in evidence.ends if kind == 'publisher']
         return sorted(by for by, topic in ends if topic == self.topic)
 
+    def _follows(self, samples: Sequence[Sample], life: Life) -> bool:
+        """Tell whether messages follow ROS time: a thread makes few of them in so short a time."""
+        return _is_regular(samples) or len(samples) > self.hz * life.seconds / 2
+
     def _right(self, life: Life) -> list[Stream]:
         """Return the messages of each publisher that does what the clause asks for."""
         return [
@@ -185,7 +201,7 @@ class Publishes(Clause):
         """Raise Fail if there are so many messages that they follow ROS time, but wrongly."""
         for samples in streams_of(life.on(self.topic)):
             trouble = self._trouble(samples, life)
-            if trouble and (_is_regular(samples) or len(samples) > self.hz * life.seconds / 4):
+            if trouble and self._follows(samples, life):
                 self._refuse(trouble)
 
     def _among_others(self, evidence: Evidence) -> Stream:
@@ -299,118 +315,6 @@ class Publishes(Clause):
             why=trouble[1],
             todo=todo,
         )
-
-
-@dataclass(frozen=True, eq=False)
-class Messages(Clause):
-    """What the messages of a publisher say, all of them, from the first to the last that came.
-
-    Attributes:
-        topic: Full name of the topic. A clause on its rate stands before this one.
-        words: What is asked for, in words of the task.
-        rule: Gets the messages, and raises Fail if they say something else.
-        by: Full name of the node; any node if empty.
-    """
-
-    topic: str
-    words: str
-    rule: Callable[[Stream], str | None]
-    by: str = ''
-
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
-
-    def judge(self, evidence: Evidence) -> str:
-        """Judge the messages."""
-        return self.rule(evidence.streams[self.topic, self.by]) or ''
-
-
-@dataclass(frozen=True)
-class Says(Clause):
-    """A field has one value, in each message.
-
-    Attributes:
-        topic: Full name of the topic.
-        value: The value.
-        field: Name of the field.
-        by: Full name of the node; any node if empty.
-        todo: The next step for who has another value.
-        explain: Gets the values that came; returns the misconception and the next step.
-        words: In words of the task; made of the value if empty.
-    """
-
-    topic: str
-    value: Any
-    field: str = 'data'
-    by: str = ''
-    todo: str = ''
-    explain: Callable[[Sequence[Any]], tuple[str, str]] | None = None
-    words: str = ''
-
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words or f'each message says `{self.value!r}`'
-
-    def judge(self, evidence: Evidence) -> str:
-        """Judge the values."""
-        stream = evidence.streams[self.topic, self.by]
-        values = stream.values(self.field)
-        for number, value in enumerate(values):
-            if value != self.value:
-                why, todo = self.explain(values) if self.explain is not None else ('', '')
-                if number and not why:
-                    why = 'The first messages were right, the later ones are not.'
-                after = f', after {number} that were right' if number else ''
-                raise Fail(
-                    f'{self.field} = {self.value!r} in each message on {self.topic}',
-                    f'{self.field} = {show(values[number:])}{after}',
-                    why=why or text_trouble(value, self.value),
-                    todo=todo or self.todo,
-                )
-        return ''
-
-
-@dataclass(frozen=True)
-class HasText(Clause):
-    """A text field is not empty, in any message of some publishers.
-
-    Attributes:
-        topic: Full name of the topic. A clause on the rate stands before this one.
-        by: Full names of the nodes; any node if there is one empty name.
-        field: Name of the field.
-    """
-
-    topic: str
-    by: Sequence[str] = ('',)
-    field: str = 'data'
-
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return 'no message is empty'
-
-    def judge(self, evidence: Evidence) -> str:
-        """Judge the texts."""
-        for by in self.by:
-            stream = evidence.streams[self.topic, by]
-            values = stream.values(self.field)
-            number = next((i for i, text in enumerate(values) if not text.strip()), None)
-            if number is not None:
-                raise Fail(
-                    f'a text in each message on {self.topic}',
-                    f'{self.field} = {show(values[number:])}'
-                    + (f', after {number} with a text' if number else ''),
-                    why='The message was published as it was made: its field '
-                    f'{self.field} is an empty text at first.'
-                    if not values[number]
-                    else 'A text of spaces says nothing.',
-                    todo=f'Set the field before you publish: msg.{self.field} = ...',
-                )
-        examples = [evidence.streams[self.topic, by].values(self.field)[0] for by in self.by]
-        return f'It says {show(examples)}.'
 
 
 def _rate(samples: Sequence[Sample]) -> float:

@@ -18,6 +18,10 @@ LESSON = Lesson(
     quizzes=[QUIZ],
     topics=['/mail', '/stamped', '/news'],
     given={
+        '/talker': 'talker-run listener-run',
+        '/listener': 'listener-run',
+        '/talker_1': 'two-talkers',
+        '/talker_2': 'two-talkers',
         '/writer': 'not-spun',
         '/reader': 'not-spun',
         '/stamped_talker': 'rate-loop',

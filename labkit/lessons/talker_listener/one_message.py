@@ -2,11 +2,37 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Exercise, Fail, Probe, Solution, Style, Wrong, changed, expect
+import random
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NoReturn
+
+from labkit.exercises import (
+    Exercise,
+    Fail,
+    Outcome,
+    Solution,
+    Style,
+    Watch,
+    Wrong,
+    changed,
+    expect,
+)
+from labkit.exercises.clauses import Clause, Evidence, Runs
+from labkit.exercises.expect.timing import FOUND_SEC
+from labkit.exercises.life import LIFE_SEC, live
+from labkit.lessons._script import in_process, started_by_asyncio, started_by_subprocess
 
 __all__ = ['say_once']
 
 STRING = 'std_msgs/msg/String'
+TOPIC = '/door'
+# So long time passes while nobody listens, s: another one each time.
+ALONE_SEC = (20.0, 40.0)
+# How long a thread of this process may take to see that somebody listens, s of real time.
+LATE_SEC = 1.5
+# What comes soon after a message comes from a node that keeps a time of its own, s of real time.
+SOON_SEC = 1.2
 
 _DOOR = """
 from rclpy.node import Node
@@ -27,48 +53,147 @@ class Door(Node):
 
 door = lab.spin(Door())
 """
+_INIT = "        super().__init__('door')\n"
+_TIMER = '        self.timer = self.create_timer(0.1, self.on_timer)\n'
 _LOOK = 'if self.publisher.get_subscription_count() > 0:'
+_PUBLISH = "            self.publisher.publish(String(data='The door is open'))\n"
+_CANCEL = '            self.timer.cancel()\n'
 _TEXT = 'The door is open'
+_AGAIN = 'Run the cell of your node again before each check: it speaks once only.'
 
 
-def _judge_say_once(probe: Probe) -> str:
-    source = expect.publisher(probe, '/door')
-    # Who does not look whether somebody is there has spoken by then.
-    probe.wait(lambda: False, 0.5)
-    watch = probe.watch('/door', STRING)
-    expected = 'one message on /door, as soon as the check subscribes'
-    again = 'Run the cell of your node again before each check: it speaks once only.'
-    if not probe.wait(lambda: len(watch), 2.5):
-        raise Fail(
-            expected,
-            f'{source.node} has a publisher, but no message came within 2.5 s',
-            why='If it was published before somebody listened, it is lost: nobody keeps it for '
-            'those who come later. Or publish() was not reached at all.',
-            todo=f'Publish only when get_subscription_count() is not 0. {again}',
+@dataclass(frozen=True)
+class _SaysIt(Clause):
+    """When somebody listens, the node says the text."""
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return (
+            f'within {LIFE_SEC:.0f} seconds of the first subscription to `{TOPIC}`, publish '
+            f'`{_TEXT}` there (`{STRING}`)'
         )
-    if watch.samples[0].number > 1:
-        raise Fail(
-            expected,
-            f'the first message that came was number {watch.samples[0].number} of its publisher',
-            why='The earlier ones were published while nobody listened.',
-            todo=f'Look at get_subscription_count() before you publish. {again}',
+
+    def find(self, evidence: Evidence) -> None:
+        """Look for the publisher."""
+        evidence.publisher(TOPIC)
+
+    def judge(self, evidence: Evidence) -> str:
+        """Judge the first message."""
+        watch, source = _heard(evidence), evidence.publisher(TOPIC)
+        here = evidence.probe.in_this_process(source)
+        if not evidence.probe.wait(lambda: len(watch), LATE_SEC if here else FOUND_SEC):
+            expect.hanging(evidence.probe)
+            raise Fail(
+                f'one message on {TOPIC}, as soon as somebody subscribes',
+                f'{source.node} has a publisher, but no message came',
+                why='If it was published before somebody listened, it is lost: nobody keeps it '
+                'for those who come later. Or publish() was not reached at all.',
+                todo=f'Publish only when get_subscription_count() is not 0. {_AGAIN}',
+            )
+        first = watch.samples[0]
+        if first.number <= 1 and first.message.data != _TEXT:
+            expect.equal(watch, 'data', _TEXT, todo=_AGAIN)
+        return f'{source.node} waited, and said {_TEXT!r} once.'
+
+
+@dataclass(frozen=True)
+class _SilentBefore(Clause):
+    """As long as nobody listens, the node says nothing."""
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return 'publish nothing before that'
+
+    def find(self, evidence: Evidence) -> None:
+        """Let time pass while nobody listens, and then listen."""
+        probe = evidence.probe
+        _refuse_listeners(evidence)
+        # Nothing is written down here, so its times need not be known.
+        evidence.life = live(
+            probe,
+            {},
+            random.uniform(*ALONE_SEC),
+            nodes=[evidence.publisher(TOPIC).node],
+            tick=0.5,
+            rest=0.5,
         )
-    if probe.wait(lambda: len(watch) > 1, 1.2):
-        raise Fail(
-            expected,
-            f'{len(watch)} messages: {expect.show(watch.values("data"))}',
-            why='Nothing stops the node after its first message.',
-            todo='self.timer.cancel() ends the timer.',
-        )
-    expect.equal(watch, 'data', _TEXT, todo=again)
-    return f'{source.node} waited, and said {_TEXT!r} once.'
+        evidence.refuse_trouble(())
+        probe.recorded[TOPIC] = probe.watch(TOPIC, STRING)
+
+    def judge(self, evidence: Evidence) -> str:
+        """Judge as which one the first message came."""
+        number = _heard(evidence).samples[0].number
+        if number > 1:
+            raise Fail(
+                f'one message on {TOPIC}, as soon as somebody subscribes',
+                f'the first message that came was number {number} of its publisher',
+                why='The earlier ones were published while nobody listened.',
+                todo=f'Look at get_subscription_count() before you publish. {_AGAIN}',
+            )
+        return ''
+
+
+@dataclass(frozen=True)
+class _SilentAfter(Clause):
+    """Once it is said, the node says nothing more."""
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return 'publish nothing after that'
+
+    def judge(self, evidence: Evidence) -> str:
+        """Judge what else came."""
+        watch = _heard(evidence)
+        if evidence.probe.wait(lambda: len(watch) > 1, SOON_SEC):
+            raise Fail(
+                f'one message on {TOPIC}, and no other',
+                f'{len(watch)} messages: {expect.show(watch.values("data"))}',
+                why='Nothing stops the node after its first message.',
+                todo='self.timer.cancel() ends the timer.',
+            )
+        return ''
+
+
+def _heard(evidence: Evidence) -> Watch:
+    """Return what has come on the topic since the check listens."""
+    watch = evidence.probe.recorded[TOPIC]
+    watch.pump()
+    return watch
+
+
+def _refuse_listeners(evidence: Evidence) -> None:
+    """Raise Fail if somebody else listens already: to him it has been said."""
+    from labkit.rosgraph.endpoints import subscriptions
+    from labkit.rosgraph.names import is_hidden
+
+    found = subscriptions(evidence.probe.node, TOPIC)
+    if found:
+        names = sorted({'a view' if is_hidden(end.node) else end.node for end in found})
+        _refuse_names(names)
+
+
+def _refuse_names(names: Sequence[str]) -> NoReturn:
+    raise Fail(
+        f'nobody subscribes to {TOPIC} before the check does',
+        f'{", ".join(names)} subscribes there',
+        why='The node speaks once. If it has spoken to somebody else, the check hears nothing.',
+        todo='End that one, and run the cell of your node again.',
+    )
 
 
 say_once = Exercise(
     name='say_once',
-    task=f'Write a node that says "{_TEXT}" on /door once, when somebody subscribes.',
-    publishes={'/door': STRING},
-    judge=_judge_say_once,
+    task=f'Write a node that says "{_TEXT}" on {TOPIC} once, when somebody subscribes.',
+    publishes={TOPIC: STRING},
+    clauses=(
+        _SaysIt(),
+        Runs('the node is spun, and it does not block while it waits', topic=TOPIC),
+        _SilentBefore(),
+        _SilentAfter(),
+    ),
     hints=[
         'The node must look again and again whether somebody is there. What calls a callback '
         'again and again?',
@@ -110,7 +235,177 @@ lab.spin(Door())
 """,
         ),
         Style(
-            'own process, a loop',
+            'remembers that it has spoken, under the name of another node',
+            changed(
+                _DOOR,
+                (_INIT, "        super().__init__('editor')\n        self.said = False\n"),
+                (_LOOK, 'if self.publisher.get_subscription_count() > 0 and not self.said:'),
+                (_CANCEL, '            self.said = True\n'),
+            ),
+        ),
+        Style(
+            'looks every 3 seconds, and keeps it for those who come late',
+            changed(
+                _DOOR,
+                ('0.1', '3.0'),
+                (
+                    "String, 'door', 10",
+                    "String, 'door', QoSProfile(depth=1, durability=DurabilityPolicy(1))",
+                ),
+                (
+                    'from rclpy.node import Node\n',
+                    'from rclpy.node import Node\n'
+                    'from rclpy.qos import DurabilityPolicy, QoSProfile\n',
+                ),
+            ),
+        ),
+        Style(
+            'waits in a thread',
+            """
+import threading
+import time
+
+from rclpy.node import Node
+from std_msgs.msg import String
+
+node = lab.spin(Node('door'))
+publisher = node.create_publisher(String, 'door', 10)
+
+
+def work(publisher):
+    try:
+        while publisher.get_subscription_count() == 0:
+            time.sleep(0.1)
+        publisher.publish(String(data='The door is open'))
+    except Exception:
+        return
+
+
+threading.Thread(target=work, args=(publisher,), daemon=True).start()
+""",
+        ),
+        Style(
+            'an executor with several threads',
+            changed(
+                _DOOR,
+                (
+                    'from rclpy.node import Node\n',
+                    'import threading\n\nfrom rclpy.executors import MultiThreadedExecutor\n'
+                    'from rclpy.node import Node\n',
+                ),
+                (
+                    'door = lab.spin(Door())\n',
+                    'executor = MultiThreadedExecutor()\nexecutor.add_node(Door())\n'
+                    'threading.Thread(target=executor.spin, daemon=True).start()\n',
+                ),
+            ),
+        ),
+        Style('own process', in_process(_DOOR), process=True),
+        Style('own process, by subprocess', started_by_subprocess(in_process(_DOOR))),
+        Style('own process, by asyncio', started_by_asyncio(in_process(_DOOR))),
+    ],
+    wrong=[
+        Wrong('does not wait', changed(_DOOR, (_LOOK, 'if True:')), 'it is lost'),
+        Wrong(
+            'waits some seconds, and does not look',
+            changed(_DOOR, (_LOOK, 'if True:'), ('0.1', '3.0')),
+            'it is lost',
+        ),
+        Wrong(
+            'says it again and again',
+            changed(_DOOR, (_CANCEL, '')),
+            'Nothing stops the node after its first message.',
+        ),
+        Wrong(
+            'says it twice',
+            changed(_DOOR, (_PUBLISH, 2 * _PUBLISH)),
+            'one message on /door, and no other',
+        ),
+        Wrong(
+            'says it again after a while',
+            changed(
+                _DOOR,
+                (_INIT, f'{_INIT}        self.calls = 0\n'),
+                (
+                    f'{_PUBLISH}{_CANCEL}',
+                    '            self.calls += 1\n'
+                    f'            if self.calls % 100 == 1:\n    {_PUBLISH}',
+                ),
+            ),
+            'Nothing stops the node after its first message.',
+        ),
+        Wrong(
+            'says more, later',
+            changed(
+                _DOOR,
+                (
+                    _CANCEL,
+                    f'{_CANCEL}            self.create_timer(9.0, self.close)\n\n'
+                    '    def close(self):\n'
+                    "        self.publisher.publish(String(data='The door is shut'))\n",
+                ),
+            ),
+            "'The door is open', 'The door is shut'",
+        ),
+        Wrong(
+            'does not look',
+            changed(_DOOR, (_LOOK, 'if True:'), (_CANCEL, '')),
+            'published while nobody listened',
+        ),
+        Wrong(
+            'says something before',
+            changed(
+                _DOOR,
+                (_TIMER, f"{_TIMER}        self.publisher.publish(String(data='Hello'))\n"),
+            ),
+            'published while nobody listened',
+        ),
+        Wrong(
+            'looks once',
+            changed(_DOOR, (_TIMER, '        self.on_timer()\n')),
+            'Or publish() was not reached at all.',
+        ),
+        Wrong(
+            'looks for a while only',
+            changed(
+                _DOOR,
+                (_INIT, f'{_INIT}        self.calls = 0\n'),
+                (
+                    _LOOK,
+                    f'self.calls += 1\n        if self.calls > 100:\n{_CANCEL}        el{_LOOK}',
+                ),
+            ),
+            'Or publish() was not reached at all.',
+        ),
+        Wrong('other text', changed(_DOOR, (_TEXT, 'The door is Open')), 'Capital and small'),
+        Wrong('empty text', changed(_DOOR, ("data='The door is open'", '')), "data = ''"),
+        Wrong('other topic', changed(_DOOR, ("'door', 10", "'doors', 10")), 'names must be equal'),
+        Wrong(
+            'other type',
+            changed(
+                _DOOR,
+                ('import String', 'import Int16'),
+                ('(String, ', '(Int16, '),
+                ("String(data='The door is open')", 'Int16(data=1)'),
+            ),
+            'A topic carries one type of message.',
+        ),
+        Wrong(
+            'waits in the callback',
+            changed(
+                _DOOR,
+                (
+                    f'        {_LOOK}\n{_PUBLISH}{_CANCEL}',
+                    '        while self.publisher.get_subscription_count() == 0:\n'
+                    '            time.sleep(0.05)\n'
+                    f'        self.timer.cancel()\n{_PUBLISH[4:]}',
+                ),
+                ('from rclpy', 'import time\n\nfrom rclpy'),
+            ),
+            'While a callback runs, no other one can',
+        ),
+        Wrong(
+            'a program that waits in a loop',
             """
 import time
 
@@ -125,30 +420,31 @@ while publisher.get_subscription_count() == 0:
 publisher.publish(String(data='The door is open'))
 rclpy.spin(node)
 """,
+            'Its program does something else, such as a loop that waits.',
             process=True,
         ),
-    ],
-    wrong=[
-        Wrong('does not wait', changed(_DOOR, (_LOOK, 'if True:')), 'it is lost'),
         Wrong(
-            'says it again and again',
-            changed(_DOOR, ('            self.timer.cancel()\n', '')),
-            'Nothing stops the node after its first message.',
+            'not spun',
+            changed(_DOOR, ('lab.spin(Door())', 'Door()')),
+            '/door is there, but it is not spun',
         ),
         Wrong(
-            'does not look',
-            changed(_DOOR, (_LOOK, 'if True:'), ('            self.timer.cancel()\n', '')),
-            'published while nobody listened',
-        ),
-        Wrong(
-            'looks once',
+            'a listener of its own',
             changed(
-                _DOOR, ('self.timer = self.create_timer(0.1, self.on_timer)', 'self.on_timer()')
+                _DOOR,
+                (
+                    _TIMER,
+                    f"{_TIMER}        self.create_subscription(String, 'door', print, 10)\n",
+                ),
             ),
-            'Or publish() was not reached at all.',
+            'nobody subscribes to /door before the check does',
         ),
-        Wrong('other text', changed(_DOOR, (_TEXT, 'The door is Open')), 'Capital and small'),
-        Wrong('other topic', changed(_DOOR, ("'door', 10", "'doors', 10")), 'names must be equal'),
+        Wrong(
+            'not set up',
+            changed(_DOOR, (_INIT, '')),
+            'super().__init__(...) has not been called',
+            outcome=Outcome.ERROR,
+        ),
     ],
     once=True,
 )

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from labkit.exercises import (
-    Exercise,
-    Outcome,
-    Probe,
-    Solution,
-    Style,
-    Wrong,
-    changed,
-    expect,
+from labkit.exercises import Exercise, Outcome, Solution, Style, Wrong, changed
+from labkit.exercises.clauses import HasText, Publishes
+from labkit.lessons._script import (
+    in_process,
+    started_by_asyncio,
+    started_by_subprocess,
+    two_copies,
 )
-from labkit.lessons._script import in_process, two_copies
 
 __all__ = ['every_two_seconds']
 
@@ -39,28 +36,38 @@ slow_talker = lab.spin(SlowTalker())
 """
 
 
-def _judge_every_two_seconds(probe: Probe) -> str:
-    # A publisher that is made in the callback is there only after the first tick.
-    if set(probe.node_names()) - {endpoint.node for endpoint in probe.all_publishers()}:
-        probe.wait(lambda: probe.publishers('/chatter'), 2.2)
-    source = expect.publisher(probe, '/chatter')
-    watch = expect.messages(probe, source, count=2, hz=0.5, tolerance=0.2)
-    expect.each(
-        watch,
-        'data',
-        bool,
-        expected='a text in every message',
-        why='The message was published as it was made: its field data is an empty text.',
-        todo='Set the field before you publish: msg.data = ...',
-    )
-    return f'{source.node} said {expect.show(watch.values("data"))}, with 2 s in between.'
+_INIT = "        super().__init__('slow_talker')\n"
+_PUBLISH = '        self.publisher.publish(msg)\n'
+_COUNT = (_INIT, f'{_INIT}        self.calls = 0\n')
 
+_THREAD = """
+import threading
+import time
+
+from rclpy.node import Node
+from std_msgs.msg import String
+
+node = Node('metronome')
+publisher = node.create_publisher(String, 'chatter', 10)
+
+
+def work(publisher):
+    while True:
+        try:
+            publisher.publish(String(data='tick'))
+        except Exception:
+            return
+        time.sleep(2)
+
+
+threading.Thread(target=work, args=(publisher,), daemon=True).start()
+"""
 
 every_two_seconds = Exercise(
     name='every_two_seconds',
     task='Write a node that publishes a `String` on /chatter every 2 seconds.',
     publishes={'/chatter': STRING},
-    judge=_judge_every_two_seconds,
+    clauses=(Publishes('/chatter', 0.5, STRING), HasText('/chatter')),
     hints=[
         'The class Talker is nearly what you need. Which number in it is the period?',
         'In __init__: the name of the node, create_publisher(...) and create_timer(2.0, ...). '
@@ -92,7 +99,87 @@ timer = node.create_timer(2, tick)
 lab.spin(node)
 """,
         ),
+        Style('a loop that sleeps, in a thread', _THREAD),
+        Style(
+            'a fast timer, and every fourth call counts',
+            changed(
+                _SLOW,
+                _COUNT,
+                ('2.0', '0.5'),
+                (
+                    _PUBLISH,
+                    f'        self.calls += 1\n        if self.calls % 4 == 0:\n    {_PUBLISH}',
+                ),
+            ),
+        ),
+        Style(
+            "a fast timer that looks at the computer's clock",
+            changed(
+                _SLOW,
+                (_INIT, f'{_INIT}        self.due = time.monotonic()\n'),
+                ('2.0', '0.05'),
+                (
+                    _PUBLISH,
+                    '        if time.monotonic() >= self.due:\n'
+                    f'            self.due += 2.0\n    {_PUBLISH}',
+                ),
+                ('from rclpy.node', 'import time\n\nfrom rclpy.node'),
+            ),
+        ),
+        Style(
+            'a publisher that is made late, by a node with the name of another one',
+            changed(
+                _SLOW,
+                ("__init__('slow_talker')", "__init__('talker')"),
+                (
+                    "self.publisher = self.create_publisher(String, 'chatter', 10)",
+                    'self.publisher = None',
+                ),
+                (
+                    '        msg = String()\n',
+                    '        if self.publisher is None:\n'
+                    "            self.publisher = self.create_publisher(String, 'chatter', 10)\n"
+                    '        msg = String()\n',
+                ),
+            ),
+        ),
+        Style(
+            'a task of asyncio',
+            """
+import asyncio
+
+import rclpy
+from std_msgs.msg import String
+
+node = lab.spin(rclpy.create_node('metronome'))
+publisher = node.create_publisher(String, 'chatter', 10)
+
+
+async def tick(publisher):
+    while True:
+        try:
+            publisher.publish(String(data='tick'))
+        except Exception:
+            return
+        await asyncio.sleep(2)
+
+
+task = asyncio.create_task(tick(publisher))
+""",
+        ),
         Style('own process', in_process(_SLOW), process=True),
+        Style('own process, by subprocess', started_by_subprocess(in_process(_SLOW))),
+        Style('own process, by asyncio', started_by_asyncio(in_process(_SLOW))),
+        Style(
+            'a command',
+            """
+import subprocess
+import sys
+
+command = 'topic pub --rate 0.5 --times 600 -w 0 /chatter std_msgs/msg/String'.split()
+process = subprocess.Popen([f'{sys.prefix}/bin/ros2', *command, '{data: hello}'])
+""",
+        ),
     ],
     wrong=[
         Wrong(
@@ -138,6 +225,56 @@ lab.spin(node)
             changed(_SLOW, ('lab.spin(SlowTalker())', 'SlowTalker()')),
             'nothing runs its callbacks',
         ),
+        Wrong('every 3 seconds', changed(_SLOW, ('2.0', '3.0')), '1.5 times too slow'),
+        Wrong('every 5 seconds', changed(_SLOW, ('2.0', '5.0')), '2.5 times too slow'),
+        Wrong('a little too slow', changed(_SLOW, ('2.0', '2.1')), '1.05 times too slow'),
+        Wrong(
+            'twice each time',
+            changed(_SLOW, (_PUBLISH, 2 * _PUBLISH)),
+            'is publish() called twice',
+        ),
+        Wrong(
+            'ends after five',
+            changed(
+                _SLOW,
+                _COUNT,
+                (
+                    _PUBLISH,
+                    f'        self.calls += 1\n        if self.calls <= 5:\n    {_PUBLISH}',
+                ),
+            ),
+            'They stop coming.',
+        ),
+        Wrong(
+            'a thread that sleeps too long',
+            changed(_THREAD, ('sleep(2)', 'sleep(3)')),
+            'times too slow',
+        ),
+        Wrong(
+            'an empty text later on',
+            changed(
+                _SLOW,
+                _COUNT,
+                (
+                    _PUBLISH,
+                    '        self.calls += 1\n'
+                    "        if self.calls > 5:\n            msg.data = ''\n"
+                    f'{_PUBLISH}',
+                ),
+            ),
+            'is an empty text at first',
+        ),
+        Wrong(
+            'a class, and no node of it',
+            _SLOW.partition('\n\n\nslow_talker')[0],
+            'Nothing runs before a node is made of it.',
+        ),
+        Wrong(
+            'not set up',
+            changed(_SLOW, (_INIT, '')),
+            'super().__init__(...) has not been called',
+            outcome=Outcome.ERROR,
+        ),
         Wrong('off by ten', changed(_SLOW, ('2.0', '0.2')), 'times too fast'),
         Wrong(
             'rate for period',
@@ -156,7 +293,7 @@ lab.spin(node)
         Wrong(
             'message never filled',
             changed(_SLOW, ("        msg.data = 'Hello from the slow talker'\n", '')),
-            'its field data is an empty text',
+            'its field data is an empty text at first',
         ),
         Wrong(
             'publishes a text',
