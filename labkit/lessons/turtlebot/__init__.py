@@ -17,6 +17,6 @@ LESSON = Lesson(
     '07_turtlebot.ipynb',
     exercises=[stop, bot, wall, go_to, square],
     quizzes=[QUIZ],
-    topics=['/scan', '/joint_states', '/clock'],
+    topics=['/scan', '/joint_states', '/imu', '/battery_state'],
     given={'/turtlebot': '*', '/teleop': '*', '/bot': 'bot-run', '/speedometer': 'speedometer'},
 )
