@@ -11,6 +11,9 @@ from labkit.views.arena_picture import Scene, row, two
 
 __all__ = ['observed']
 
+# So many pictures fit next to each other in a cell.
+ABREAST = 2
+
 
 @contextmanager
 def observed() -> Iterator[list[Drive]]:
@@ -26,11 +29,15 @@ def observed() -> Iterator[list[Drive]]:
 
 
 def _show(drives: list[Drive]) -> None:
-    """Draw drives next to each other, and tell them in words; in a script, in words only."""
-    text = '\n'.join(map(_words, drives))
+    """Draw drives, two next to each other, and tell them in words; in a script, in words only."""
     if not settings.in_kernel():
-        print(text)
+        print(*map(_words, drives), sep='\n')
         return
+    for first in range(0, len(drives), ABREAST):
+        _show_row(drives[first : first + ABREAST])
+
+
+def _show_row(drives: list[Drive]) -> None:
     from IPython.display import display
 
     scenes = [
@@ -42,6 +49,7 @@ def _show(drives: list[Drive]) -> None:
         )
         for drive in drives
     ]
+    text = '\n'.join(map(_words, drives))
     display({'text/plain': text, 'image/svg+xml': row(scenes, text)}, raw=True)  # type: ignore[no-untyped-call]
 
 
