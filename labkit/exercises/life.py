@@ -32,8 +32,8 @@ MAX_EVENTS = 6000
 # After so many messages of one topic nothing new is to be learnt.
 MAX_MESSAGES = 3000
 # When this is over, time passes in large steps for nodes of other processes, s of real time.
-HURRY_SEC = 3.0
-LARGE_STEP_SEC = 0.5
+HURRY_SEC = 2.0
+LARGE_STEP_SEC = 2.0
 # How long an answer may take that comes from a thread or another process, s of real time.
 PATIENCE_SEC = 0.8
 POLL_SEC = 0.002
@@ -214,6 +214,7 @@ class _Course:
     until: Callable[[float, Mapping[str, Watch]], bool] | None
     events: int = 0
     patience: int = 2
+    began: float = field(default_factory=time.monotonic)
 
     def note(self) -> None:
         """Write down which real time this moment of virtual time has."""
@@ -229,10 +230,12 @@ class _Course:
     def hurry(self, at: float) -> float:
         """Let time pass until a moment, in large steps once it has taken long; return the step."""
         passing = self.passing
-        end = time.monotonic() + HURRY_SEC
-        while passing.seconds < at and self.go(min(at, passing.seconds + LARGE_STEP_SEC)):
-            if time.monotonic() > end:
-                passing.tick = max(passing.tick, LARGE_STEP_SEC)
+        usual = passing.tick
+        while passing.seconds < at:
+            if time.monotonic() > self.began + HURRY_SEC:
+                passing.tick = max(usual, LARGE_STEP_SEC)
+            if not self.go(min(at, passing.seconds + LARGE_STEP_SEC)):
+                break
         return passing.tick
 
     def send(self, sender: Callable[..., float], stimulus: Stimulus, life: Life) -> None:

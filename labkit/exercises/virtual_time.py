@@ -116,6 +116,9 @@ class VirtualTime:
         for node in self._all:
             if node not in self._was_active and node_exists(node):
                 compat.set_ros_time_is_active(node.get_clock(), False)  # type: ignore[arg-type]
+        # They wait for timers as if time stood still.
+        for executor in {node.executor for node in self._all if node.executor is not None}:
+            executor.wake()
 
     def restart_timers(self) -> None:
         """Let all timers begin anew, so that they don't depend on when the nodes were made."""

@@ -11,13 +11,16 @@ from types import ModuleType
 from typing import Any
 
 import pytest
+from rclpy.duration import Duration
 from rclpy.exceptions import ROSInterruptException
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from std_msgs.msg import Int16
 
 from labkit.exercises import Probe
 from labkit.exercises.life import Life, Stimulus, live
 from labkit.exercises.scope import Scope
+from labkit.exercises.virtual_time import VirtualTime
 
 INT16 = 'std_msgs/msg/Int16'
 STRING = 'std_msgs/msg/String'
@@ -301,6 +304,7 @@ import labkit
 from labkit.exercises import Probe
 from labkit.exercises.remote_time import RemoteTime
 from labkit.exercises.scope import Scope
+from labkit.exercises.virtual_time import VirtualTime
 
 labkit.start()
 with Probe('test', Scope(publishes={'/odds': 'std_msgs/msg/Int16'})) as probe:
@@ -317,3 +321,43 @@ with Probe('test', Scope(publishes={'/odds': 'std_msgs/msg/Int16'})) as probe:
         assert _appears(probe, '/far')
         watch = probe.watch('/odds', INT16)
         assert probe.wait(lambda: len(watch) >= 3, 20.0)
+
+
+def test_time_begins_in_the_present_for_a_node_that_has_had_none(lab: ModuleType) -> None:
+    """A node that notes when to act next is not late by the time that others have had."""
+
+    class Punctual(Counter):
+        def __init__(self) -> None:
+            super().__init__('punctual', 'evens', 0.02)
+            self.due = self.get_clock().now()
+
+        def on_timer(self) -> None:
+            if self.get_clock().now() >= self.due:
+                self.due += Duration(seconds=0.1)
+                super().on_timer()
+
+    lab.spin(Counter())
+    see({'/odds': INT16}, {'/counter'}, 3000.0)
+    lab.spin(Punctual())
+    life = see({'/evens': INT16}, {'/punctual'}, 10.0)
+    assert 98 <= len(life.on('/evens')) <= 110
+
+
+def test_timers_are_called_at_once_when_time_is_real_again(lab: ModuleType) -> None:
+    class Own(SingleThreadedExecutor):
+        woken = 0
+
+        def wake(self) -> None:
+            self.woken += 1
+            super().wake()
+
+    counter, executor = Counter(), Own()
+    executor.add_node(counter)
+    thread = threading.Thread(target=executor.spin, daemon=True)
+    thread.start()
+    with VirtualTime([counter]) as passing:
+        passing.advance(1.0, lambda: True)
+        before = executor.woken
+    assert executor.woken > before
+    executor.shutdown()
+    thread.join()

@@ -183,9 +183,9 @@ class Evidence:
             stimuli=stimuli,
             also=also,
             nodes=nodes or {end.node for end in self.ends.values()},
-            tick=period / 5,
-            # So 100 ticks tell a rate to one percent.
-            fine_sec=20 * period,
+            tick=period / 3,
+            # So 45 ticks tell a rate to two percent.
+            fine_sec=15 * period,
             rest=max(period, 0.1),
         )
 
