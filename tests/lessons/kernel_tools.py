@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import signal
 import subprocess
 import sys
@@ -27,6 +28,7 @@ _names_before: dict[str, Any] = {}
 
 def mark() -> None:
     """Remember which nodes, processes and names belong to the lesson itself."""
+    gc.collect()  # a process that has ended is an attempt as long as there is an object of it
     _before.update(existing_nodes())
     _foreign_before.update(runtime.foreign_nodes())
     _children_before.update(child.pid for child in _children())
