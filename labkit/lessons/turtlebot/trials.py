@@ -312,6 +312,7 @@ class Trials:
             send = probe.sender(*self.sign)
             place(self.robot, trial.start)
             for watch in watches.values():
+                watch.pump()
                 watch.clear()
             probe.wait(lambda: len(watches['/odom']) > 1, 1.0)
             sign = send(trial.fields)
