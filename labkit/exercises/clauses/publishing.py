@@ -120,7 +120,7 @@ class Publishes(Clause):
             trouble = self._trouble(samples, life)
             if trouble is not None and not 0 < _period(_fine(samples, life)) < 0.8 * period:
                 self._refuse(first)
-        elif trouble is not None and self._follows(samples, life):
+        elif trouble is not None and self._follows_ros_time(samples, life):
             self._refuse(trouble)
         if trouble is not None:
             watch = self._in_real_time(evidence, trouble, samples)
@@ -171,7 +171,7 @@ class Publishes(Clause):
         ends = [(by, topic) for kind, topic, by in evidence.ends if kind == 'publisher']
         return sorted(by for by, topic in ends if topic == self.topic)
 
-    def _follows(self, samples: Sequence[Sample], life: Life) -> bool:
+    def _follows_ros_time(self, samples: Sequence[Sample], life: Life) -> bool:
         """Tell whether messages follow ROS time: a thread makes few of them in so short a time."""
         return _is_regular(samples) or len(samples) > self.hz * life.seconds / 2
 
@@ -201,7 +201,7 @@ class Publishes(Clause):
         """Raise Fail if there are so many messages that they follow ROS time, but wrongly."""
         for samples in streams_of(life.on(self.topic)):
             trouble = self._trouble(samples, life)
-            if trouble and self._follows(samples, life):
+            if trouble and self._follows_ros_time(samples, life):
                 self._refuse(trouble)
 
     def _among_others(self, evidence: Evidence) -> Stream:

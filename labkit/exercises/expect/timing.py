@@ -240,9 +240,10 @@ def runs(probe: Probe, name: str) -> bool:
         return node.executor is not None
     from labkit.background.service_calls import wait_until_spun
 
-    services = dict(probe.spun_node.get_service_names_and_types())
-    asked = f'{name}/list_parameters' in services
-    return not asked or wait_until_spun(probe.spun_node, name, ANSWER_SEC)
+    service, asker = f'{name}/list_parameters', probe.spun_node
+    # Services come into the graph after the name of their node.
+    found = probe.wait_to_appear(lambda: service in dict(asker.get_service_names_and_types()))
+    return not found or wait_until_spun(asker, name, ANSWER_SEC)
 
 
 def _intervals(stream: Sequence[Sample]) -> list[float]:

@@ -248,9 +248,11 @@ lab.spin(Door())
             changed(
                 _DOOR,
                 ('0.1', '3.0'),
+                ("String, 'door', 10", "String, 'door', latched"),
                 (
-                    "String, 'door', 10",
-                    "String, 'door', QoSProfile(depth=1, durability=DurabilityPolicy(1))",
+                    '\n\nclass',
+                    '\nlatched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)'
+                    '\n\n\nclass',
                 ),
                 (
                     'from rclpy.node import Node\n',

@@ -19,6 +19,7 @@ _BEACON = """
 from rclpy.node import Node
 from std_msgs.msg import String
 
+
 class Beacon(Node):
     period = 0.25  # in seconds
 
@@ -147,9 +148,11 @@ threading.Thread(target=work, args=(node, publisher), daemon=True).start()
             changed(
                 _BEACON,
                 ("__init__('beacon')", "__init__('talker')"),
+                ("String, 'beacon', 10", "String, 'beacon', latched"),
                 (
-                    "String, 'beacon', 10",
-                    "String, 'beacon', QoSProfile(depth=1, durability=DurabilityPolicy(1))",
+                    '\n\nclass',
+                    '\nlatched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)'
+                    '\n\n\nclass',
                 ),
                 (
                     'from rclpy.node import Node\n',
@@ -184,8 +187,9 @@ threading.Thread(target=executor.spin, daemon=True).start()
 import subprocess
 import sys
 
-command = 'topic pub --rate 4 --times 600 -w 0 /beacon std_msgs/msg/String'.split()
-process = subprocess.Popen([f'{sys.prefix}/bin/ros2', *command, '{data: I am here}'])
+options = ['--rate', '4', '--times', '600', '-w', '0']
+message = ['/beacon', 'std_msgs/msg/String', '{data: I am here}']
+process = subprocess.Popen([f'{sys.prefix}/bin/ros2', 'topic', 'pub', *options, *message])
 """,
         ),
     ],

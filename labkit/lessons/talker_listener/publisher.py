@@ -164,7 +164,7 @@ async def tick(publisher):
         await asyncio.sleep(2)
 
 
-task = asyncio.create_task(tick(publisher))
+tasks = [asyncio.create_task(tick(publisher))]
 """,
         ),
         Style('own process', in_process(_SLOW), process=True),
@@ -176,8 +176,9 @@ task = asyncio.create_task(tick(publisher))
 import subprocess
 import sys
 
-command = 'topic pub --rate 0.5 --times 600 -w 0 /chatter std_msgs/msg/String'.split()
-process = subprocess.Popen([f'{sys.prefix}/bin/ros2', *command, '{data: hello}'])
+options = ['--rate', '0.5', '--times', '600', '-w', '0']
+message = ['/chatter', 'std_msgs/msg/String', '{data: hello}']
+process = subprocess.Popen([f'{sys.prefix}/bin/ros2', 'topic', 'pub', *options, *message])
 """,
         ),
     ],

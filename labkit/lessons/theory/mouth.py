@@ -173,13 +173,14 @@ lab.spin(node)
                 MOUTH,
                 (
                     "'mouth')",
-                    "'node', cli_args=['--ros-args', '-r', '__node:=mouth', '-r', 'a:=thought'])",
+                    "'node', cli_args=OPTIONS)",
                 ),
                 ("'thought'", "'a'"),
                 ("'speech', 10", "'speech', latched"),
                 (
                     '\n\nclass',
                     '\nlatched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)'
+                    "\nOPTIONS = ['--ros-args', '-r', '__node:=mouth', '-r', 'a:=thought']"
                     '\n\n\nclass',
                 ),
                 (
@@ -218,8 +219,9 @@ lab.spin(node)
             changed(
                 MOUTH,
                 (
-                    'msg.data.upper()',
-                    "''.join(c.upper() if c.isascii() else c for c in msg.data)",
+                    _PUBLISH,
+                    "        text = ''.join(c.upper() if c.isascii() else c for c in msg.data)\n"
+                    '        self.publisher.publish(String(data=text))\n',
                 ),
             ),
             'Not all letters have become capital ones.',
