@@ -13,6 +13,8 @@ __all__ = ['draw_int16s', 'draw_texts']
 
 _WORDS = ('boat', 'harbour', 'Wind', 'NORTH', 'grün', 'Öl', 'señor', 'çay', 'λάμδα', 'Żuk', '日本')
 INT16 = (-32768, 32767)
+# With so many more there are more than ten: a node may stop after that many.
+MORE = 4
 
 
 def draw_texts(*, empty: bool = True) -> list[str]:
@@ -31,7 +33,8 @@ def draw_texts(*, empty: bool = True) -> list[str]:
         f'  {word(_WORDS)} ',
     ]
     random.shuffle(texts)
-    return [*texts, '', texts[0]] if empty else [*texts, texts[0]]
+    more = [f'{word(_WORDS)} {number}' for number in range(1, MORE + 1)]
+    return [*texts, *[''] * empty, texts[0], *more]
 
 
 def draw_int16s(low: int = INT16[0], high: int = INT16[1], step: int = 1) -> list[int]:
@@ -45,6 +48,6 @@ def draw_int16s(low: int = INT16[0], high: int = INT16[1], step: int = 1) -> lis
     allowed = range(low, high + 1, step)
     near_zero: Sequence[int] = [number for number in (-step, 0, 1, step) if number in allowed]
     middle = range(len(allowed) // 4, 3 * len(allowed) // 4)
-    drawn = [allowed[i] for i in random.sample(middle, 4)]
+    drawn = [allowed[i] for i in random.sample(middle, 4 + MORE)]
     # The limits come last: what is wrong with any number is not to look like a matter of limits.
     return [*drawn, *near_zero[:1], drawn[0], allowed[0], allowed[-1]]

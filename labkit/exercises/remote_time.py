@@ -26,6 +26,8 @@ GUARD = Path(__file__).with_name('time_guard.py')
 FIRST_ANSWER_SEC = 1.2
 # And how long later on. One that does not answer then is not asked again.
 ANSWER_SEC = 3.0
+# How long a question is kept that nobody waits for, s of real time: it has to be on its way.
+LATE_SEC = 0.1
 # How long a clock may take to be found by a node, s of real time.
 MATCH_SEC = 5.0
 POLL_SEC = 0.001
@@ -46,7 +48,7 @@ class RemoteTime:
         self._node = node
         self.names = list(names)
         self._clients: dict[str, Any] = {}
-        self._told: list[str] = []
+        self._told: dict[str, bool] = {}
         self._guard: subprocess.Popen[bytes] | None = None
         self._clock: Any = None
 
@@ -65,8 +67,10 @@ class RemoteTime:
         )
         self._clock = self._node.create_publisher(Clock, '/clock', profile)
         self._guard = _start_guard(self.names)
-        self._told = [name for name in self.names if self._use_sim_time(name, True)]
-        self.names = list(self._told)
+        self._told = {
+            name: self._use_sim_time(name, True, FIRST_ANSWER_SEC) for name in self.names
+        }
+        self.names = [name for name, follows in self._told.items() if follows]
         self._clients = {
             name: self._node.create_client(GetParameters, f'{name}/get_parameters')
             for name in self.names
@@ -77,8 +81,9 @@ class RemoteTime:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for name in self._told:
-            self._use_sim_time(name, False)
+        for name, follows in self._told.items():
+            # Who has not answered may still do what was asked, and has to take it back then.
+            self._use_sim_time(name, False, ANSWER_SEC if follows else LATE_SEC)
         for client in self._clients.values():
             self._node.destroy_client(client)
         if self._clock is not None:
@@ -123,8 +128,8 @@ class RemoteTime:
         services = dict(self._node.get_service_names_and_types())
         return {f'{name}/set_parameters', f'{name}/get_parameters'} <= services.keys()
 
-    def _use_sim_time(self, name: str, value: bool) -> bool:
-        """Set the parameter of a node; tell whether it has taken it."""
+    def _use_sim_time(self, name: str, value: bool, timeout_sec: float) -> bool:
+        """Set the parameter of a node; tell whether it has taken it in time."""
         from rcl_interfaces.srv import SetParameters
         from rclpy.parameter import Parameter
 
@@ -137,7 +142,7 @@ class RemoteTime:
             with ServiceCalls(self._node, SetParameters, f'{name}/set_parameters') as service:
                 if not service.wait_until_ready(ANSWER_SEC):
                     return False
-                response = service.call(request, FIRST_ANSWER_SEC if value else ANSWER_SEC)
+                response = service.call(request, timeout_sec)
         except LabError:
             return False
         return all(result.successful for result in response.results)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from labkit.exercises.clauses.answering import Answers, Logs, find_stage
 from labkit.exercises.clauses.base import Clause, Evidence, Stream, Test, judge
 from labkit.exercises.clauses.messages import HasText, Messages, Says
-from labkit.exercises.clauses.nodes import Named, Runs, Subscribes
+from labkit.exercises.clauses.nodes import Named, NobodyElse, Runs, Subscribes
 from labkit.exercises.clauses.publishing import Publishes, often
 
 __all__ = [
@@ -20,6 +20,7 @@ __all__ = [
     'Logs',
     'Messages',
     'Named',
+    'NobodyElse',
     'Publishes',
     'Runs',
     'Says',

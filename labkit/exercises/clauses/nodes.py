@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from labkit.exercises import expect
@@ -9,7 +10,7 @@ from labkit.exercises.clauses.base import Clause, Evidence
 from labkit.exercises.expect import timing
 from labkit.exercises.verdict import Fail
 
-__all__ = ['Named', 'Runs', 'Subscribes']
+__all__ = ['Named', 'NobodyElse', 'Runs', 'Subscribes']
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,37 @@ class Subscribes(Clause):
     def find(self, evidence: Evidence) -> None:
         """Look for the subscription."""
         evidence.subscription(self.topic, self.by)
+
+
+@dataclass(frozen=True)
+class NobodyElse(Clause):
+    """On a topic that others may share, only these nodes publish.
+
+    Attributes:
+        topic: Full name of the topic.
+        nodes: Full names of the nodes.
+    """
+
+    topic: str
+    nodes: Sequence[str]
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return f'no other node publishes on `{self.topic}`'
+
+    def judge(self, evidence: Evidence) -> str:
+        """Look who publishes."""
+        found = {end.node for end in evidence.probe.publishers(self.topic)}
+        others = sorted(found.difference(self.nodes))
+        if others:
+            raise Fail(
+                f'publishers on {self.topic}: {", ".join(self.nodes)}, and no other',
+                f'{", ".join(others)} publishes there, too',
+                why='Who listens hears all of them, and cannot tell them apart.',
+                todo=f'End what does not belong here: lab.remove({others[0]!r})',
+            )
+        return ''
 
 
 @dataclass(frozen=True)

@@ -195,6 +195,13 @@ class Publishes(Clause):
         found = self._right(life)
         if not found:
             self._refuse_many(life)
+        if len(found) > 1:
+            raise Fail(
+                f'one publisher of {self.by} on {self.topic}',
+                f'{len(found)} publishers of {self.by} there, each with this rate',
+                why='Each thing is said by two publishers, so it is said twice.',
+                todo='Make one publisher, in __init__, and keep it.',
+            )
         return found[0] if found else None
 
     def _refuse_many(self, life: Life) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from labkit.exercises import Exercise, Outcome, Solution, Style, Wrong, changed
-from labkit.exercises.clauses import HasText, Publishes
+from labkit.exercises.clauses import HasText, NobodyElse, Publishes
 from labkit.lessons._script import started_by_asyncio, started_by_subprocess
 
 __all__ = ['ears']
@@ -103,6 +103,7 @@ ears = Exercise(
     clauses=(
         *(Publishes('/sound', 5.0, STRING, by=ear) for ear in EARS),
         HasText('/sound', by=EARS),
+        NobodyElse('/sound', EARS),
     ),
     hints=[
         'The class Eye of this lesson is nearly an Ear. What differs: the topic.',
@@ -223,6 +224,24 @@ make_ear('right_ear')
             'one of two is silent, in a thread',
             changed(_THREAD, ('for ear in ears:', 'for ear in ears[:1]:')),
             'One of these nodes does not publish at this rate: /left_ear, /right_ear.',
+        ),
+        Wrong(
+            'a third ear',
+            EAR + "third_ear = lab.spin(Ear('third_ear', 'a cat'))\n",
+            '/third_ear publishes there, too',
+        ),
+        Wrong(
+            'two publishers in one ear',
+            changed(
+                EAR,
+                (
+                    '        self.timer',
+                    "        self.second = self.create_publisher(String, 'sound', 10)\n"
+                    '        self.timer',
+                ),
+                (_PUBLISH, _PUBLISH + _PUBLISH.replace('publisher', 'second')),
+            ),
+            'said by two publishers',
         ),
         Wrong(
             'says each thing twice',
