@@ -33,6 +33,18 @@ while not node.get_clock().ros_time_is_active or not node.get_clock().now().nano
 time.sleep(600)
 """
 )
+# Does not answer in time, but takes what it was asked later.
+SLOW = (
+    COUNTS
+    + """
+import time
+node = Counter('ones')
+while '_check_ones' not in node.get_node_names():
+    time.sleep(0.01)
+time.sleep(2)
+rclpy.spin(node)
+"""
+)
 DRIVER = """
 import json, subprocess, sys
 import labkit as lab
@@ -133,3 +145,16 @@ with Probe('ones', Scope(publishes=TOPICS)) as probe:
 """,
     )
     assert said == {'followed': ['/ones'], 'names': []}
+
+
+def test_node_that_answers_late_has_its_own_time_afterwards(drive: Callable[..., Any]) -> None:
+    said = drive(
+        SLOW,
+        """
+life = see()
+from std_msgs.msg import Int16
+lab.listen('/odds', Int16, count=5, timeout_sec=30)
+say(remote=list(life.remote))
+""",
+    )
+    assert said == {'remote': []}
