@@ -471,7 +471,7 @@ threading.Thread(target=work, args=[publisher], daemon=True).start()
         Wrong(
             'goes below zero, in a process of its own',
             changed(in_process(_LATE), ('self.number = 1\n', 'self.number -= 65536\n')),
-            '-32767 is what 16 bits make of 32769',
+            'The count should not go below zero.',
             process=True,
         ),
     ],
