@@ -289,7 +289,7 @@ class Publishes(Clause):
             f'{longest:.3g} s in between',
             BURSTS,
         )
-        if max(fine_gaps) > 3 / rate:
+        if max(fine_gaps) > 3 / rate and not self.at_least:
             return bursts
         margin = TOLERANCE + tick / max(sum(fine_gaps), period)
         too_fast = rate * period > 1 + margin and not self.at_least
