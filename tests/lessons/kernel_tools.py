@@ -24,6 +24,7 @@ _before: weakref.WeakSet[Node] = weakref.WeakSet()
 _foreign_before: set[str] = set()
 _children_before: set[int] = set()
 _names_before: dict[str, Any] = {}
+_scripts: list[subprocess.Popen[bytes]] = []
 
 
 def mark() -> None:
@@ -43,6 +44,7 @@ def run_script(code: str) -> None:
         file.write(code)
     with Path(name).with_suffix('.log').open('wb') as log:
         process = subprocess.Popen([sys.executable, name], stdout=log, stderr=log)
+    _scripts.append(process)
     # A learner looks at the check only when the script is up.
     runtime.wait(lambda: not _alone() or process.poll() is not None, 25.0)
 
@@ -57,6 +59,9 @@ def clean() -> None:
     for process in busy:
         process.kill()
     psutil.wait_procs(busy)
+    for script in _scripts:
+        script.wait()
+    _scripts.clear()
     for node in existing_nodes():
         if node not in _before and node is not runtime.helper:
             remove(node)
