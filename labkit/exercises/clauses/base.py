@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from labkit.exercises import expect
 from labkit.exercises.life import LIFE_SEC, Life, Sent, Stimulus, live
 from labkit.exercises.verdict import Fail
-from labkit.exercises.watch import Sample
+from labkit.exercises.watch import Sample, Watch
 
 if TYPE_CHECKING:
     from labkit.exercises.probe import Probe
@@ -74,6 +74,7 @@ class Evidence:
         life: What was seen while time passed. Before `gather`, nothing.
         streams: The messages of each publisher, by topic and node; `Publishes` puts them there.
         tests: The tests that each clause has asked for, as they were sent.
+        heard: What clauses listen to by themselves, by topic. Nobody else subscribes there.
     """
 
     probe: Probe
@@ -81,6 +82,7 @@ class Evidence:
     life: Life = field(default_factory=Life)
     streams: dict[tuple[str, str], Stream] = field(default_factory=dict)
     tests: dict[Clause, list[Sent]] = field(default_factory=dict)
+    heard: dict[str, Watch] = field(default_factory=dict)
 
     def publisher(self, topic: str, by: str = '') -> Endpoint:
         """Return the learner's publisher on a topic; see `expect.publisher` for what it raises."""
@@ -100,6 +102,7 @@ class Evidence:
         """Let time pass, and send what the clauses want to be sent."""
         scope = self.probe.scope
         topics = {**scope.publishes, **scope.subscribes}
+        topics = {topic: name for topic, name in topics.items() if topic not in self.heard}
         asked = [(clause, test) for clause in clauses for test in clause.tests(self)]
         stimuli = _in_turn([test for _, test in asked])
         self.life = self.live(topics, max(LIFE_SEC, _seconds(stimuli)), clauses, stimuli)

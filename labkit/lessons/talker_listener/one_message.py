@@ -120,7 +120,7 @@ class _SilentBefore(Clause):
             rest=0.5,
         )
         evidence.refuse_trouble(())
-        probe.recorded[TOPIC] = probe.watch(TOPIC, STRING)
+        evidence.heard[TOPIC] = probe.watch(TOPIC, STRING)
 
     def judge(self, evidence: Evidence) -> str:
         """Judge as which one the first message came."""
@@ -159,7 +159,7 @@ class _SilentAfter(Clause):
 
 def _heard(evidence: Evidence) -> Watch:
     """Return what has come on the topic since the check listens."""
-    watch = evidence.probe.recorded[TOPIC]
+    watch = evidence.heard[TOPIC]
     watch.pump()
     return watch
 
@@ -361,6 +361,16 @@ threading.Thread(target=work, args=(publisher,), daemon=True).start()
                 (_TIMER, f"{_TIMER}        self.publisher.publish(String(data='Hello'))\n"),
             ),
             'published while nobody listened',
+        ),
+        Wrong(
+            'waits for a second listener',
+            changed(_DOOR, ('count() > 0', 'count() > 1')),
+            'Or publish() was not reached at all.',
+        ),
+        Wrong(
+            'looks once a minute',
+            changed(_DOOR, ('0.1', '60.0')),
+            'Or publish() was not reached at all.',
         ),
         Wrong(
             'looks once',
