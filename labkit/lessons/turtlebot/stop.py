@@ -10,7 +10,6 @@ from labkit.exercises import Exercise, Fail, Outcome, Solution, Style, Wrong, ch
 from labkit.exercises.clauses import Clause, Evidence, Messages, Named, Publishes, Stream
 from labkit.lessons.turtlebot.drive import TWIST, command_of
 from labkit.lessons.turtlebot.mistakes import int_for_float
-from labkit.rosgraph.whose import process_id
 
 __all__ = ['stop']
 
@@ -148,6 +147,8 @@ def _ends_ros_first(gid: bytes) -> bool:
     src/rclpy/signal_handler.cpp; where there is no /proc, it is not known.
     """
     import psutil  # type: ignore[import-untyped]
+
+    from labkit.rosgraph.whose import process_id
 
     for child in psutil.Process().children(recursive=True):
         status = Path(f'/proc/{child.pid}/status')
