@@ -440,6 +440,12 @@ bot = Exercise(
             ),
             'It stands, and still publishes.',
         ),
+        Wrong(
+            'an older node of another name',
+            changed(_BOT, ("__init__('homing_bot')", "__init__('old_bot')"))
+            + f'\n{_BOT.strip()}\n',
+            'Each of them drives the robot',
+        ),
         int_for_float(_BOT, '= -self.x', '= -int(10 * self.x)'),
         Wrong(
             'publishes when it is made, and not at the sign',

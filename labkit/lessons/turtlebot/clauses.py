@@ -79,7 +79,7 @@ def driven(
             with naming(clause):
                 clause.find(evidence)
         source = evidence.publisher('/cmd_vel', evidence.subscription(sign[0]).node)
-        _refuse_copies(probe, source.node)
+        _refuse_copies(probe, source.node, sign[0])
         if probe.in_this_process(source):
             expect.spun(probe, source)
         trials = Trials(probe, find_robot(probe), source, sign, seconds)
@@ -99,7 +99,10 @@ def driven(
     return judge
 
 
-def _refuse_copies(probe: Probe, name: str) -> None:
+def _refuse_copies(probe: Probe, name: str, sign: str) -> None:
+    """Raise Fail if several nodes hear the sign and drive."""
+    drivers = {end.node for end in probe.publishers('/cmd_vel')}
+    nodes = sorted(drivers.intersection(end.node for end in probe.subscriptions(sign)))
     copies = probe.node_names().count(name)
     if copies > 1:
         raise Fail(
@@ -107,6 +110,13 @@ def _refuse_copies(probe: Probe, name: str) -> None:
             f'{copies} nodes of that name',
             why='Copies of the node run at once. Each drives the robot.',
             todo='End all but one: lab.remove(...), or stop the other process or notebook.',
+        )
+    if len(nodes) > 1:
+        raise Fail(
+            f'one node that hears {sign} and publishes on /cmd_vel',
+            f'{len(nodes)} of them: {", ".join(nodes[:4])}',
+            why='Each of them drives the robot when the message comes.',
+            todo=f'End those that you do not mean, such as lab.remove({nodes[0]!r}).',
         )
 
 
