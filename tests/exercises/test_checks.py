@@ -15,6 +15,8 @@ from rclpy.node import Node
 from std_msgs.msg import Int16, String
 
 from labkit.exercises import Exercise, Fail, Lesson, NotAttempted, Outcome, Probe, Solution, expect
+from labkit.exercises.clauses import Answers
+from labkit.exercises.draws import draw_int16s
 
 INT16 = 'std_msgs/msg/Int16'
 STRING = 'std_msgs/msg/String'
@@ -22,7 +24,7 @@ STRING = 'std_msgs/msg/String'
 NEWS = {'publishes': {'/news': STRING}, 'shared': ['/news'], 'records': ['/news']}
 
 
-def exercise(judge: Callable[[Probe], str | None], **options: Any) -> Exercise:
+def exercise(judge: Callable[[Probe], str | None] | None, **options: Any) -> Exercise:
     options = {'publishes': {'/odds': INT16}, **options}
     return Exercise(
         name='count_up',
@@ -340,12 +342,11 @@ def test_node_that_is_not_spun_is_told_so_where_its_answer_is_wanted(lab: Module
     node.create_subscription(Int16, 'odds', lambda message: None, 10)
     node.create_publisher(Int16, 'evens', 10)
 
-    def judge(probe: Probe) -> None:
-        hears, says = expect.subscription(probe, '/odds'), expect.publisher(probe, '/evens')
-        expect.replies(probe, hears, [{'data': 1}], says, lambda sent: 2)
-
+    answers = Answers(
+        '/odds', '/evens', 'A task.', answer=lambda number: number + 1, draw=draw_int16s
+    )
     evens = {'publishes': {'/evens': INT16}, 'subscribes': {'/odds': INT16}}
-    verdict = exercise(judge, **evens).check()
+    verdict = exercise(None, clauses=[answers], **evens).check()
     assert verdict.outcome is Outcome.FAIL
     assert verdict.todo == 'Hand the node over: lab.spin(node)'
     node.destroy_node()

@@ -7,13 +7,12 @@ the same topics meanwhile: what they send has to be answered as well.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from labkit.exercises.clauses.base import Clause, Evidence, Test
-from labkit.exercises.expect.replies import lines_of
 from labkit.exercises.expect.timing import hanging, spun
 from labkit.exercises.expect.values import show, text_trouble
 from labkit.exercises.verdict import Fail
@@ -244,7 +243,7 @@ class Logs(Clause):
     def judge(self, evidence: Evidence) -> str:
         """Judge the lines."""
         source = evidence.subscription(self.topic)
-        lines = lines_of(source.node, evidence.life.on('/rosout'))
+        lines = _lines_of(source.node, evidence.life.on('/rosout'))
         heard = [(s.at, str(_get(s, self.field))) for s in evidence.life.on(self.topic)]
         last = ''
         for number, (at, text) in enumerate(heard):
@@ -338,3 +337,18 @@ def _others(probe: Probe, hears: Endpoint) -> list[Endpoint]:
 
 def _get(sample: Sample, path: str) -> Any:
     return reduce(getattr, path.split('.'), sample.message)
+
+
+def _lines_of(node: str, samples: Iterable[Sample]) -> list[tuple[float, str]]:
+    """Return the lines of a node's logger and of the loggers below it, with their times `at`.
+
+    Args:
+        node: Full name of the node.
+        samples: Messages of /rosout.
+    """
+    logger = node.strip('/').replace('/', '.')
+    return [
+        (sample.at, sample.message.msg)
+        for sample in samples
+        if sample.message.name == logger or sample.message.name.startswith(f'{logger}.')
+    ]

@@ -7,7 +7,6 @@ expected, what was seen, the misconception and the next step, or `NotAttempted`.
 from __future__ import annotations
 
 from labkit.exercises.expect.endpoints import alone, node, publisher, qos, subscription
-from labkit.exercises.expect.replies import Reply, logs, replies
 from labkit.exercises.expect.timing import (
     describe_rate,
     ends_with_node,
@@ -20,7 +19,6 @@ from labkit.exercises.expect.values import (
     each,
     equal,
     first,
-    increasing,
     show,
     steps,
     text_trouble,
@@ -28,7 +26,6 @@ from labkit.exercises.expect.values import (
 from labkit.exercises.verdict import Fail
 
 __all__ = [
-    'Reply',
     'alone',
     'describe_rate',
     'each',
@@ -36,14 +33,11 @@ __all__ = [
     'equal',
     'first',
     'hanging',
-    'increasing',
-    'logs',
     'messages',
     'node',
     'publisher',
     'qos',
     'rate',
-    'replies',
     'show',
     'spun',
     'steps',

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from labkit.exercises.clauses.base import Stream
     from labkit.exercises.watch import Watch
 
-__all__ = ['each', 'equal', 'first', 'increasing', 'show', 'steps', 'text_trouble']
+__all__ = ['each', 'equal', 'first', 'show', 'steps', 'text_trouble']
 
 SHOWN = 6
 # Longer texts are shown in part.
@@ -72,23 +72,6 @@ def equal(
                 f'{field} = {wanted!r} on {watch.topic}',
                 f'{field} = {value!r}',
                 why=why or trouble,
-                todo=todo,
-            )
-
-
-def increasing(watch: Watch | Stream, field: str, *, why: str = '', todo: str = '') -> None:
-    """Expect a field to grow from message to message.
-
-    Raises:
-        Fail: It stays, or falls.
-    """
-    values = watch.values(field)
-    for earlier, later in pairwise(values):
-        if not later > earlier:
-            raise Fail(
-                f'{field} grows from message to message',
-                f'{field} = {show(values)} on {watch.topic}',
-                why=why or _standstill(values),
                 todo=todo,
             )
 

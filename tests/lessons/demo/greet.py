@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
 
-from labkit.exercises import Exercise, Outcome, Probe, Solution, Style, Wrong, changed, expect
+from labkit.exercises import Exercise, Outcome, Solution, Style, Wrong, changed
+from labkit.exercises.clauses import Answers, Logs
+from labkit.exercises.draws import draw_texts
 from labkit.lessons._script import in_process
 
 STRING = 'std_msgs/msg/String'
@@ -30,25 +32,10 @@ lab.spin(Greeter())
 """
 
 
-def explain(sent: Any, came: list[Any]) -> tuple[str, str]:
-    if came and not str(came[-1]).startswith(sent['data'].strip()):
+def explain(text: str, came: Sequence[str]) -> tuple[str, str]:
+    if came and not came[-1].startswith(text.strip()):
         return 'The text that came in is not used.', 'Put msg.data before the name.'
     return '', ''
-
-
-def judge_greet(probe: Probe) -> str:
-    hears = expect.subscription(probe, '/demo_incomplete')
-    says = expect.publisher(probe, '/demo_complete', by=hears.node)
-    found = expect.replies(
-        probe,
-        hears,
-        [{'data': 'My name is '}, {'data': 'I am '}],
-        says,
-        lambda sent: sent['data'] + 'Ada',
-        explain=explain,
-    )
-    line = expect.logs(probe, hears.node, hears, {'data': 'Call me '}, 'Call me ')
-    return f'{found[0].values[0]!r}, {line!r}'
 
 
 greet = Exercise(
@@ -56,7 +43,17 @@ greet = Exercise(
     task='A node that adds Ada to each text of /demo_incomplete and logs what it heard.',
     subscribes={'/demo_incomplete': STRING},
     publishes={'/demo_complete': STRING},
-    judge=judge_greet,
+    clauses=[
+        Answers(
+            '/demo_incomplete',
+            '/demo_complete',
+            'publish each text on `/demo_complete`, with `Ada` at its end',
+            answer=lambda text: f'{text}Ada',
+            draw=draw_texts,
+            explain=explain,
+        ),
+        Logs('/demo_incomplete', 'log a line that holds the text', draw_texts),
+    ],
     hints=['The answer is sent in the callback.', 'reply.data = msg.data + "Ada"'],
     answer=Solution(GREETER, 'The callback is where the text is.'),
     styles=[
@@ -136,7 +133,8 @@ lab.spin(node)
         Wrong(
             'no publisher',
             changed(GREETER, ("self.create_publisher(String, 'demo_complete', 10)", 'None')),
-            'create_publisher() for this topic has not been called',
+            'NoneType has nothing called publish',
+            outcome=Outcome.ERROR,
         ),
         Wrong(
             'raises in the callback',
