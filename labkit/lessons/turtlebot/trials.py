@@ -44,9 +44,10 @@ TICK_SEC, FINE_SEC, LATER_TICK_SEC = 0.05, 3.5, 0.1
 # Commands of nodes whose time is not exact are known to so much, s.
 REMOTE_MARGIN_SEC = 0.11
 REAL_MARGIN_SEC = 0.25
-# In real time: how long nothing may be commanded before a drive, and after it, s.
+# In real time: how long nothing may be commanded before a drive, and after it, s. A square may
+# have pauses of 1 s, which last longer on a busy machine.
 REAL_QUIET_SEC = 0.4
-REAL_TAIL_SEC = 0.7
+REAL_TAIL_SEC = 1.6
 # How long a drive may take longer than the task allows, until it is cut, s.
 LONGER_SEC = 1.0
 # After so much time no further drive is begun in real time, s.
