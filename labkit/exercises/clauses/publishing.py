@@ -112,7 +112,7 @@ class Publishes(Clause):
         life = evidence.life
         samples = life.on(self.topic)
         trouble = self._trouble(samples, life)
-        if trouble is not None and life.remote and _is_regular(_fine(samples, life)):
+        if trouble is not None and life.remote and _follows(samples, life):
             # A timer that is due more than once within a step of time is called once only.
             first, period = trouble, _period(_fine(samples, life))
             life = self._finer_life(evidence)
@@ -357,6 +357,13 @@ def _fine(samples: Sequence[Sample], life: Life) -> Sequence[Sample]:
 def _gaps(samples: Sequence[Sample]) -> list[float]:
     """Return the seconds of virtual time from one message to the next."""
     return [later.at - earlier.at for earlier, later in pairwise(samples)]
+
+
+def _follows(samples: Sequence[Sample], life: Life) -> bool:
+    """Tell whether messages of another process come as evenly as its steps of time let them."""
+    gaps, step = _gaps(samples), max(life.tick, life.rest)
+    even = len(gaps) >= 4 and max(gaps) - min(gaps) < step + REGULAR_SEC and min(gaps) > step
+    return even or _is_regular(_fine(samples, life))
 
 
 def _is_regular(samples: Sequence[Sample]) -> bool:
