@@ -89,7 +89,8 @@ def code_of(path: Path) -> Iterator[ast.Module]:
 @cache
 def third_party(folder: str) -> dict[str, str]:
     """Return the modules that a folder imports and that come with packages: name -> a place."""
-    here = {path.stem for path in (ROOT / 'tests').rglob('*.py')}
+    files = list((ROOT / 'tests').rglob('*.py'))
+    here = {name for path in files for name in (path.stem, path.parent.name)}
     known = {*sys.stdlib_module_names, *here, 'labkit', 'labkit?', 'tests', 'demo', '?'}
     found = {}
     for path in sorted((ROOT / folder).rglob('*')):

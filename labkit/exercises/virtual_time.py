@@ -15,7 +15,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
-from weakref import WeakKeyDictionary
+from weakref import WeakKeyDictionary, WeakSet
 
 if TYPE_CHECKING:
     from rclpy.executors import Executor
@@ -39,6 +39,10 @@ POLL_SEC = 0.0002
 
 # Where the last stretch of virtual time of a node ended, ns.
 _latest: WeakKeyDictionary[Node, int] = WeakKeyDictionary()
+
+
+# Timers of rates in which no thread sleeps any more, across checks.
+_given_up: WeakSet[Timer] = WeakSet()
 
 
 class VirtualTime:
@@ -72,7 +76,6 @@ class VirtualTime:
         self._remote = remote
         self.tick = tick
         self._start = self._now = self._told = 0
-        self._given_up: set[Timer] = set()
         self._was_active: list[Node] = []
         self.flooded = False
         self.hanging = False
@@ -238,11 +241,11 @@ class VirtualTime:
                 continue
             woken = True
             if awaited:
-                self._given_up.discard(timer)
+                _given_up.discard(timer)
             end = time.monotonic() + RATE_SEC
-            while not awaited and timer not in self._given_up:
+            while not awaited and timer not in _given_up:
                 if time.monotonic() > end:
-                    self._given_up.add(timer)
+                    _given_up.add(timer)
                 time.sleep(POLL_SEC)
                 awaited = rate_is_awaited(timer)
         return woken
