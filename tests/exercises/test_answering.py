@@ -62,3 +62,14 @@ def test_reason_for_the_same_answer_again_and_again_is_a_timer() -> None:
     with pytest.raises(Fail) as refused:
         CLAUSE.judge(evidence([(1.0, 5), (2.0, 7)], came))
     assert refused.value.why.startswith('The answer is repeated')
+
+
+def test_answer_that_is_left_out_now_and_then_is_still_one_of_a_timer() -> None:
+    """Two messages came between two ticks of the timer, so that it has answered the second."""
+    heard = [(1.0, 5), (2.0, 7), (2.1, 9), (3.0, 11)]
+    came = [
+        (at / 2, n) for n, start in ((6, 2), (10, 5), (12, 7)) for at in range(start, start + 5)
+    ]
+    with pytest.raises(Fail) as refused:
+        CLAUSE.judge(evidence(heard, came))
+    assert refused.value.why.startswith('The answer is repeated')

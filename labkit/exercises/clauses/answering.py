@@ -26,6 +26,8 @@ __all__ = ['Answers', 'Logs', 'find_stage']
 
 # How soon an answer has to come, s. A node may keep what it hears until its timer ticks.
 WITHIN_SEC = 1.0
+# So often an answer comes once more only where something repeats it.
+MANY = 3
 # How far a time may be off where it is not known exactly, s.
 LATE_SEC = 0.1
 # How long the first answer of a node may take, if it makes its publisher only then, s.
@@ -102,13 +104,17 @@ class Answers(Clause):
                 del left[found]
             elif at < life.seconds - WITHIN_SEC:
                 missing.append((at, value))
-        if missing:
+        repeated = self._repeats(heard, left) >= MANY and len(missing) < len(heard) / 2
+        if missing and not repeated:
             self._refuse_missing(evidence, missing, left, len(heard))
-        self._refuse_late(evidence, late)
+        if not repeated:
+            self._refuse_late(evidence, late)
         # At the beginning it may answer what came before: a node may keep what it hears.
         extra = [(t, value) for t, value in left if t >= WITHIN_SEC]
         if extra:
             self._refuse_extra(evidence, heard, extra)
+        if missing:
+            self._refuse_missing(evidence, missing, left, len(heard))
         examples = [value for _, value in heard[:2]]
         pairs = ', '.join(f'{show([v])} -> {show([self.answer(v)])}' for v in examples)
         hears = evidence.subscription(self.inner, self.by)
@@ -144,6 +150,13 @@ class Answers(Clause):
             why=why,
             todo=todo,
         )
+
+    def _repeats(
+        self, heard: Sequence[tuple[float, Any]], left: Sequence[tuple[float, Any]]
+    ) -> int:
+        """Return how often a right answer came once more, at most."""
+        rights = {self.answer(value) for _, value in heard}
+        return max(Counter(value for _, value in left if value in rights).values(), default=0)
 
     def _refuse_late(self, evidence: Evidence, delays: Sequence[tuple[float, float, Any]]) -> None:
         """Raise Fail if a test was answered too late.
@@ -184,11 +197,10 @@ class Answers(Clause):
         at, value = next(((t, v) for t, v in left if v not in rights), left[0])
         answered = [v for t, v in heard if self.answer(v) == value and t <= at]
         before = [v for t, v in heard if t <= at]
-        times = max(Counter(v for _, v in left if v in rights).values(), default=0)
         why, todo = '', f'Publish on {self.outer} only in the callback for {self.inner}, and once.'
         if other is not None:
             why = f'What comes on {others[other]} is answered, too. Nobody asked for that.'
-        elif times >= 3:
+        elif self._repeats(heard, left) >= MANY:
             why = 'The answer is repeated, again and again: a timer or a loop publishes it.'
         elif answered:
             why = 'A message is answered more than once.'

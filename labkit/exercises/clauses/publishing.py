@@ -112,7 +112,8 @@ class Publishes(Clause):
         life = evidence.life
         samples = life.on(self.topic)
         trouble = self._trouble(samples, life)
-        if trouble is not None and life.remote and _follows(samples, life):
+        hurried = trouble is not None and self._was_hurried(samples, life)
+        if trouble is not None and life.remote and not hurried and _follows(samples, life):
             # A timer that is due more than once within a step of time is called once only.
             first, period = trouble, _period(_fine(samples, life))
             life = self._finer_life(evidence)
@@ -120,10 +121,10 @@ class Publishes(Clause):
             trouble = self._trouble(samples, life)
             if trouble is not None and not 0 < _period(_fine(samples, life)) < 0.8 * period:
                 self._refuse(first)
-        elif trouble is not None and self._follows_ros_time(samples, life):
+        elif trouble is not None and not hurried and self._follows_ros_time(samples, life):
             self._refuse(trouble)
         if trouble is not None:
-            watch = self._in_real_time(evidence, trouble, samples)
+            watch = self._in_real_time(evidence, trouble, samples, hurried=hurried)
             stream = Stream(self.topic, tuple(watch.samples), False, 0.0)
         else:
             stream = Stream(self.topic, tuple(samples), True, life.seconds)
@@ -238,8 +239,26 @@ class Publishes(Clause):
 
     # -- a node that keeps a time of its own ----------------------------------------------------
 
-    def _in_real_time(self, evidence: Evidence, trouble: tuple[str, str], samples: Any) -> Any:
+    def _was_hurried(self, samples: Sequence[Sample], life: Life) -> bool:
+        """Tell whether a rate was right until time passed in large steps, on a slow machine.
+
+        Then a timer that counts its calls seems to publish more and more slowly.
+        """
+        if not life.remote or life.rest <= max(self.period, 0.1):
+            return False
+        before = replace(life, seconds=min(life.seconds, life.fine_sec))
+        return self._trouble(_fine(samples, life), before) is None
+
+    def _in_real_time(
+        self, evidence: Evidence, trouble: tuple[str, str], samples: Any, *, hurried: bool
+    ) -> Any:
         """Watch in real time: the node may keep a time of its own, such as a sleeping thread.
+
+        Args:
+            evidence: What was seen.
+            trouble: What is wrong in virtual time.
+            samples: The messages of virtual time.
+            hurried: Whether that may be due to large steps of time.
 
         Raises:
             Fail: It does not.
@@ -261,7 +280,7 @@ class Publishes(Clause):
                 ) from None
             raise
         real, seen = statistics.median(watch.intervals), _period(samples)
-        if seen and abs(seen / real - 1.0) < SAME_RATE:
+        if seen and not hurried and abs(seen / real - 1.0) < SAME_RATE:
             self._refuse(trouble)
         return watch
 
