@@ -151,14 +151,9 @@ def _refuse_process(probe: Probe, task: str) -> None:
     """Raise Fail if a process that this notebook has started for this exercise is over."""
     from labkit.background.child_processes import ended_children
 
-    # A process of an earlier exercise may have ended, too.
-    earlier = {topic for _, topic in probe.scope.earlier}
-    new = [topic for topic in probe.scope.topics if topic not in earlier]
-    names = [topic.lstrip('/') for topic in new or probe.scope.topics]
     for child in ended_children():
-        program = _program(child.command)
         # The lesson and other exercises have processes that have ended, too.
-        if not any(name in program for name in names):
+        if not _may_mean(probe, _program(child.command)):
             continue
         code = f' with exit code {child.exit_code}' if child.exit_code else ''
         raise Fail(
@@ -169,6 +164,16 @@ def _refuse_process(probe: Probe, task: str) -> None:
             todo='See what it says: print(subprocess.run([sys.executable, "-c", program], '
             'capture_output=True, text=True).stderr)',
         )
+
+
+def _may_mean(probe: Probe, program: str) -> bool:
+    """Tell whether a program works with a topic of this exercise, and in its way."""
+    earlier = {topic for _, topic in probe.scope.earlier}
+    new = any(topic not in earlier for topic in probe.scope.topics)
+    return any(
+        topic.lstrip('/') in program and (topic not in earlier if new else f'_{kind}(' in program)
+        for kind, topic in probe.scope.own
+    )
 
 
 def _program(command: Sequence[str]) -> str:
