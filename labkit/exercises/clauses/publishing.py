@@ -119,7 +119,9 @@ class Publishes(Clause):
             life = self._finer_life(evidence)
             samples = life.on(self.topic)
             trouble = self._trouble(samples, life)
-            if trouble is not None and not 0 < _period(_fine(samples, life)) < 0.8 * period:
+            hurried = trouble is not None and self._was_hurried(samples, life)
+            quicker = 0 < _period(_fine(samples, life)) < 0.8 * period
+            if trouble is not None and not hurried and not quicker:
                 self._refuse(first)
         elif trouble is not None and not hurried and self._follows_ros_time(samples, life):
             self._refuse(trouble)
