@@ -31,7 +31,7 @@ REGULAR_SEC = 1e-6
 # So much a rate in real time may differ from that in virtual time if both are one.
 SAME_RATE = 0.3
 # So much smaller are the steps of time if it matters.
-FINER = 5
+FINER = 3
 STOPS = 'They stop coming.'
 BURSTS = 'They come in bursts, or with pauses.'
 _WORDS: dict[float, str] = {
