@@ -14,7 +14,7 @@ from labkit.exercises import (
 )
 from labkit.exercises.clauses import Clause, Evidence, Publishes
 from labkit.lessons._script import started_by_asyncio, started_by_subprocess
-from labkit.lessons.my_name_is.programs import last_program
+from labkit.lessons.my_name_is.programs import ended_program
 from labkit.lessons.my_name_is.two_stages import STRING, says_opening
 
 __all__ = ['own_process']
@@ -59,9 +59,7 @@ class _InAnotherProcess(Clause):
         try:
             one = evidence.publisher('/incomplete')
         except NotAttempted:
-            # Another one may have been started since then, in another way.
-            if not evidence.probe.something_is_starting():
-                _refuse_ended_program()
+            _refuse_ended_program()
             raise
         expect.that(
             not evidence.probe.in_this_process(one),
@@ -79,8 +77,8 @@ class _InAnotherProcess(Clause):
 
 def _refuse_ended_program() -> None:
     """Raise Fail if the program that this notebook has started last is over."""
-    program = last_program()
-    if program is None or program.running:
+    program = ended_program()
+    if program is None:
         return
     last = program.output[-1] if program.output else 'nothing'
     raise Fail(

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import sys
+import time
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from labkit.background.child_processes import Process
 
-__all__ = ['last_program', 'start_program']
+__all__ = ['ended_program', 'start_program']
 
 # How long a program may take until its node is in the graph, or it has ended, s.
 START_SEC = 20.0
@@ -16,6 +17,8 @@ START_SEC = 20.0
 LAST_LINES = 10
 
 _last: Process | None = None
+# When it was started, in seconds since 1970.
+_started = 0.0
 
 
 def start_program(program: str) -> Process:
@@ -29,7 +32,7 @@ def start_program(program: str) -> Process:
     Returns:
         The process; `stop()` ends it.
     """
-    global _last
+    global _last, _started
     from labkit.background.child_processes import environment, start_process
     from labkit.background.runtime import runtime
     from labkit.rosgraph.snapshot import node_names
@@ -40,6 +43,7 @@ def start_program(program: str) -> Process:
     assert runtime.helper is not None
     before = node_names(runtime.helper)
     command = [sys.executable, '-c', program]
+    _started = time.time()
     process = _last = start_process('the program', command, environment())
     process.wait_for_nodes(runtime.helper, before, START_SEC)
     if process.running:
@@ -52,6 +56,15 @@ def start_program(program: str) -> Process:
     return process
 
 
-def last_program() -> Process | None:
-    """Return the process that was started last, None if there was none."""
-    return _last
+def ended_program() -> Process | None:
+    """Return the program that was started last, if it has ended and no process was started since.
+
+    A process may be started in another way, too.
+    """
+    import psutil  # type: ignore[import-untyped]
+
+    if _last is None or _last.running:
+        return None
+    children = psutil.Process().children()
+    later = (child for child in children if child.create_time() > _started)
+    return None if any(child.status() != psutil.STATUS_ZOMBIE for child in later) else _last
