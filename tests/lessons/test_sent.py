@@ -42,12 +42,12 @@ def at_rate(hz: float, late: Sequence[float] = (0.0,) * 5) -> list[Sample]:
     return run_of([number / hz + delay for number, delay in enumerate(late)])
 
 
-@pytest.mark.parametrize('hz', [9.5, 9.6, 10, 10.4, 10.5])
-def test_rate_within_a_twentieth_fits(hz: float) -> None:
+@pytest.mark.parametrize('hz', [8.6, 9, 10, 11, 11.4])
+def test_rate_that_the_task_allows_fits(hz: float) -> None:
     assert is_every(0.1, at_rate(hz))
 
 
-@pytest.mark.parametrize('hz', [1, 5, 8, 9, 9.3, 11, 12, 12.5, 20, 100])
+@pytest.mark.parametrize('hz', [1, 5, 8, 12.5, 20, 100])
 def test_other_rate_does_not_fit(hz: float) -> None:
     assert not is_every(0.1, at_rate(hz))
 

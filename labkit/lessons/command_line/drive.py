@@ -153,7 +153,7 @@ def _expect_rate(sent: Sent) -> None:
     run = newest_run(sent.samples)
     expect.that(
         is_every(PERIOD_SEC, run),
-        expected=f'a message every {PERIOD_SEC} s (9.5 to 10.5 a second)',
+        expected=f'a message every {PERIOD_SEC} s (8.5 to 11.5 a second)',
         seen=f'a message every {period(run):.3g} s ({1 / period(run):.3g} a second)',
         why='The option --rate says how many messages are sent in a second. Without it, it is 1.',
         todo='Use --rate 10.',
@@ -170,7 +170,7 @@ _CLAUSES = (
     Asked(
         f'five messages (`--times {COUNT}`) of one command, no more and no fewer', _expect_count
     ),
-    Asked('ten a second (`--rate 10`); the check allows 9.5 to 10.5', _expect_rate),
+    Asked('ten a second (`--rate 10`); the check allows 8.5 to 11.5', _expect_rate),
 )
 
 drive = Exercise(
@@ -289,8 +289,8 @@ for _ in range(5):
             'goes on until it is stopped',
         ),
         Wrong('too slow', changed(_LINE, ('--rate 10', '--rate 5')), 'Without it, it is 1.'),
-        Wrong('a little too slow', changed(_LINE, ('--rate 10', '--rate 9')), 'Use --rate 10.'),
-        Wrong('a little too fast', changed(_LINE, ('--rate 10', '--rate 12')), 'Use --rate 10.'),
+        Wrong('a little too slow', changed(_LINE, ('--rate 10', '--rate 8')), 'Use --rate 10.'),
+        Wrong('a little too fast', changed(_LINE, ('--rate 10', '--rate 12.5')), 'Use --rate 10.'),
         Wrong(
             'too slow, in the background',
             f'{changed(_LINE, ("--rate 10", "--rate 2")).rstrip()} &\n',
