@@ -241,7 +241,7 @@ def is_every(period_sec: float, run: Samples) -> bool:
     ones in the middle may spoil the median of all pairs (Theil and Sen): one of them is enough.
     """
     mean = (run[-1].stamp - run[0].stamp) / (run[-1].number - run[0].number)
-    return any(abs(seen / period_sec - 1.0) <= TOLERANCE for seen in (mean, period(run)))
+    return any(abs(period_sec / seen - 1.0) <= TOLERANCE for seen in (mean, period(run)))
 
 
 def period(run: Samples) -> float:
