@@ -298,7 +298,7 @@ class Rate(DriveClause):
                 todo='Let the timer go on to publish, also while the robot shall rest.',
             )
 
-    def _refuse(self, found: Drive, expected: str, period: float) -> None:
+    def _refuse(self, found: Drive, expected: str, period: float) -> NoReturn:
         seen = f'a command every {period:.3g} s ({1 / period:.3g} Hz)'
         if abs(period - 1 / 30) < 0.002:
             raise Fail(
