@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NoReturn
 
 from labkit.exercises import Fail, Probe, expect
 from labkit.exercises.clauses import Clause, Evidence
