@@ -15,6 +15,8 @@ from rclpy._rclpy_pybind11 import RCLError
 from rclpy.impl.implementation_singleton import rclpy_implementation
 
 if TYPE_CHECKING:
+    from types import FrameType
+
     from rclpy.clock import ROSClock
     from rclpy.executors import Executor
     from rclpy.node import Node
@@ -32,6 +34,7 @@ __all__ = [
     'is_queued',
     'is_shut_down',
     'rate_is_awaited',
+    'rate_sleepers',
     'ready_callbacks',
     'running_request',
     'set_ros_time_is_active',
@@ -107,6 +110,19 @@ def rate_is_awaited(timer: Timer) -> bool | None:
     if not isinstance(event, threading.Event):
         return None
     return not event.is_set() and bool(event._cond._waiters)  # type: ignore[attr-defined]
+
+
+def rate_sleepers(timer: Timer) -> set[int]:
+    """Return the ids of the threads that sleep in the `Rate` of a timer, or wake up there."""
+    event = getattr(timer.callback, '__self__', None)
+    found = set()
+    for ident, innermost in sys._current_frames().items():
+        frame: FrameType | None = innermost
+        while frame is not None:
+            if frame.f_code is threading.Event.wait.__code__ and frame.f_locals['self'] is event:
+                found.add(ident)
+            frame = frame.f_back
+    return found
 
 
 def take_logs(show: Callable[[int, str, str], None]) -> Callable[[], None]:

@@ -12,8 +12,10 @@ callback of the node's, takes notice of it.
 
 from __future__ import annotations
 
+import sys
+import threading
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary, WeakSet
 
@@ -32,8 +34,15 @@ CALM_SEC = 0.5
 # So many callbacks in one moment are a flood: a timer without a period, nodes that answer each
 # other for ever.
 FLOOD = 2000
-# How long a thread that sleeps in a rate may take for its work, s of real time.
-RATE_SEC = 0.5
+# How long a thread that sleeps in a rate may take for its work, s of real time; and how long one
+# that has ended, or waits for something else.
+RATE_SEC = 3.0
+IDLE_SEC = 0.1
+# How long an executor of the learner's own may take to go round, s of real time.
+ROUND_SEC = 2.0
+# So often in a row nothing may be done by the background before it counts as hanging, though no
+# callback is seen to run: a busy machine may give it no time.
+IDLE_ROUNDS = 6
 POLL_SEC = 0.0002
 
 
@@ -77,6 +86,7 @@ class VirtualTime:
         self.tick = tick
         self._start = self._now = self._told = 0
         self._was_active: list[Node] = []
+        self._stuck: set[Executor] = set()
         self.flooded = False
         self.hanging = False
 
@@ -148,9 +158,10 @@ class VirtualTime:
             ticked = self._next(end)
             self._now = min([end, self._next_tick(), *ticked.values()])
             begin()
+            sleepers = _sleepers(timer for timer, due in ticked.items() if due <= self._now)
             for node in self._moving:
                 self._set(node)
-            self._settle_all([timer for timer, due in ticked.items() if due <= self._now])
+            self._settle_all(sleepers)
             if self._remote is not None and self._now >= self._next_tick():
                 # Not at each event: to ask another process takes several times as long.
                 self._told = self._now
@@ -164,7 +175,7 @@ class VirtualTime:
 
     def settle(self) -> None:
         """Wait until everything that has become ready is done."""
-        self._settle_all(self._timers())
+        self._settle_all(_sleepers(self._timers()))
         if self._remote is not None:
             self._remote.settle()
             self._settle()
@@ -201,25 +212,31 @@ class VirtualTime:
             clock: Any = node.get_clock()
             clock.set_ros_time_override(Time(nanoseconds=self._now, clock_type=clock.clock_type))
 
-    def _settle_all(self, ticked: Iterable[Timer]) -> None:
+    def _settle_all(self, sleepers: Mapping[Timer, set[int]]) -> None:
         self._settle()
-        if self._wait_for_rates(ticked):
+        for timer, threads in sleepers.items():
+            _wait_for_rate(timer, threads)
+        if sleepers:
             self._settle()
 
     def _settle(self) -> None:
         for executor in {node.executor for node in self._all}:
             if executor is self._runtime.executor:
                 self._settle_background()
-            elif executor is not None:
-                _settle_other(executor)
+            elif executor is None or executor in self._stuck:
+                continue
+            elif not _settle_other(executor):
+                self._stuck.add(executor)
 
     def _settle_background(self) -> None:
         executor, before = self._runtime.executor, self._callbacks()
-        seen = before
+        seen, idle = before, 0
         while not executor.settle(CALM_SEC):
             count = self._callbacks()
+            idle = idle + 1 if count == seen else 0
             self.flooded = count - before > FLOOD
-            self.hanging = count == seen
+            runs = executor.running_callback() is not None
+            self.hanging = idle > (0 if runs else IDLE_ROUNDS)
             if self.flooded or self.hanging or not executor.is_open:
                 return
             seen = count
@@ -227,34 +244,59 @@ class VirtualTime:
     def _callbacks(self) -> int:
         return sum(entry.callbacks for entry in self._runtime.nodes())
 
-    def _wait_for_rates(self, ticked: Iterable[Timer]) -> bool:
-        """Wait until threads that were woken by a rate sleep again; tell whether there were any.
 
-        One that does not come back has ended, or works for long: it is not waited for again.
-        """
-        from labkit.background.compat import rate_is_awaited
+def _sleepers(timers: Iterable[Timer]) -> dict[Timer, set[int]]:
+    """Return the timers of rates, each with the ids of the threads that sleep in its rate."""
+    from labkit.background.compat import rate_is_awaited, rate_sleepers
 
-        woken = False
-        for timer in ticked:
-            awaited = rate_is_awaited(timer)
-            if awaited is None:
-                continue
-            woken = True
-            if awaited:
-                _given_up.discard(timer)
-            end = time.monotonic() + RATE_SEC
-            while not awaited and timer not in _given_up:
-                if time.monotonic() > end:
-                    _given_up.add(timer)
-                time.sleep(POLL_SEC)
-                awaited = rate_is_awaited(timer)
-        return woken
+    return {timer: rate_sleepers(timer) for timer in timers if rate_is_awaited(timer) is not None}
 
 
-def _settle_other(executor: Executor) -> None:
-    """Wait until an executor of the learner's own has gone round twice."""
+def _wait_for_rate(timer: Timer, threads: set[int]) -> None:
+    """Wait until a thread that was woken by a rate sleeps in it again.
+
+    One that has ended, or works for long, is not waited for again.
+
+    Args:
+        timer: The timer of the rate.
+        threads: Ids of the threads that slept there.
+    """
+    from labkit.background.compat import rate_is_awaited
+
+    if rate_is_awaited(timer):
+        _given_up.discard(timer)
+    start = at_work = time.monotonic()
+    while not rate_is_awaited(timer) and timer not in _given_up:
+        now = time.monotonic()
+        if now - start > IDLE_SEC and _is_at_work(timer, threads):
+            at_work = now
+        if now - start > RATE_SEC or now - at_work > 2 * IDLE_SEC:
+            _given_up.add(timer)
+        time.sleep(POLL_SEC)
+
+
+def _is_at_work(timer: Timer, threads: set[int]) -> bool:
+    """Tell whether one of the threads has not ended, and does not wait for something else.
+
+    On a busy machine a thread may take long to leave the rate that has woken it.
+    """
+    from labkit.background.compat import rate_sleepers
+
+    frames = sys._current_frames()
+    inside = rate_sleepers(timer)
+    return any(
+        ident in inside or frames[ident].f_code.co_filename != threading.__file__
+        for ident in threads & frames.keys()
+    )
+
+
+def _settle_other(executor: Executor) -> bool:
+    """Wait until an executor of the learner's own has gone round twice; tell whether it has."""
     for _ in range(2):
         task: Any = executor.create_task(lambda: None)
-        end = time.monotonic() + CALM_SEC
-        while not task.done() and time.monotonic() < end:
+        end = time.monotonic() + ROUND_SEC
+        while not task.done():
+            if time.monotonic() > end:
+                return False
             time.sleep(POLL_SEC)
+    return True

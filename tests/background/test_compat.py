@@ -182,9 +182,11 @@ def work():
     while True:
         rate.sleep()
 
-threading.Thread(target=work, daemon=True).start()
+sleeper = threading.Thread(target=work, daemon=True)
+sleeper.start()
 while not compat.rate_is_awaited(timer):
     time.sleep(0.001)
+print(compat.rate_sleepers(timer) == {sleeper.ident}, compat.rate_sleepers(other))
 while not done.is_set():
     executor.spin_once(timeout_sec=0.1)
 print(compat.rate_is_awaited(timer))
@@ -195,7 +197,7 @@ print('asleep', flush=True)
 os._exit(0)
 """
     )
-    assert result.stdout == 'None False\nFalse\nasleep\n', result.stderr
+    assert result.stdout == 'None False\nTrue set()\nFalse\nasleep\n', result.stderr
 
 
 def test_every_private_name_is_here():

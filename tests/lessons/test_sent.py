@@ -44,20 +44,27 @@ def at_rate(hz: float, late: Sequence[float] = (0.0,) * 5) -> list[Sample]:
 
 @pytest.mark.parametrize('hz', [8.6, 9, 10, 11, 11.4])
 def test_rate_that_the_task_allows_fits(hz: float) -> None:
-    assert is_every(0.1, at_rate(hz))
+    assert is_every(0.1, at_rate(hz), None)
 
 
 @pytest.mark.parametrize('hz', [1, 5, 8, 12.5, 20, 100])
 def test_other_rate_does_not_fit(hz: float) -> None:
-    assert not is_every(0.1, at_rate(hz))
+    assert not is_every(0.1, at_rate(hz), None)
 
 
 @pytest.mark.parametrize('late_sec', [0.02, 0.05, 0.09])
 @pytest.mark.parametrize('late', [[0], [1], [2], [3], [4], [1, 2], [1, 3], [2, 3]])
 def test_late_messages_do_not_decide(late: Sequence[int], late_sec: float) -> None:
     delays = [late_sec if number in late else 0.0 for number in range(5)]
-    assert is_every(0.1, at_rate(10, delays))
-    assert not is_every(0.1, at_rate(5, delays))
+    for commanded in (10.0, None):
+        assert is_every(0.1, at_rate(10, delays), commanded)
+    for commanded in (5.0, 8.0, 12.5):
+        assert not is_every(0.1, at_rate(commanded, delays), commanded)
+
+
+def test_skipped_calls_of_a_timer_do_not_decide() -> None:
+    assert is_every(0.1, run_of([0.0, 0.1, 0.3, 0.4, 0.7]), None)
+    assert not is_every(0.1, run_of([0.0, 0.2, 0.4, 0.8, 1.0]), None)
 
 
 def test_lost_message_changes_no_rate() -> None:

@@ -111,6 +111,10 @@ class Answers(Clause):
             self._refuse_late(evidence, late)
         # At the beginning it may answer what came before: a node may keep what it hears.
         extra = [(t, value) for t, value in left if t >= WITHIN_SEC]
+        values = [s.fields[self.field] for s in life.sent if self.field in s.fields]
+        extra = life.without_strangers(
+            self.inner, extra, {*values, *(self.answer(value) for value in values)}
+        )
         if extra:
             self._refuse_extra(evidence, heard, extra)
         if missing:
@@ -274,7 +278,11 @@ class Logs(Clause):
                     todo='Call get_logger().info(...) once in the callback.',
                 )
             last = holding[0]
-        quiet = [line for t, line in lines if not any(a <= t < a + WITHIN_SEC for a, _ in heard)]
+        silent = [
+            (t, line) for t, line in lines if not any(a <= t < a + WITHIN_SEC for a, _ in heard)
+        ]
+        known = [line for _, line in lines if any(text in line for _, text in heard)]
+        quiet = [line for _, line in evidence.life.without_strangers(self.topic, silent, known)]
         if quiet:
             raise Fail(
                 f'lines of {source.node} when a message comes, and none otherwise',

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from labkit.exercises import expect
 from labkit.exercises.life import LIFE_SEC, Life, Sent, Stimulus, live
-from labkit.exercises.verdict import Fail
+from labkit.exercises.verdict import Fail, NotAttempted
 from labkit.exercises.watch import Sample, Watch
 
 if TYPE_CHECKING:
@@ -164,6 +164,16 @@ class Evidence:
                 'does not hear itself.',
             )
 
+    def has_ended_early(self) -> bool:
+        """Tell whether a process that has said nothing yet is over, while it was looked at."""
+        return any(
+            not self.probe.in_this_process(end)
+            and not self.life.on(end.topic)
+            and end.gid not in {other.gid for other in self.probe.publishers(end.topic)}
+            for (kind, _, _), end in self.ends.items()
+            if kind == 'publisher'
+        )
+
     def live(
         self,
         topics: dict[str, str],
@@ -263,14 +273,24 @@ def judge(probe: Probe, clauses: Sequence[Clause]) -> str:
     """
     evidence = Evidence(probe)
     said = []
+    _find(clauses, evidence)
+    try:
+        evidence.gather(clauses)
+        for clause in clauses:
+            with naming(clause):
+                said.append(clause.judge(evidence))
+    except (Fail, NotAttempted):
+        if evidence.has_ended_early():
+            # That it is not there any more is the cause, and what is seen now tells it.
+            _find(clauses, Evidence(probe))
+        raise
+    return '\n'.join(filter(None, said))
+
+
+def _find(clauses: Sequence[Clause], evidence: Evidence) -> None:
     for clause in clauses:
         with naming(clause):
             clause.find(evidence)
-    evidence.gather(clauses)
-    for clause in clauses:
-        with naming(clause):
-            said.append(clause.judge(evidence))
-    return '\n'.join(filter(None, said))
 
 
 @contextmanager

@@ -267,6 +267,8 @@ class Publishes(Clause):
             NotAttempted: Nothing has come, and its process is young.
         """
         probe, source = evidence.probe, evidence.publisher(self.topic, self.by)
+        if evidence.has_ended_early():
+            raise NotAttempted
         # The graph may know a process before that process knows who listens.
         young = not probe.in_this_process(source) and probe.something_is_starting()
         try:

@@ -7,12 +7,13 @@ look at the commands that this notebook has run. Commands of a terminal are not 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Collection
+import re
+from collections.abc import Collection, Sequence
 
 from labkit.exercises import Fail
 from labkit.rosgraph.refusals import Refusal
 
-__all__ = ['explain_last_command', 'forget_commands', 'other_topic']
+__all__ = ['commanded_rate', 'explain_last_command', 'forget_commands', 'other_topic']
 
 # How much of two names has to be the same, from 0 to 1.
 NEAR = 0.75
@@ -78,6 +79,16 @@ def explain_last_command(topic: str, expected: str) -> None:
         )
 
 
+def commanded_rate(topic: str) -> float | None:
+    """Return the rate that the last command to a topic was given, Hz; None if there is none."""
+    from labkit.ros2.shell import history
+
+    for ran in reversed(history):
+        if ran.words[:2] == ('topic', 'pub') and ran.topic == topic and ran.reason is None:
+            return _rate(ran.words)
+    return None
+
+
 def other_topic(topic: str, msg_type: str, known: Collection[str]) -> str:
     """Return the topic to which a command has sent messages of a type after those to another one.
 
@@ -108,6 +119,17 @@ def forget_commands() -> None:
     from labkit.ros2.shell import history
 
     history.clear()
+
+
+def _rate(words: Sequence[str]) -> float:
+    for number, word in enumerate(words):
+        found = re.fullmatch(r'(?:--rate=|-r)(.+)', word)
+        value = found[1] if found else None
+        if word in ('--rate', '-r'):
+            value = words[number + 1]
+        if value is not None:
+            return float(value)
+    return 1.0  # as the command has it
 
 
 def _is_near(seen: str, topic: str) -> bool:

@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
-from statistics import median
+from statistics import mean, median
 from typing import TYPE_CHECKING, NoReturn
 
 from labkit.exercises import Fail, NotAttempted, Probe
@@ -51,6 +51,8 @@ PAUSE_PERIODS = 3.0
 # How far a rate may be off, as the task says, and what two clocks may differ by: on a busy machine
 # one of a few messages is late.
 TOLERANCE = 0.155
+# Gaps that differ by this factor are no longer even.
+EVEN = 1.3
 
 
 @dataclass(frozen=True)
@@ -234,14 +236,27 @@ def messages_at_once(samples: Samples, run: Samples) -> int:
     return len(between) - len(run)
 
 
-def is_every(period_sec: float, run: Samples) -> bool:
-    """Tell whether the messages of a run came with this time in between, by their stamps.
+def is_every(period_sec: float, run: Samples, commanded_hz: float | None) -> bool:
+    """Tell whether the messages of a run were to come with this time in between.
 
-    A busy machine delays single messages. A late first or last one spoils the mean, and two late
-    ones in the middle may spoil the median of all pairs (Theil and Sen): one of them is enough.
+    Stamps tell it if they are even. A busy machine delays some messages, or skips calls of a
+    timer. Then the command tells it, and if that is not known, as in another process, messages
+    may come more slowly, as long as some are in time.
+
+    Args:
+        period_sec: The time, s.
+        run: The messages.
+        commanded_hz: The rate that the command was given, if it is known.
     """
-    mean = (run[-1].stamp - run[0].stamp) / (run[-1].number - run[0].number)
-    return any(abs(period_sec / seen - 1.0) <= TOLERANCE for seen in (mean, period(run)))
+    gaps = [later.stamp - earlier.stamp for earlier, later in pairwise(run)]
+    seen = (mean(gaps), period(run))
+    if max(gaps) < EVEN * min(gaps):
+        return any(abs(period_sec / sec - 1.0) <= TOLERANCE for sec in seen)
+    if commanded_hz is not None:
+        return abs(period_sec * commanded_hz - 1.0) <= TOLERANCE
+    return min(gaps) <= period_sec * (1.0 + TOLERANCE) and max(seen) >= period_sec * (
+        1.0 - TOLERANCE
+    )
 
 
 def period(run: Samples) -> float:

@@ -124,7 +124,10 @@ class _EachAnswers(Clause):
                 elif at < life.seconds - WITHIN_SEC:
                     here = [v for t, v in came if at <= t < at + WITHIN_SEC]
                     _refuse(text, here, nodes)
-        extra = [text for at, text in left if at >= WITHIN_SEC]
+        # The lesson's first stage says how a sentence begins, in a process of its own.
+        known = {text + name for text in texts if text != OPENING for name in ['', *names]}
+        late = [(at, text) for at, text in left if at >= WITHIN_SEC]
+        extra = [text for _, text in life.without_strangers(INNER, late, known)]
         if extra:
             self._refuse_more(evidence, extra, often=False)
         shown = ' and '.join(repr(OPENING + name) for name in names)
