@@ -35,6 +35,7 @@ QUIZ = Quiz(
             0.25: 'You divided. The robot turns for 2 s: multiply.',
             4.0: 'You divided. The robot turns for 2 s: multiply.',
         },
+        unit='rad',
     ),
     Choice(
         'The goal lies at -3.0 rad, the robot looks at 3.0 rad. Which way does it turn?',
