@@ -28,6 +28,7 @@ _CHECKS: tuple[tuple[str, Callable[[], str]], ...] = (
     ('Domain', ros.domain),
     ('Variables', variables.variables),
     ('Nodes', ros.nodes),
+    ('Topics', ros.topics),
     ('Callbacks', ros.callbacks),
     ('JupyterLab', packages.jupyter),
     ('Disk', system.disk),

@@ -1,4 +1,4 @@
-"""ROS itself: middleware, domain, nodes and callbacks, in this process and seen from it."""
+"""ROS itself: middleware, domain, nodes, topics, callbacks; in this process and seen from it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from labkit.background.nodes import NodeEntry
     from labkit.background.runtime import Runtime
 
-__all__ = ['callbacks', 'domain', 'middleware', 'nodes']
+__all__ = ['callbacks', 'domain', 'middleware', 'nodes', 'topics']
 
 RANGES = ('OFF', 'LOCALHOST', 'SUBNET', 'SYSTEM_DEFAULT')
 # On Linux, the ports of these domains overlap with those that the system hands out by itself
@@ -182,7 +182,7 @@ def _range() -> str:
     return value
 
 
-# --- Nodes and callbacks -------------------------------------------------------------------------
+# --- Nodes, topics and callbacks -----------------------------------------------------------------
 
 
 def nodes() -> str:
@@ -262,6 +262,30 @@ def _doubles(runtime: Runtime, entries: list[NodeEntry]) -> list[tuple[str, str]
         for entry in entries
         if entry.name in foreign
     ]
+
+
+def topics() -> str:
+    """Look for pairs of a publisher and a subscription that can never exchange a message."""
+    runtime = _runtime()
+    if runtime is None or runtime.helper is None:
+        return 'none'
+    from labkit.background.discovery import soon
+    from labkit.rosgraph.snapshot import is_whole, read_graph
+
+    node = runtime.helper
+    soon(lambda: is_whole(node))
+    graph = read_graph(node)
+    pairs = graph.mismatches
+    if pairs:
+        raise LabError(
+            ' '.join(
+                f'On {pair.topic}, {pair.subscription} does not hear {pair.publisher}: '
+                f'{pair.reason[:1].lower()}{pair.reason[1:]}.'
+                for pair in pairs
+            ),
+            todo=' '.join(dict.fromkeys(pair.todo for pair in pairs)),
+        )
+    return first_few([topic.name for topic in graph.topics]) if graph.topics else 'none'
 
 
 def callbacks() -> str:

@@ -8,8 +8,16 @@ from __future__ import annotations
 
 from typing import Any
 
+from rclpy.duration import Duration
 from rclpy.node import Node
-from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
+from rclpy.qos import (
+    DurabilityPolicy,
+    LivelinessPolicy,
+    QoSCompatibility,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_check_compatible,
+)
 
 from labkit.errors import nearest
 from labkit.rosgraph.endpoints import Endpoint, publishers, subscriptions
@@ -18,6 +26,7 @@ from labkit.rosgraph.names import EVERY_NODE_HAS, is_hidden
 from labkit.rosgraph.whose import is_own
 
 __all__ = [
+    'how_to_match',
     'nobody_publishes',
     'other_type_here',
     'qos_mismatch',
@@ -25,6 +34,10 @@ __all__ = [
     'why_apart',
     'why_silent',
 ]
+
+# From here on a duration means that there is none: the largest one is 2^63 - 1 ns, and what goes
+# through the middleware may come back a little smaller.
+_ENDLESS_NS = 2**62
 
 
 def qos_mismatch(offered: QoSProfile, requested: QoSProfile) -> str:
@@ -46,6 +59,44 @@ def why_apart(publisher: Endpoint, subscription: Endpoint) -> str:
     if publisher.msg_type != subscription.msg_type:
         return f'{publisher.msg_type} is not {subscription.msg_type}'
     return qos_mismatch(publisher.qos, subscription.qos)
+
+
+def how_to_match(publisher: Endpoint, subscription: Endpoint) -> str:
+    """Say what to change at one end or the other so that the two match, '' if they do.
+
+    A subscription asks, and a publisher offers: so each policy can be mended at either end.
+    """
+    mine, yours = f'the subscription of {subscription.node}', f'the publisher of {publisher.node}'
+    if publisher.msg_type != subscription.msg_type:
+        return f'Give {mine} and {yours} the same type.'
+    asked, offered = subscription.qos, publisher.qos
+    said = []
+    for policy, strong, weak in (
+        ('reliability', ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT),
+        ('durability', DurabilityPolicy.TRANSIENT_LOCAL, DurabilityPolicy.VOLATILE),
+        ('liveliness', LivelinessPolicy.MANUAL_BY_TOPIC, LivelinessPolicy.AUTOMATIC),
+    ):
+        if (getattr(asked, policy), getattr(offered, policy)) == (strong, weak):
+            said += [f'Give {mine} {policy} {weak.name}, or {yours} {strong.name}.']
+    for policy in ('deadline', 'liveliness_lease_duration'):
+        wanted, given = getattr(asked, policy), getattr(offered, policy)
+        if not _is_endless(wanted) and (_is_endless(given) or wanted < given):
+            limit = f'{yours} one of {_seconds(wanted)} at most'
+            name = policy.replace('_', ' ')
+            said += [
+                f'Take the {name} of {mine} away, or give {limit}.'
+                if _is_endless(given)
+                else f'Give {mine} a {name} of {_seconds(given)} at least, or {limit}.'
+            ]
+    return ' '.join(said)
+
+
+def _is_endless(duration: Duration) -> bool:
+    return not 0 < duration.nanoseconds < _ENDLESS_NS
+
+
+def _seconds(duration: Duration) -> str:
+    return f'{duration.nanoseconds * 1e-9:g} s'
 
 
 def why_silent(node: Node, topic: str, msg_type: Any, qos_profile: QoSProfile) -> str:

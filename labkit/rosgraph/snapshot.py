@@ -14,7 +14,7 @@ from rclpy.node import Node
 
 from labkit.rosgraph.endpoints import Endpoint, publishers, subscriptions
 from labkit.rosgraph.listings import ends_of_node
-from labkit.rosgraph.matching import why_apart
+from labkit.rosgraph.matching import how_to_match, why_apart
 from labkit.rosgraph.names import (
     EVERY_NODE_HAS,
     UNKNOWN_NODE,
@@ -61,12 +61,14 @@ class Mismatch:
         publisher: Full name of the publishing node.
         subscription: Full name of the subscribing node.
         reason: Why, as half a sentence.
+        todo: What to change at one end or the other.
     """
 
     topic: str
     publisher: str
     subscription: str
     reason: str
+    todo: str = ''
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,8 @@ class GraphTopic:
         for publisher in self.publishers:
             for subscription in self.subscriptions:
                 reason = why_apart(publisher, subscription)
-                mismatch = Mismatch(self.name, publisher.node, subscription.node, reason)
+                todo = how_to_match(publisher, subscription)
+                mismatch = Mismatch(self.name, publisher.node, subscription.node, reason, todo)
                 if reason and mismatch not in seen:
                     seen.add(mismatch)
                     yield mismatch

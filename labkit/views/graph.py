@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING
 
 from labkit.background.discovery import soon
 from labkit.errors import LabError
-from labkit.rosgraph.snapshot import Graph, GraphNode, is_whole, read_graph
+from labkit.rosgraph.endpoints import Endpoint
+from labkit.rosgraph.matching import why_apart
+from labkit.rosgraph.snapshot import Graph, GraphNode, GraphTopic, is_whole, read_graph
 from labkit.views.live import STOPPED, Live, helper
 
 if TYPE_CHECKING:
@@ -94,8 +96,8 @@ def graph(*, services: bool = False, hidden: bool = False, live: bool = False) -
     """Show the computation graph: which nodes run, and which topics connect them.
 
     Nodes are round, topics are boxes, an arrow is the way of the messages. Nodes of other
-    processes have a dashed border. A pair that can't exchange messages is marked with a dashed
-    arrow and the reason.
+    processes have a dashed border. Where a subscription can't hear a publisher, a dashed line with
+    a cross at its end leads to it, and says whom and why.
 
     Args:
         services: Whether to show services too.
@@ -139,15 +141,12 @@ def to_mermaid(data: Graph) -> str:
         box = f't{number}'
         label = _escape(topic.name) + ''.join(f'<br>{_escape(name)}' for name in topic.types)
         lines.append(f'  {box}["{label}"]:::topic')
-        apart = {mismatch.subscription: mismatch.reason for mismatch in topic.mismatches()}
         arrows.update(
             {f'  {ids[e.node]} --> {box}': None for e in topic.publishers if e.node in ids}
         )
         for end in topic.subscriptions:
-            reason = _escape(f'no match: {apart[end.node]}') if end.node in apart else ''
-            arrow = f'-. "{reason}" .->' if reason else '-->'
             if end.node in ids:
-                arrows[f'  {box} {arrow} {ids[end.node]}'] = None
+                arrows.update(dict.fromkeys(_hearing(topic, end, box, ids[end.node])))
     for number, service in enumerate(data.services):
         box = f's{number}'
         label = _escape(service.name) + ''.join(f'<br>{_escape(name)}' for name in service.types)
@@ -169,6 +168,21 @@ def to_mermaid(data: Graph) -> str:
     )
 
 
+def _hearing(topic: GraphTopic, end: Endpoint, box: str, node: str) -> list[str]:
+    """Return the arrows from a topic to a subscription: to be heard, and with a cross if not."""
+    apart = {other.node: reason for other in topic.publishers if (reason := why_apart(other, end))}
+    arrows = []
+    if not apart or any(not why_apart(other, end) for other in topic.publishers):
+        arrows += [f'  {box} --> {node}']
+    if apart:
+        words = '<br>'.join(
+            _escape(f'does not hear {other}: {reason}') for other, reason in apart.items()
+        )
+        # Dashes, a cross in place of the head, and words: it needs no colour.
+        arrows += [f'  {box} -. "{words}" .-x {node}']
+    return arrows
+
+
 def _node_label(node: GraphNode) -> str:
     label = _escape(node.name)
     if not node.own:
@@ -181,7 +195,12 @@ def _node_label(node: GraphNode) -> str:
 def _summary(data: Graph) -> str:
     nodes = ', '.join(_escape(node.name) for node in data.nodes)
     topics = ', '.join(_escape(topic.name) for topic in data.topics)
-    return f'Nodes {nodes or "none"}. Topics {topics or "none"}.'
+    apart = ''.join(
+        f' {_escape(pair.subscription)} does not hear {_escape(pair.publisher)} on '
+        f'{_escape(pair.topic)}: {_escape(pair.reason)}.'
+        for pair in data.mismatches
+    )
+    return f'Nodes {nodes or "none"}. Topics {topics or "none"}.{apart}'
 
 
 def _escape(text: str) -> str:

@@ -107,7 +107,7 @@ def test_a_check_that_fails_is_a_line_and_not_the_end(script: Callable[..., obje
     assert Visit(0, result.stdout).names == NAMES
 
 
-# --- Nodes and callbacks -------------------------------------------------------------------------
+# --- Nodes, topics and callbacks -----------------------------------------------------------------
 
 SETUP = """
 import labkit as lab
@@ -206,6 +206,24 @@ def test_domain_that_was_changed_after_the_start(kernel, domain_id: str) -> None
     assert seen.exit_code == 1
     assert f"but ROS_DOMAIN_ID is '{domain_id}' now" in seen.red['Domain']
     kernel.run('lab.stop()\nlab.start()')
+    assert look(kernel).exit_code == 0
+
+
+def test_pair_that_does_not_match_until_one_end_is_mended(kernel) -> None:
+    kernel.run(SETUP + 'from rclpy.qos import qos_profile_sensor_data')
+    kernel.run('sonar = lab.spin(Node("sonar"))\npilot = lab.spin(Node("pilot"))')
+    kernel.run('sonar.create_publisher(String, "range", qos_profile_sensor_data)')
+    hears = 'ear = pilot.create_subscription(String, "range", print, {})'
+    kernel.run(hears.format(10))
+    seen = look(kernel)
+    assert seen.exit_code == 1
+    assert set(seen.red) == {'Topics'}
+    assert (
+        'On /range, /pilot does not hear /sonar: best effort publisher and reliable subscription. '
+        '→ Give the subscription of /pilot reliability BEST_EFFORT, or the publisher of /sonar '
+        'RELIABLE.' in seen.red['Topics']
+    )
+    kernel.run('pilot.destroy_subscription(ear)\n' + hears.format('qos_profile_sensor_data'))
     assert look(kernel).exit_code == 0
 
 

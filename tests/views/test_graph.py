@@ -47,6 +47,37 @@ def test_nodes_and_topics_are_drawn_and_told(kernel):
     assert 'accDescr: Nodes /listener, /talker. Topics /chatter.' in data['text/vnd.mermaid']
 
 
+def test_a_pair_that_does_not_match_has_a_cross_and_words(kernel):
+    kernel.run(NODES + 'from rclpy.qos import qos_profile_sensor_data')
+    kernel.run(
+        'sonar = Node("sonar")\nsonar.create_publisher(String, "b", qos_profile_sensor_data)'
+    )
+    kernel.run('listener.create_subscription(String, "b", print, 10)')
+    data = shown(kernel.run('lab.graph()'))
+    reason = 'Best effort publisher and reliable subscription'
+    assert f'    no match between /sonar and /listener: {reason}' in data['text/plain']
+    picture = data['text/vnd.mermaid'].splitlines()
+    # n0 is /listener, n1 is /sonar, t0 is /b.
+    assert f'  t0 -. "does not hear /sonar: {reason}" .-x n0' in picture
+    assert '  n1 --> t0' in picture
+    assert '  t0 --> n0' not in picture
+    assert f' /listener does not hear /sonar on /b: {reason}.' in data['text/vnd.mermaid']
+    # Somebody else is heard: both are to be seen.
+    kernel.run('talker.create_publisher(String, "b", 10)')
+    picture = shown(kernel.run('lab.graph()'))['text/vnd.mermaid'].splitlines()
+    assert '  t0 --> n0' in picture
+    assert f'  t0 -. "does not hear /sonar: {reason}" .-x n0' in picture
+    # And who hears them both, beside one that does not, has no cross.
+    kernel.run('ear = lab.spin(Node("ear"))')
+    kernel.run('ear.create_subscription(String, "b", print, qos_profile_sensor_data)')
+    crosses = [
+        line
+        for line in shown(kernel.run('lab.graph()'))['text/vnd.mermaid'].splitlines()
+        if '.-x' in line
+    ]
+    assert len(crosses) == 1
+
+
 def test_services_and_hidden_names_are_shown_on_demand(kernel):
     kernel.run(NODES + 'from std_srvs.srv import Trigger\nimport rclpy')
     kernel.run('talker.create_service(Trigger, "fire", lambda request, response: response)')
