@@ -10,7 +10,13 @@ from rcl_interfaces.msg import (
     ParameterValue,
     SetParametersResult,
 )
-from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
+from rcl_interfaces.srv import (
+    DescribeParameters,
+    GetParameters,
+    ListParameters,
+    SetParameters,
+    SetParametersAtomically,
+)
 from rclpy.node import Node
 
 from labkit.background.service_calls import call_node
@@ -23,6 +29,7 @@ __all__ = [
     'has_parameters',
     'parameter_names',
     'set_parameters',
+    'set_parameters_atomically',
 ]
 
 
@@ -98,6 +105,24 @@ def set_parameters(
     """
     request = SetParameters.Request(parameters=parameters)
     return list(call_node(node, SetParameters, node_name, 'set_parameters', request).results)
+
+
+def set_parameters_atomically(
+    node: Node, node_name: str, parameters: list[Parameter]
+) -> SetParametersResult:
+    """Set all of some parameters at once, or none of them; return whether that went well.
+
+    Args:
+        node: The node that asks.
+        node_name: Full name of the node that is asked.
+        parameters: Names and values.
+
+    Raises:
+        LabError: The node has no parameter services, or does not answer.
+    """
+    request = SetParametersAtomically.Request(parameters=parameters)
+    service = 'set_parameters_atomically'
+    return call_node(node, SetParametersAtomically, node_name, service, request).result
 
 
 def delete_parameter(node: Node, node_name: str, name: str) -> SetParametersResult:

@@ -8,7 +8,7 @@ import time
 from typing import Any
 
 from labkit.exercises.learner_errors import where_it_hangs
-from labkit.exercises.scope import PUBLISHER, SUBSCRIPTION, Scope
+from labkit.exercises.scope import PUBLISHER, SERVICE, SUBSCRIPTION, Scope
 from labkit.exercises.verdict import LearnerError
 
 __all__ = ['Callbacks', 'find_node', 'is_given']
@@ -110,6 +110,7 @@ def _is_under_test(error: Any, scope: Scope) -> bool:
         return False
     roles = {(PUBLISHER, publisher.topic_name) for publisher in node.publishers}
     roles |= {(SUBSCRIPTION, subscription.topic_name) for subscription in node.subscriptions}
+    roles |= {(SERVICE, service.service_name) for service in node.services}
     # A node that has none of the lesson's topics may be a first try with wrong names.
     return bool(roles & scope.own.keys()) or not any(topic in scope.known for _, topic in roles)
 

@@ -109,6 +109,7 @@ class Exercise:
             It raises what is wrong, and returns a sentence on what was seen, or None.
         publishes: Topics on which the learner's nodes publish, by full name, with their types.
         subscribes: Topics to which they subscribe, with their types.
+        serves: Services that they offer, with their types.
         nodes: Full names of nodes that the task asks for.
         shared: Topics on which others may publish too. On all others in `publishes` a second
             publisher is a fault, whenever it comes.
@@ -135,6 +136,7 @@ class Exercise:
     judge: Callable[[Probe], str | None] | None = None
     publishes: Mapping[str, str] = field(default_factory=dict)
     subscribes: Mapping[str, str] = field(default_factory=dict)
+    serves: Mapping[str, str] = field(default_factory=dict)
     nodes: Sequence[str] = ()
     shared: Sequence[str] = ()
     styles: Sequence[Style] = ()
@@ -150,6 +152,7 @@ class Exercise:
         self.scope = Scope(
             publishes=self.publishes,
             subscribes=self.subscribes,
+            serves=self.serves,
             nodes=tuple(self.nodes),
             shared=frozenset(self.shared),
             given=self.given,

@@ -208,6 +208,19 @@ _KNOWN = (
         'Write the number with a point: 0.25',
     ),
     (
+        ('TypeError',),
+        r'^$',
+        'A callback of a service has to give its response back. Without "return" a function gives '
+        'back None.',
+        'End the callback with: return response',
+    ),
+    (
+        ('AttributeError',),
+        r"'NoneType' object has no attribute 'successful'",
+        'The callback that is asked before a parameter is set has given nothing back.',
+        'End it with: return SetParametersResult(successful=True)',
+    ),
+    (
         ('AttributeError',),
         r"object has no attribute '_(Node__\w+|default_callback_group|logger|clock|rate_group|"
         r"parameter_overrides)'",

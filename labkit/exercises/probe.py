@@ -22,6 +22,7 @@ from labkit.views.progress_bar import ProgressBar
 
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
+    from labkit.rosgraph.servers import Server
 
 __all__ = ['Probe']
 
@@ -151,6 +152,7 @@ class Probe:
         from labkit.rosgraph.whose import foreign_nodes
 
         active = {end.node for end in (*self.all_publishers(), *self.all_subscriptions())}
+        active |= {server.node for server in self.all_servers()}
         return bool(foreign_nodes(self.node).intersection(self.node_names()) - active)
 
     def process_is_starting(self) -> bool:
@@ -226,6 +228,16 @@ class Probe:
         found = (end for topic in self.topics() for end in subscriptions(self.node, topic))
         return self._learners(found)
 
+    def all_servers(self) -> list[Server]:
+        """Return the services that the learner's nodes offer, without those of every node."""
+        from labkit.rosgraph.servers import servers
+
+        return [
+            server
+            for server in servers(self.node)
+            if not is_hidden(server.node) and not is_given(server.node, self.scope)
+        ]
+
     def topics(self) -> dict[str, list[str]]:
         """Return the topics that are not part of every node, with their types."""
         return {
@@ -257,7 +269,10 @@ class Probe:
     def attempt(self) -> frozenset[str]:
         """Return the learner's nodes that show an attempt at this exercise, see `Scope`."""
         return self.scope.attempt(
-            self.all_publishers(), self.all_subscriptions(), self.node_names()
+            self.all_publishers(),
+            self.all_subscriptions(),
+            self.node_names(),
+            self.all_servers(),
         )
 
     def fingerprint(self) -> frozenset[bytes]:

@@ -10,11 +10,12 @@ from labkit.errors import nearest
 
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
+    from labkit.rosgraph.servers import Server
 
-__all__ = ['PUBLISHER', 'SUBSCRIPTION', 'Role', 'Scope']
+__all__ = ['PUBLISHER', 'SERVICE', 'SUBSCRIPTION', 'Role', 'Scope']
 
-PUBLISHER, SUBSCRIPTION = 'publisher', 'subscription'
-# What a node does on a topic: one of the two words above, and the topic.
+PUBLISHER, SUBSCRIPTION, SERVICE = 'publisher', 'subscription', 'service'
+# What a node does: one of the three words above, and the name of the topic or service.
 Role = tuple[str, str]
 
 
@@ -25,6 +26,7 @@ class Scope:
     Attributes:
         publishes: Topics on which the learner's nodes publish, with their types.
         subscribes: Topics to which they subscribe, with their types.
+        serves: Services that they offer, with their types.
         nodes: Full names of nodes that the task asks for.
         shared: Topics on which others may publish too.
         given: Full names of nodes that the lesson itself leaves running, and the ids of the cells
@@ -36,6 +38,7 @@ class Scope:
 
     publishes: Mapping[str, str] = field(default_factory=dict)
     subscribes: Mapping[str, str] = field(default_factory=dict)
+    serves: Mapping[str, str] = field(default_factory=dict)
     nodes: tuple[str, ...] = ()
     shared: frozenset[str] = frozenset()
     given: Mapping[str, str] = field(default_factory=dict)
@@ -45,8 +48,12 @@ class Scope:
 
     @property
     def roles(self) -> dict[Role, str]:
-        """What the learner's nodes do, with the type of the messages."""
-        kinds = ((PUBLISHER, self.publishes), (SUBSCRIPTION, self.subscribes))
+        """What the learner's nodes do, with the type of the topic or service."""
+        kinds = (
+            (PUBLISHER, self.publishes),
+            (SUBSCRIPTION, self.subscribes),
+            (SERVICE, self.serves),
+        )
         return {(kind, topic): name for kind, asked in kinds for topic, name in asked.items()}
 
     @property
@@ -57,7 +64,7 @@ class Scope:
 
     @property
     def topics(self) -> tuple[str, ...]:
-        """The topics that the learner's nodes work with."""
+        """The topics that the learner's nodes work with, and the services that they offer."""
         return tuple(dict.fromkeys(topic for _, topic in self.roles))
 
     @property
@@ -66,7 +73,7 @@ class Scope:
         return frozenset(self.publishes) - self.shared
 
     def msg_type(self, role: Role) -> str:
-        """Return the type of messages that a role is about.
+        """Return the type that a role is about.
 
         Raises:
             LookupError: The exercise does not ask for this role.
@@ -80,6 +87,7 @@ class Scope:
         publishers: Sequence[Endpoint],
         subscriptions: Sequence[Endpoint],
         nodes: Sequence[str],
+        servers: Sequence[Server] = (),
     ) -> frozenset[str]:
         """Return which nodes show an attempt at the exercise.
 
@@ -87,23 +95,25 @@ class Scope:
             publishers: All publishers of the learner's.
             subscriptions: All subscriptions of the learner's.
             nodes: Full names of all nodes of the learner's.
+            servers: All services of the learner's.
 
         Returns:
             The nodes with a role that is this exercise's own. If there are none, those that may
             mean one, under another name. Names of nodes count where no role is asked for.
         """
-        ends = [(PUBLISHER, end) for end in publishers]
-        ends += [(SUBSCRIPTION, end) for end in subscriptions]
+        ends = [(PUBLISHER, end.node, end.topic, end.msg_type) for end in publishers]
+        ends += [(SUBSCRIPTION, end.node, end.topic, end.msg_type) for end in subscriptions]
+        ends += [(SERVICE, server.node, server.service, server.srv_type) for server in servers]
         if not self.roles:
             return frozenset(
                 name for wanted in self.nodes for name in nodes if nearest(wanted, [name])
             )
-        exact = frozenset(end.node for kind, end in ends if (kind, end.topic) in self.own)
-        return exact or frozenset(end.node for kind, end in ends if self._may_mean(kind, end))
+        exact = frozenset(node for kind, node, name, _ in ends if (kind, name) in self.own)
+        return exact or frozenset(node for kind, node, *end in ends if self._may_mean(kind, *end))
 
-    def _may_mean(self, kind: str, end: Endpoint) -> bool:
+    def _may_mean(self, kind: str, name: str, type_name: str) -> bool:
         """Tell whether an endpoint looks like one that is asked for, under another name."""
-        if end.topic in self.known:
+        if name in self.known:
             return False
-        wanted = {topic: name for (other, topic), name in self.own.items() if other == kind}
-        return end.msg_type in wanted.values() or any(nearest(t, [end.topic]) for t in wanted)
+        wanted = {other: asked for (what, other), asked in self.own.items() if what == kind}
+        return type_name in wanted.values() or any(nearest(other, [name]) for other in wanted)

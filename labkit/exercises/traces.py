@@ -16,7 +16,7 @@ from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
 from labkit import settings
-from labkit.exercises.scope import PUBLISHER, SUBSCRIPTION
+from labkit.exercises.scope import PUBLISHER, SERVICE, SUBSCRIPTION
 from labkit.exercises.verdict import Fail
 
 if TYPE_CHECKING:
@@ -59,6 +59,11 @@ def _refuse_nodes(probe: Probe, task: str) -> None:
             shown = end.topic in probe.scope.known and end.topic not in asked
             if shown or (kind, end.topic) in probe.scope.of_lesson:
                 known.add(end.node)
+    for server in probe.all_servers():
+        if server.node in ends:
+            ends[server.node].append(f'serves {server.service} ({server.srv_type})')
+            if (SERVICE, server.service) in probe.scope.of_lesson:
+                known.add(server.node)
     new = {name: what for name, what in ends.items() if name not in known}
     if not new:
         return

@@ -10,20 +10,28 @@ from labkit.exercises.clauses.answering import Answers, Logs, find_stage
 from labkit.exercises.clauses.base import Clause, Evidence, Stream, Test, judge
 from labkit.exercises.clauses.messages import HasText, Messages, Says
 from labkit.exercises.clauses.nodes import Named, NobodyElse, Runs, Subscribes
+from labkit.exercises.clauses.parameters import Follows, HasParameter, Refuses
 from labkit.exercises.clauses.publishing import Publishes, often
+from labkit.exercises.clauses.serving import Call, Responds, Serves
 
 __all__ = [
     'Answers',
+    'Call',
     'Clause',
     'Evidence',
+    'Follows',
+    'HasParameter',
     'HasText',
     'Logs',
     'Messages',
     'Named',
     'NobodyElse',
     'Publishes',
+    'Refuses',
+    'Responds',
     'Runs',
     'Says',
+    'Serves',
     'Stream',
     'Subscribes',
     'Test',

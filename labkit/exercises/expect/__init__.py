@@ -7,6 +7,7 @@ expected, what was seen, the misconception and the next step, or `NotAttempted`.
 from __future__ import annotations
 
 from labkit.exercises.expect.endpoints import alone, node, publisher, qos, subscription
+from labkit.exercises.expect.services import server
 from labkit.exercises.expect.timing import (
     describe_rate,
     ends_with_node,
@@ -38,6 +39,7 @@ __all__ = [
     'publisher',
     'qos',
     'rate',
+    'server',
     'show',
     'spun',
     'steps',

@@ -17,7 +17,7 @@ from labkit.exercises.verdict import Fail, NotAttempted
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
 
-__all__ = ['alone', 'node', 'publisher', 'qos', 'subscription']
+__all__ = ['alone', 'name_trouble', 'node', 'publisher', 'qos', 'subscription']
 
 _KINDS = {
     PUBLISHER: ('publisher on', 'publishes'),
@@ -75,7 +75,7 @@ def node(probe: Probe, name: str) -> str:
         raise Fail(
             f'a node called {name}',
             f'{_list(names) or "no node"}',
-            why=_name_trouble(name, other) if other else '',
+            why=name_trouble(name, other) if other else '',
             todo=f'The name is what super().__init__() gets: {name.rsplit("/", 1)[-1]!r}.',
         )
     copies = probe.node_names().count(name)
@@ -229,7 +229,7 @@ def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str
             f'{other.node} {_KINDS[kind][1]} on {meant}'
             if kind == PUBLISHER
             else f'{other.node} {_KINDS[kind][1]} to {meant}',
-            why=_name_trouble(topic, meant),
+            why=name_trouble(topic, meant),
             todo=f'Write the topic as {topic!r}.',
         )
     mine = [other for other in others if other.node in nodes]
@@ -251,7 +251,7 @@ def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str
         raise Fail(
             expected,
             seen or f'{_list(names)}, and no node called {by}',
-            why=_name_trouble(by, near) if near else f'There is no node called {by}.',
+            why=name_trouble(by, near) if near else f'There is no node called {by}.',
             todo=f'The name is what super().__init__() gets: {by.rsplit("/", 1)[-1]!r}. '
             'Each node has to be made, and handed over with lab.spin.',
         )
@@ -277,7 +277,8 @@ def _explain_echo(probe: Probe, expected: str, publishers: Sequence[Endpoint]) -
             )
 
 
-def _name_trouble(wanted: str, seen: str) -> str:
+def name_trouble(wanted: str, seen: str) -> str:
+    """Say how a name differs from the one that is asked for."""
     if wanted.lower() == seen.lower():
         return f'Capital and small letters differ in names: {seen} and {wanted} are two names.'
     if wanted.rsplit('/', 1)[-1] == seen.rsplit('/', 1)[-1]:

@@ -1,0 +1,322 @@
+"""Clauses on parameters: declared as asked for, followed while the node runs, guarded."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from labkit.errors import LabError, nearest
+from labkit.exercises import expect
+from labkit.exercises.clauses.base import Clause, Evidence, Stream
+from labkit.exercises.clauses.publishing import Publishes
+from labkit.exercises.expect import timing
+from labkit.exercises.verdict import Fail
+
+if TYPE_CHECKING:
+    from labkit.exercises.probe import Probe
+
+__all__ = ['Follows', 'HasParameter', 'Refuses', 'Values']
+
+Values = Mapping[str, Any]
+"""Values of parameters, by their names."""
+
+# How many messages of a changed rate are looked at, and how long at least, s.
+MESSAGES, LEAST_SEC = 12, 3.0
+_TYPES = {bool: 'boolean', int: 'integer', float: 'double', str: 'string'}
+
+
+@dataclass(frozen=True)
+class HasParameter(Clause):
+    """A node has declared a parameter: of a type, perhaps with limits, with a description.
+
+    Attributes:
+        node: Full name of the node.
+        name: Name of the parameter.
+        kind: The type in Python: bool, int, float or str.
+        words: What is asked for, in words of the task.
+        limits: The range that its descriptor has to have; none is asked for if None.
+    """
+
+    node: str
+    name: str
+    kind: type
+    words: str
+    limits: tuple[float, float] | None = None
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return self.words
+
+    def find(self, evidence: Evidence) -> None:
+        """Ask the node for the parameter and its descriptor."""
+        from labkit.background.parameters import describe_parameters, parameter_names
+        from labkit.rosgraph.parameters import type_word
+
+        probe, node = evidence.probe, self.node
+        if not timing.runs(probe, node):
+            expect.hanging(probe)
+            raise Fail(
+                f'{node} answers questions about its parameters',
+                f'{node} is there, but it is not spun',
+                todo=timing.how_to_spin(probe, node),
+            )
+        with _asked(probe, node):
+            names = parameter_names(probe.spun_node, node)
+            if self.name not in names:
+                self._refuse_missing(names)
+            found = describe_parameters(probe.spun_node, node, [self.name])[0]
+        word = _TYPES[self.kind]
+        expect.that(
+            type_word(found.type) == word and not found.dynamic_typing,
+            expected=f'{self.name} is of type {word}',
+            seen='a parameter of any type: dynamic_typing is on'
+            if found.dynamic_typing
+            else f'it is of type {type_word(found.type)}',
+            why='The type of a parameter is that of the value it is declared with: 2 is an '
+            'integer, 2.0 a double.',
+            todo=f'Declare it with a value of type {self.kind.__name__}.',
+        )
+        expect.that(
+            found.description.strip(),
+            expected=f'{self.name} with a description',
+            seen='a descriptor without a description',
+            why='Whoever asks for the parameter later does not know what it stands for, nor its '
+            'unit.',
+            todo="Pass ParameterDescriptor(description='...') to declare_parameter().",
+        )
+        if self.limits is not None:
+            self._judge_limits([*found.floating_point_range, *found.integer_range])
+
+    def _refuse_missing(self, names: Sequence[str]) -> None:
+        near = nearest(self.name, list(names))
+        raise Fail(
+            f'{self.node} has the parameter {self.name}',
+            f'it has {", ".join(names)}',
+            why=f'{near} is not {self.name}: names must be equal to the last letter.'
+            if near
+            else 'A node has the parameters that it declares, and no others.',
+            todo=f'In __init__: self.declare_parameter({self.name!r}, ...)',
+        )
+
+    def _judge_limits(self, found: Sequence[Any]) -> None:
+        wanted = self.limits
+        seen = (found[0].from_value, found[0].to_value) if found else None
+        expect.that(
+            seen == wanted,
+            expected=f'{self.name} with a range from {wanted[0]} to {wanted[1]}',  # type: ignore[index]
+            seen=f'a range from {seen[0]} to {seen[1]}' if seen else 'no range',
+            why=''
+            if seen
+            else 'A range in the descriptor is checked by ROS itself, and others can read it.',
+            todo='Pass it in the ParameterDescriptor: floating_point_range='
+            '[FloatingPointRange(from_value=..., to_value=...)]',
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Follows(Clause):
+    """What a node publishes follows its parameters, at once after each change.
+
+    Attributes:
+        node: Full name of the node.
+        topic: Full name of the topic. Its type is in the `publishes` of the exercise.
+        words: What is asked for, in words of the task.
+        draw: Draws the values that are set, one set after the other. A set is set at once.
+        hz: How many messages a second there are with some values.
+        rule: Gets the values and the messages that came with them, and raises Fail.
+    """
+
+    node: str
+    topic: str
+    words: str
+    draw: Callable[[], Sequence[Values]]
+    hz: Callable[[Values], float]
+    rule: Callable[[Values, Stream], None] = lambda _values, _stream: None
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return self.words
+
+    def find(self, evidence: Evidence) -> None:
+        """Look for the publisher."""
+        evidence.publisher(self.topic, self.node)
+
+    def judge(self, evidence: Evidence) -> str:
+        """Set the parameters, and look at what is published then."""
+        sets = self.draw()
+        with _kept(evidence.probe, self.node, list(sets[0])):
+            for values in sets:
+                self._judge_one(evidence, values)
+        return f'{self.node} follows {_show(sets[0])}, and {len(sets) - 1} more.'
+
+    def _judge_one(self, evidence: Evidence, values: Values) -> None:
+        probe = evidence.probe
+        complaint = _set(probe, self.node, values)
+        if complaint is not None:
+            raise Fail(
+                f'{self.node} takes {_show(values)}',
+                f'it refuses: {complaint or "without a reason"}',
+                why='These values are allowed, and a node that refuses them can not be used.',
+                todo='Compare what your callback, or the range, allows with the task. A callback '
+                'gets all parameters that are set at once, and the node still has the old values.'
+                if len(values) > 1
+                else 'Compare what your callback, or the range, allows with the task.',
+            )
+        hz = self.hz(values)
+        rate = Publishes(self.topic, hz, probe.scope.publishes[self.topic], by=self.node)
+        topics = {self.topic: rate.msg_type}
+        life = evidence.live(topics, max(LEAST_SEC, MESSAGES / hz), [rate], nodes=[self.node])
+        now = replace(evidence, life=life)
+        now.refuse_trouble(())
+        try:
+            rate.judge(now)
+            self.rule(values, now.streams[self.topic, self.node])
+        except Fail as fail:
+            raise Fail(
+                f'with {_show(values)}: {fail.expected}',
+                fail.seen,
+                why='The parameter has changed, and what the node does has not: it has read the '
+                'value once, or its timer still has the old period.'
+                if life.on(self.topic)
+                else fail.why,
+                todo='Change what depends on the parameter in a callback: '
+                'self.add_post_set_parameters_callback(self.on_change). Or read the parameter '
+                'anew each time.',
+            ) from None
+
+
+@dataclass(frozen=True, eq=False)
+class Refuses(Clause):
+    """A node refuses values of its parameters, says why, and keeps what it had.
+
+    Attributes:
+        node: Full name of the node.
+        words: What is asked for, in words of the task.
+        draw: Draws the values that are set before, which are right, and the sets of values that
+            are to be refused then.
+    """
+
+    node: str
+    words: str
+    draw: Callable[[], tuple[Values, Sequence[Values]]]
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return self.words
+
+    def judge(self, evidence: Evidence) -> str:
+        """Try to set each of them."""
+        probe, node = evidence.probe, self.node
+        keeps, sets = self.draw()
+        with _kept(probe, node, list(keeps)):
+            complaint = _set(probe, node, keeps)
+            expect.that(
+                complaint is None,
+                expected=f'{node} takes {_show(keeps)}',
+                seen=f'it refuses: {complaint or "without a reason"}',
+                todo='Compare what your callback, or the range, allows with the task.',
+            )
+            for values in sets:
+                self._judge_one(probe, keeps, values)
+        return f'{node} refuses {_show(sets[0])}, and {len(sets) - 1} more.'
+
+    def _judge_one(self, probe: Probe, keeps: Values, values: Values) -> None:
+        complaint = _set(probe, self.node, values)
+        tried = f'{_show(values)}, while it has {_show(keeps)}'
+        expect.that(
+            complaint is not None,
+            expected=f'{self.node} refuses {tried}',
+            seen='it takes it',
+            why='A comparison with nan is always False. So "if value > limit" lets nan pass.'
+            if any(isinstance(value, float) and math.isnan(value) for value in values.values())
+            else 'Nothing looks at the value before the node uses it.',
+            todo='Limit it by a range in the descriptor, or in a callback that returns '
+            "SetParametersResult(successful=False, reason='...'): "
+            'self.add_on_set_parameters_callback(self.on_set).',
+        )
+        expect.that(
+            complaint,
+            expected=f'a reason why {self.node} refuses {tried}',
+            seen='no reason',
+            why='Whoever has set the value knows now that it is wrong, and not why.',
+            todo="Say it: SetParametersResult(successful=False, reason='...')",
+        )
+        after = _get(probe, self.node, list(keeps))
+        expect.that(
+            after == keeps,
+            expected=f'{self.node} still has {_show(keeps)}',
+            seen=f'it has {_show(after)}',
+            why=f'It has refused {_show(values)}, and changed all the same.',
+            todo='Let the callback that may refuse only look. What follows a change belongs into '
+            'add_post_set_parameters_callback().',
+        )
+
+
+def _show(values: Values) -> str:
+    return ', '.join(f'{name} = {value!r}' for name, value in values.items())
+
+
+def _messages(values: Values) -> list[Any]:
+    from rclpy.parameter import Parameter
+
+    make: Any = Parameter
+    return [make(name, value=value).to_parameter_msg() for name, value in values.items()]
+
+
+def _set(probe: Probe, node: str, values: Values) -> str | None:
+    """Set parameters at once; return None, or why the node refuses."""
+    from labkit.background.parameters import set_parameters, set_parameters_atomically
+
+    with _asked(probe, node):
+        if len(values) > 1:
+            result = set_parameters_atomically(probe.spun_node, node, _messages(values))
+        else:
+            result = set_parameters(probe.spun_node, node, _messages(values))[0]
+    return None if result.successful else str(result.reason)
+
+
+def _get(probe: Probe, node: str, names: list[str]) -> dict[str, Any]:
+    from labkit.background.parameters import get_parameters
+    from labkit.rosgraph.parameters import python_value
+
+    with _asked(probe, node):
+        found = get_parameters(probe.spun_node, node, names)
+    return dict(zip(names, map(python_value, found), strict=False))
+
+
+@contextmanager
+def _kept(probe: Probe, node: str, names: list[str]) -> Iterator[None]:
+    """Give parameters back the values that they had before."""
+    before = _get(probe, node, names)
+    try:
+        yield
+    finally:
+        if before:
+            _set(probe, node, before)
+
+
+@contextmanager
+def _asked(probe: Probe, node: str) -> Iterator[None]:
+    """Say what is wrong with a node that does not answer.
+
+    Raises:
+        LearnerError: One of its callbacks has raised.
+        Fail: It does not answer.
+    """
+    try:
+        yield
+    except LabError as error:
+        probe.callbacks.raise_new_error(probe.scope)
+        expect.hanging(probe)
+        raise Fail(
+            f'{node} answers questions about its parameters',
+            error.message,
+            why='A callback for parameters has not returned, or it has raised an error.',
+            todo='Let it return soon. Look at the output of the node, too.',
+        ) from None

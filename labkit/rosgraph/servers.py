@@ -1,0 +1,62 @@
+"""Services by the nodes that offer them, as the graph knows them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rclpy.node import Node, NodeNameNonExistentError
+
+from labkit.rosgraph.names import is_hidden, split_node_name
+from labkit.rosgraph.snapshot import node_names
+
+__all__ = ['Server', 'servers']
+
+# What rclpy gives every node, under its name (rclpy/parameter_service.py and
+# rclpy/type_description_service.py).
+_OF_EVERY_NODE = (
+    'describe_parameters',
+    'get_parameter_types',
+    'get_parameters',
+    'get_type_description',
+    'list_parameters',
+    'set_parameters',
+    'set_parameters_atomically',
+)
+
+
+@dataclass(frozen=True)
+class Server:
+    """A service that a node offers.
+
+    Attributes:
+        node: Full name of the node.
+        service: Full name of the service.
+        srv_type: Name of its type, such as `std_srvs/srv/SetBool`.
+    """
+
+    node: str
+    service: str
+    srv_type: str
+
+
+def servers(node: Node) -> list[Server]:
+    """Return the services that nodes offer, without those that every node has.
+
+    A service comes into the graph after the name of its node.
+
+    Args:
+        node: The node to ask with.
+    """
+    found = []
+    for name in dict.fromkeys(node_names(node)):
+        try:
+            offered = node.get_service_names_and_types_by_node(*split_node_name(name))
+        except NodeNameNonExistentError:
+            continue
+        every = {f'{name}/{service}' for service in _OF_EVERY_NODE}
+        found += [
+            Server(name, service, types[0])
+            for service, types in sorted(offered)
+            if service not in every and not is_hidden(service)
+        ]
+    return found
