@@ -1,0 +1,250 @@
+"""A bag, open for writing: its files, one after the other, and `metadata.yaml` at the end."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Protocol
+
+import yaml
+
+from labkit.bags.metadata import FILE_NAME, Metadata, TopicMetadata
+from labkit.bags.stored import StoredTopic
+from labkit.errors import LabError, nearest
+from labkit.files import write_atomically
+
+__all__ = ['STORAGES', 'BagWriter', 'check_storage']
+
+STORAGES = ('mcap', 'sqlite3')
+_SUFFIXES = ('.mcap', '.db3', '.db3-journal', '.db3-wal', '.db3-shm')
+
+Message = tuple[int, int, int, bytes]
+"""Number of the topic, time of receipt, ns, time of publishing, ns, bytes."""
+
+
+class _File(Protocol):
+    path: Path
+
+    @property
+    def size(self) -> int: ...
+    def add_topic(self, topic: StoredTopic) -> None: ...
+    def write(self, messages: Sequence[Message]) -> None: ...
+    def flush(self) -> None: ...
+    def finish(self, metadata: str) -> None: ...
+    def abandon(self) -> None: ...
+
+
+class BagWriter:
+    """A bag, open for writing.
+
+    Args:
+        path: Its folder.
+        storage: `'mcap'` or `'sqlite3'`.
+        overwrite: Whether a bag that is there is replaced.
+        split_bytes: A new file is begun after so many bytes; 0 for never.
+        split_sec: A new file is begun after so many seconds; 0 for never.
+
+    Attributes:
+        path: Its folder.
+
+    Raises:
+        LabError: The folder is there, or can't be made.
+        OSError: In each method: it can't be written.
+    """
+
+    _first_ns: int
+    _last_ns: int
+
+    def __init__(
+        self,
+        path: Path,
+        storage: str = 'mcap',
+        *,
+        overwrite: bool = False,
+        split_bytes: int = 0,
+        split_sec: float = 0.0,
+    ) -> None:
+        self.path = path
+        self._storage = check_storage(storage)
+        self._split_bytes, self._split_ns = split_bytes, round(split_sec * 1e9)
+        self._topics: dict[int, StoredTopic] = {}
+        self._written: list[dict[str, Any]] = []
+        self._counts: dict[int, int] = {}
+        self._open = True
+        _make_folder(path, overwrite=overwrite)
+        try:
+            self._begin_file()
+        except OSError as error:
+            with suppress(OSError):
+                path.rmdir()
+            raise LabError(f'{str(path)!r} can not be written: {error}.') from error
+
+    def add_topic(
+        self,
+        name: str,
+        msg_type: str,
+        *,
+        qos: str,
+        definition: str,
+        encoding: str,
+        type_hash: str = '',
+        serialization_format: str = 'cdr',
+    ) -> int:
+        """Add a topic.
+
+        Args:
+            name: Full name of the topic.
+            msg_type: Name of its type.
+            qos: The offered QoS profiles, as YAML.
+            definition: How the type is defined.
+            encoding: The language of the definition.
+            type_hash: `RIHS01_...`, '' if it is not known.
+            serialization_format: Of the messages.
+
+        Returns:
+            Its number.
+        """
+        number = len(self._topics) + 1
+        topic = StoredTopic(
+            number, name, msg_type, serialization_format, qos, definition, encoding, type_hash
+        )
+        self._topics[number] = topic
+        self._counts[number] = 0
+        self._file.add_topic(topic)
+        return number
+
+    def write(self, messages: Sequence[Message]) -> None:
+        """Write messages, in the order in which they came."""
+        if not messages:
+            return
+        if self._is_full(messages[0][1]):
+            self._end_file()
+            self._begin_file()
+        self._file.write(messages)
+        counts = self._in_file
+        for topic, stamp, _, _ in messages:
+            counts[topic] = counts.get(topic, 0) + 1
+            if stamp < self._first_ns:
+                self._first_ns = stamp
+            if stamp > self._last_ns:
+                self._last_ns = stamp
+
+    def flush(self) -> None:
+        """Write what waits, so that it can be read whatever happens from now on."""
+        self._file.flush()
+
+    def close(self) -> None:
+        """Write what a whole bag has at its end. Without effect when it is closed."""
+        if self._open:
+            self._open = False
+            self._end_file()
+            write_atomically(self.path / FILE_NAME, self._metadata(self._written).encode())
+
+    def abandon(self) -> None:
+        """Close it as it is: it can be read as far as it goes."""
+        if self._open:
+            self._open = False
+            self._file.abandon()
+
+    def _is_full(self, stamp_ns: int) -> bool:
+        if not self._in_file:
+            return False
+        too_large = self._split_bytes and self._file.size >= self._split_bytes
+        too_long = self._split_ns and stamp_ns - self._first_ns >= self._split_ns
+        return bool(too_large or too_long)
+
+    def _begin_file(self) -> None:
+        from labkit.bags.mcap_writer import McapWriter
+        from labkit.bags.sqlite_writer import SqliteWriter
+
+        kind: Any = McapWriter if self._storage == 'mcap' else SqliteWriter
+        name = f'{self.path.resolve().name}_{len(self._written)}{kind.suffix}'
+        self._in_file: dict[int, int] = {}
+        self._first_ns, self._last_ns = 2**63 - 1, 0
+        self._file: _File = kind(self.path / name)
+        for topic in self._topics.values():
+            self._file.add_topic(topic)
+
+    def _end_file(self) -> None:
+        for topic, count in self._in_file.items():
+            self._counts[topic] += count
+        entry = {
+            'path': self._file.path.name,
+            'start_ns': self._first_ns if self._in_file else 0,
+            'duration_ns': max(0, self._last_ns - self._first_ns) if self._in_file else 0,
+            'count': sum(self._in_file.values()),
+        }
+        self._written.append(entry)
+        self._file.finish(self._metadata([entry]))
+
+    def _metadata(self, files: Sequence[dict[str, Any]]) -> str:
+        filled = [file for file in files if file['count']]
+        first = min((file['start_ns'] for file in filled), default=0)
+        last = max((file['start_ns'] + file['duration_ns'] for file in filled), default=0)
+        counts = self._counts if files is self._written else self._in_file
+        topics = [
+            TopicMetadata(
+                *(topic.name, topic.msg_type, topic.serialization_format),
+                *(yaml.safe_load(topic.qos or '[]'), topic.type_hash, counts.get(number, 0)),
+            )
+            for number, topic in self._topics.items()
+        ]
+        names = [file['path'] for file in files]
+        return Metadata(self._storage, names, first, last - first, topics).text(files)
+
+
+def check_storage(storage: str) -> str:
+    """Return the name of a storage.
+
+    Raises:
+        LabError: There is none of that name.
+    """
+    if storage in STORAGES:
+        return storage
+    near = nearest(str(storage), STORAGES)
+    raise LabError(
+        f'storage must be one of {", ".join(map(repr, STORAGES))}, but it is {storage!r}.',
+        todo=f'Did you mean {near!r}?' if near else '',
+    )
+
+
+def _make_folder(path: Path, *, overwrite: bool) -> None:
+    """Make the folder of a bag; one that is there is taken away if that is wanted.
+
+    Raises:
+        LabError: It is there, or is no bag, or can't be made.
+    """
+    try:
+        if os.path.lexists(path):
+            if not overwrite:
+                raise LabError(
+                    f"Output folder '{path}' already exists.",
+                    todo='Choose another name, or replace what is there: overwrite=True.',
+                )
+            _remove(path)
+        path.mkdir(parents=True)
+    except OSError as error:
+        raise LabError(
+            f'{str(path)!r} can not be made: {error.strerror or error}.',
+            todo='Choose a folder that you may write to.',
+        ) from error
+
+
+def _remove(path: Path) -> None:
+    """Remove a bag, and nothing else."""
+    entries = list(path.iterdir()) if path.is_dir() and not path.is_symlink() else None
+    others = [
+        entry.name
+        for entry in entries or ()
+        if entry.name != FILE_NAME and not entry.name.endswith(_SUFFIXES)
+    ]
+    if entries is None or others:
+        what = f'holds {others[0]!r}, too' if others else 'is no folder'
+        raise LabError(
+            f'{str(path)!r} {what}, so it is not replaced.',
+            todo='Choose another name, or remove it yourself.',
+        )
+    shutil.rmtree(path)
