@@ -12,6 +12,7 @@ from labkit.exercises.clauses.messages import HasText, Messages, Says
 from labkit.exercises.clauses.nodes import Named, NobodyElse, Runs, Subscribes
 from labkit.exercises.clauses.parameters import Follows, HasParameter, Refuses
 from labkit.exercises.clauses.publishing import Publishes, often
+from labkit.exercises.clauses.qos import Latched, Matches
 from labkit.exercises.clauses.serving import Call, Responds, Serves
 
 __all__ = [
@@ -22,7 +23,9 @@ __all__ = [
     'Follows',
     'HasParameter',
     'HasText',
+    'Latched',
     'Logs',
+    'Matches',
     'Messages',
     'Named',
     'NobodyElse',

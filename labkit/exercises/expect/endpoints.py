@@ -7,7 +7,7 @@ from no attempt at all.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from labkit.errors import nearest
 from labkit.exercises.probe import Probe
@@ -46,9 +46,16 @@ def publisher(probe: Probe, topic: str, *, by: str = '') -> Endpoint:
     return found
 
 
-def subscription(probe: Probe, topic: str, *, by: str = '') -> Endpoint:
-    """Expect a subscription of the learner's to a topic. Arguments as for `publisher`."""
-    return _find(probe, SUBSCRIPTION, topic, by)
+def subscription(probe: Probe, topic: str, *, by: str = '', offered: Any = None) -> Endpoint:
+    """Expect a subscription of the learner's to a topic. Other arguments as for `publisher`.
+
+    Args:
+        probe: The probe of the check.
+        topic: Full name of the topic.
+        by: Full name of the node it must belong to; any node if empty.
+        offered: QoS profile of the publishers that it has to match; a usual one if None.
+    """
+    return _find(probe, SUBSCRIPTION, topic, by, offered)
 
 
 def node(probe: Probe, name: str) -> str:
@@ -158,7 +165,7 @@ def qos(endpoint: Endpoint, *, reliability: str = '', durability: str = '') -> N
             )
 
 
-def _find(probe: Probe, kind: str, topic: str, by: str) -> Endpoint:
+def _find(probe: Probe, kind: str, topic: str, by: str, offered: Any = None) -> Endpoint:
     ask = probe.publishers if kind == PUBLISHER else probe.subscriptions
     msg_type = probe.scope.msg_type((kind, topic))
 
@@ -172,7 +179,7 @@ def _find(probe: Probe, kind: str, topic: str, by: str) -> Endpoint:
         if endpoint.msg_type != msg_type:
             _refuse_type(endpoint, kind, msg_type)
         if kind == SUBSCRIPTION:
-            _refuse_qos(endpoint)
+            _refuse_qos(endpoint, offered)
     return matching()[0]
 
 
@@ -187,7 +194,7 @@ def _refuse_type(endpoint: Endpoint, kind: str, msg_type: str) -> NoReturn:
     )
 
 
-def _refuse_qos(subscription: Endpoint) -> None:
+def _refuse_qos(subscription: Endpoint, offered: Any) -> None:
     """Raise Fail if a subscription asks for more than publishers usually offer."""
     from rclpy.duration import Infinite
     from rclpy.qos import LivelinessPolicy, QoSProfile
@@ -201,7 +208,16 @@ def _refuse_qos(subscription: Endpoint) -> None:
         liveliness=LivelinessPolicy.AUTOMATIC,
         liveliness_lease_duration=Infinite,
     )
-    reason = qos_mismatch(usual, subscription.qos)
+    reason = qos_mismatch(offered or usual, subscription.qos)
+    if reason and offered is not None:
+        raise Fail(
+            f'a subscription to {subscription.topic} that matches what is published there',
+            f'the QoS profile of {subscription.node} asks for more: '
+            f'{reason[:1].lower()}{reason[1:]}',
+            why='A publisher offers, and a subscription asks. Where it asks for more than is '
+            'offered, no message passes.',
+            todo='Ask for less in the profile of the subscription.',
+        )
     if reason:
         raise Fail(
             f'a subscription to {subscription.topic} that hears a usual publisher',
