@@ -13,14 +13,12 @@ from collections import deque
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from labkit.errors import LabError
-from labkit.sim.kinematics import BURGER, Pose, Twist2, wrap_angle, yaw_from_quaternion
 from labkit.views.arena_picture import Scene, to_svg
 from labkit.views.feed import Feed, heard
 from labkit.views.live import helper
 from labkit.views.live_page import LivePage, News
+from labkit.views.robot_messages import beam_ends, motion_of, nearest_of
 
 if TYPE_CHECKING:
     from nav_msgs.msg import Odometry
@@ -102,16 +100,13 @@ class Arena(LivePage):
             pass
 
     def _on_odometry(self, message: Odometry) -> None:
-        position, turn = message.pose.pose.position, message.pose.pose.orientation
-        yaw = yaw_from_quaternion(turn.x, turn.y, turn.z, turn.w)
-        speeds = message.twist.twist
-        numbers = (position.x, position.y, yaw, speeds.linear.x, speeds.angular.z)
-        if not all(map(math.isfinite, numbers)):
+        motion = motion_of(message)
+        if motion is None:
             return
-        point = (position.x, position.y)
+        point = (motion[0].x, motion[0].y)
         self._heard.add(self.odom)
         with self._lock:
-            self.scene.pose, self.scene.twist = Pose(*numbers[:3]), Twist2(*numbers[3:])
+            self.scene.pose, self.scene.twist = motion
             way = math.dist(self._trail[-1], point) if self._trail else math.inf
             if way > JUMP:
                 # The robot was put there: its path begins anew.
@@ -123,26 +118,17 @@ class Arena(LivePage):
                 self._new_trail += point
 
     def _on_scan(self, message: LaserScan) -> None:
-        ranges = np.array(message.ranges, dtype=np.float64)
-        # REP 117: +inf is nothing, -inf too near. Some drivers write 0 for nothing.
-        good = np.isfinite(ranges) & (ranges >= message.range_min) & (ranges <= message.range_max)
-        ranges[~good] = np.nan
-        angles = message.angle_min + message.angle_increment * np.arange(len(ranges))
         with self._lock:
             pose = self.scene.pose
             if pose is None:
                 return
             self._heard.add(self.scan)
-            x = pose.x + BURGER.scan_x * math.cos(pose.yaw) + ranges * np.cos(pose.yaw + angles)
-            y = pose.y + BURGER.scan_x * math.sin(pose.yaw) + ranges * np.sin(pose.yaw + angles)
-            ends = np.stack([x, y], axis=1)
+            ends = beam_ends(message, pose)
             self.scene.scan = [
                 (end[0], end[1]) if end[0] == end[0] else None for end in ends.tolist()
             ]
-            self.scene.reach, self.scene.nearest = float(message.range_max), None
-            if good.any():
-                beam = int(np.nanargmin(ranges))
-                self.scene.nearest = float(ranges[beam]), wrap_angle(float(angles[beam]))
+            self.scene.reach = float(message.range_max)
+            self.scene.nearest = nearest_of(message)
             numbers = ends.astype('<f4').tobytes()
             self._new_scan = numbers if numbers != self._last_scan else b''
 

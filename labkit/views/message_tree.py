@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import array
+import dataclasses
 from typing import Any, NamedTuple
 
 import numpy as np
 
-__all__ = ['Row', 'as_text', 'rows', 'value_text']
+__all__ = ['Row', 'as_text', 'fields_of', 'is_message', 'rows', 'value_text']
 
 # Elements of an array of numbers, and of messages, that are shown.
 NUMBERS = 5
@@ -56,6 +57,19 @@ def as_text(found: list[Row]) -> str:
     )
 
 
+def is_message(value: Any) -> bool:
+    """Tell whether a value is a message: of rclpy, or as `rosbags` makes them of foreign types."""
+    return hasattr(value, 'get_fields_and_field_types') or hasattr(value, '__msgtype__')
+
+
+def fields_of(message: Any) -> dict[str, str]:
+    """Return names and types of a message's fields; of foreign types only the names are known."""
+    if hasattr(message, 'get_fields_and_field_types'):
+        found: dict[str, str] = message.get_fields_and_field_types()
+        return found
+    return {field.name: '' for field in dataclasses.fields(message)}
+
+
 def value_text(value: Any) -> str:
     """Return a value of a message as text."""
     if isinstance(value, (bool, np.bool_)):
@@ -72,7 +86,7 @@ def value_text(value: Any) -> str:
 
 
 def _add_fields(found: list[Row], message: Any, depth: int, no_time: bool) -> None:
-    for name, field_type in message.get_fields_and_field_types().items():
+    for name, field_type in fields_of(message).items():
         if len(found) > 2 * MOST_ROWS:
             return
         value = getattr(message, name)
@@ -83,12 +97,12 @@ def _add_fields(found: list[Row], message: Any, depth: int, no_time: bool) -> No
 
 
 def _add(found: list[Row], value: Any, row: Row, no_time: bool) -> None:
-    if hasattr(value, 'get_fields_and_field_types'):
+    if is_message(value):
         found.append(row._replace(has_parts=True))
         _add_fields(found, value, row.depth + 1, no_time)
     elif not isinstance(value, (list, tuple, array.array, np.ndarray)):
         found.append(row._replace(value=value_text(value)))
-    elif len(value) and hasattr(value[0], 'get_fields_and_field_types'):
+    elif len(value) and is_message(value[0]):
         found.append(row._replace(has_parts=True, value=_counted(value, MESSAGES)))
         for number, part in enumerate(value[:MESSAGES]):
             _add(found, part, Row(row.depth + 1, f'[{number}]', '', True, ''), no_time)

@@ -9,19 +9,21 @@ import anywidget
 
 __all__ = ['page_files', 'widget_bundle', 'widget_class']
 
+# What else the page's part of a view is made of. It goes before its own.
+_SHARED = {'arena': ('map',), 'bag': ('map', 'lines'), 'plot': ('lines',)}
+
 
 def page_files(name: str) -> tuple[str, str]:
     """Return JavaScript and style of a view's part in the page.
 
     Args:
-        name: Its files are `NAME.js` and `NAME.css`; what all views share (`live`) goes before.
+        name: Its files are `NAME.js` and `NAME.css`; what several views share goes before.
     """
     folder = Path(__file__).parent
+    parts = ('live', *_SHARED.get(name, ()), name)
     script, style = (
-        '\n'.join(
-            (folder / f'{part}.{ending}').read_text(encoding='utf-8') for part in ('live', name)
-        )
-        for ending in ('js', 'css')
+        '\n'.join(path.read_text(encoding='utf-8') for path in paths if path.is_file())
+        for paths in ([folder / f'{part}.{ending}' for part in parts] for ending in ('js', 'css'))
     )
     return script, style
 
