@@ -24,6 +24,8 @@ if TYPE_CHECKING:
         wait_for_subscribers,
         wait_until,
     )
+    from labkit.bags.player import play
+    from labkit.bags.recorder import record
     from labkit.checkup.report import doctor
     from labkit.exercises.lesson import lesson
     from labkit.exercises.progress import progress
@@ -46,9 +48,11 @@ __all__ = [
     'lesson',
     'listen',
     'monitor',
+    'play',
     'plot',
     'processes',
     'progress',
+    'record',
     'remove',
     'spin',
     'start',
@@ -68,9 +72,11 @@ _HOMES = {
     'lesson': 'labkit.exercises.lesson',
     'listen': 'labkit.background.waiting',
     'monitor': 'labkit.views.monitor',
+    'play': 'labkit.bags.player',
     'plot': 'labkit.views.plot',
     'processes': 'labkit.background.child_processes',
     'progress': 'labkit.exercises.progress',
+    'record': 'labkit.bags.recorder',
     'remove': 'labkit.background.runtime',
     'spin': 'labkit.background.runtime',
     'start': 'labkit.background.runtime',
