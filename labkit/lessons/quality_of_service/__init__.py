@@ -1,0 +1,40 @@
+"""The exercises and the quiz of `08_quality_of_service.ipynb`."""
+
+from __future__ import annotations
+
+from labkit.exercises import Lesson
+from labkit.lessons.quality_of_service.door import door
+from labkit.lessons.quality_of_service.lock import NODE as LOCK
+from labkit.lessons.quality_of_service.millimetres import SONAR, millimetres
+from labkit.lessons.quality_of_service.quiz import QUIZ
+from labkit.lessons.quality_of_service.rover import NODE as ROVER
+from labkit.lessons.quality_of_service.rover import TOPICS
+from labkit.lessons.quality_of_service.site import site
+from labkit.lessons.quality_of_service.watchdog import watchdog
+
+__all__ = ['LESSON']
+
+LESSON = Lesson(
+    'quality_of_service',
+    '08_quality_of_service.ipynb',
+    exercises=[site, watchdog, millimetres, door],
+    quizzes=[QUIZ],
+    topics=['/frames', *TOPICS, '/numbers', '/fresh', '/kept', '/beat'],
+    given={
+        '/camera': 'slow',
+        '/viewer': 'slow',
+        '/base': 'rover',
+        ROVER: '',
+        '/speaker': 'late-joiner',
+        '/late': 'late-joiner',
+        '/robot': 'lifespan',
+        '/driver': 'lifespan',
+        '/clock': 'lifespan',
+        '/heart': 'deadline',
+        '/nurse': 'deadline',
+        SONAR: 'silent',
+        '/pilot': 'silent repair',
+        '/old_door': 'lock',
+        LOCK: 'lock',
+    },
+)

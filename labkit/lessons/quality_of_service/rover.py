@@ -1,0 +1,97 @@
+"""A rover that can drive behind a hill: a process that hears the same pictures on two topics.
+
+`start_rover()` starts it. One subscription asks for best effort, the other one for reliable. Upon
+each picture the rover answers with its number. Behind the hill its process is stopped, as Ctrl-Z
+does it: nobody takes what is sent there meanwhile, as where a radio link is broken.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from labkit.errors import LabTimeout
+
+if TYPE_CHECKING:
+    from labkit.background.child_processes import Process
+
+__all__ = ['NODE', 'TOPICS', 'behind_a_hill', 'start_rover']
+
+NODE = '/rover'
+KINDS = ('best_effort', 'reliable')
+# What it hears, and what it answers.
+TOPICS = tuple(f'/{word}_{kind}' for word in ('pictures', 'seen') for kind in KINDS)
+DEPTH = 100
+START_SEC = 25.0
+
+_process: Process | None = None
+
+
+def start_rover() -> None:
+    """Start the rover as a process, and wait until all of it is in the graph.
+
+    One that runs already is ended first. `lab.processes()` lists and stops it.
+
+    Raises:
+        LabTimeout: It did not come.
+    """
+    global _process
+    from labkit.background.child_processes import environment, start_process
+    from labkit.background.runtime import runtime
+    from labkit.rosgraph.snapshot import node_names
+
+    if _process is not None:
+        _process.stop()
+    runtime.start()
+    assert runtime.helper is not None
+    before = node_names(runtime.helper)
+    command = [sys.executable, '-c', f'from {__name__} import main; main()']
+    _process = start_process('rover', command, environment(), announces=True)
+    if not _process.wait_for_nodes(runtime.helper, before, START_SEC):
+        raise LabTimeout(
+            f'Waited {START_SEC:.0f} s for the rover, but it did not come.',
+            todo='Run the cell again. If that does not help, lab.doctor() looks for the reason.',
+        )
+
+
+@contextmanager
+def behind_a_hill() -> Iterator[None]:
+    """Let the rover be out of reach in a `with` block: its process stands still."""
+    assert _process is not None and _process.output
+    number = int(_process.output[0])
+    os.kill(number, signal.SIGSTOP)
+    try:
+        yield
+    finally:
+        os.kill(number, signal.SIGCONT)
+
+
+def main() -> None:
+    """Hear and answer until it is interrupted."""
+    import rclpy
+    from rclpy.node import Node
+    from rclpy.qos import QoSProfile, ReliabilityPolicy
+    from std_msgs.msg import Int16, String
+
+    from labkit.background.program import spin_until_interrupted
+
+    print(os.getpid(), flush=True)
+    rclpy.init()
+    rover = Node(NODE.lstrip('/'), start_parameter_services=False)
+
+    def listen(kind: str, reliability: ReliabilityPolicy) -> None:
+        answers = rover.create_publisher(Int16, f'seen_{kind}', DEPTH)
+        profile = QoSProfile(depth=DEPTH, reliability=reliability)  # type: ignore[no-untyped-call]
+
+        def on_picture(msg: String) -> None:
+            answers.publish(Int16(data=int(msg.data)))
+
+        rover.create_subscription(String, f'pictures_{kind}', on_picture, profile)
+
+    listen('best_effort', ReliabilityPolicy.BEST_EFFORT)
+    listen('reliable', ReliabilityPolicy.RELIABLE)
+    spin_until_interrupted(rover)
