@@ -5,6 +5,7 @@ from __future__ import annotations
 import linecache
 import re
 import sys
+import traceback
 from collections.abc import Callable
 from types import FrameType
 from typing import Any
@@ -84,7 +85,7 @@ def explain_error(error: BaseException) -> tuple[str, str]:
     """
     if isinstance(error, LabError):
         return '', error.todo
-    text = str(error)
+    text = str(error) or _raised_in(error)
     if isinstance(error, SyntaxError):
         text = f'{text}\n{error.text or ""}'
     for types, pattern, why, todo in _KNOWN:
@@ -93,6 +94,12 @@ def explain_error(error: BaseException) -> tuple[str, str]:
             words = {key: value or '' for key, value in match.groupdict().items()}
             return why.format(**words), todo.format(**words)
     return '', ''
+
+
+def _raised_in(error: BaseException) -> str:
+    """Return the name of the function that has raised: some errors of rclpy have no text."""
+    names = [frame.name for frame in traceback.extract_tb(error.__traceback__)]
+    return names[-1] if names else ''
 
 
 # Names of the exception, what its text looks like, the misconception, the next step. The first
@@ -209,16 +216,30 @@ _KNOWN = (
     ),
     (
         ('TypeError',),
-        r'^$',
+        r'^send_response$',
         'A callback of a service has to give its response back. Without "return" a function gives '
         'back None.',
         'End the callback with: return response',
+    ),
+    (
+        ('TypeError',),
+        r'^call(_async)?$',
+        'A client sends an object of the type of its requests, and got something else.',
+        'Make one first, such as SetBool.Request(data=True), and pass it.',
     ),
     (
         ('AttributeError',),
         r"'NoneType' object has no attribute 'successful'",
         'The callback that is asked before a parameter is set has given nothing back.',
         'End it with: return SetParametersResult(successful=True)',
+    ),
+    (
+        ('AttributeError',),
+        r"'NoneType' object has no attribute '(?P<name>\w+)'",
+        'What should have {name} is None. It was not set, or it is the result of a future that '
+        'was not done yet.',
+        'Set it before it is used. The result of a future is there in the callback that its '
+        'add_done_callback() gets.',
     ),
     (
         ('AttributeError',),

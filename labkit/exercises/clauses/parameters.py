@@ -25,6 +25,10 @@ Values = Mapping[str, Any]
 
 # How many messages of a changed rate are looked at, and how long at least, s.
 MESSAGES, LEAST_SEC = 12, 3.0
+LOOK_ONLY = (
+    'Let the callback that may refuse only look. What follows a change belongs into '
+    'add_post_set_parameters_callback().'
+)
 _TYPES = {bool: 'boolean', int: 'integer', float: 'double', str: 'string'}
 
 
@@ -167,7 +171,15 @@ class Follows(Clause):
                 if len(values) > 1
                 else 'Compare what your callback, or the range, allows with the task.',
             )
-        hz = self.hz(values)
+        self.look(evidence, values)
+
+    def look(self, evidence: Evidence, values: Values) -> None:
+        """Let time pass, and look at what is published while the node has these values.
+
+        Raises:
+            Fail: It is not what belongs to them.
+        """
+        probe, hz = evidence.probe, self.hz(values)
         rate = Publishes(self.topic, hz, probe.scope.publishes[self.topic], by=self.node)
         topics = {self.topic: rate.msg_type}
         life = evidence.live(topics, max(LEAST_SEC, MESSAGES / hz), [rate], nodes=[self.node])
@@ -199,11 +211,13 @@ class Refuses(Clause):
         words: What is asked for, in words of the task.
         draw: Draws the values that are set before, which are right, and the sets of values that
             are to be refused then.
+        follows: What the node publishes goes on as it was, see there; not looked at if None.
     """
 
     node: str
     words: str
     draw: Callable[[], tuple[Values, Sequence[Values]]]
+    follows: Follows | None = None
 
     @property
     def text(self) -> str:
@@ -224,6 +238,7 @@ class Refuses(Clause):
             )
             for values in sets:
                 self._judge_one(probe, keeps, values)
+            self._look(evidence, keeps)
         return f'{node} refuses {_show(sets[0])}, and {len(sets) - 1} more.'
 
     def _judge_one(self, probe: Probe, keeps: Values, values: Values) -> None:
@@ -253,9 +268,21 @@ class Refuses(Clause):
             expected=f'{self.node} still has {_show(keeps)}',
             seen=f'it has {_show(after)}',
             why=f'It has refused {_show(values)}, and changed all the same.',
-            todo='Let the callback that may refuse only look. What follows a change belongs into '
-            'add_post_set_parameters_callback().',
+            todo=LOOK_ONLY,
         )
+
+    def _look(self, evidence: Evidence, keeps: Values) -> None:
+        if self.follows is None:
+            return
+        try:
+            self.follows.look(evidence, keeps)
+        except Fail as fail:
+            raise Fail(
+                f'{fail.expected}, after it has refused other values',
+                fail.seen,
+                why='The node has refused a value, and uses it all the same.',
+                todo=LOOK_ONLY,
+            ) from None
 
 
 def _show(values: Values) -> str:

@@ -1,0 +1,28 @@
+"""The exercises and the quiz of `09_services_and_parameters.ipynb`."""
+
+from __future__ import annotations
+
+from labkit.exercises import Lesson
+from labkit.lessons.services_and_parameters.lamp import lamp
+from labkit.lessons.services_and_parameters.metronome import metronome
+from labkit.lessons.services_and_parameters.pilot import pilot
+from labkit.lessons.services_and_parameters.porter import porter
+from labkit.lessons.services_and_parameters.quiz import QUIZ
+
+__all__ = ['LESSON']
+
+LESSON = Lesson(
+    'services_and_parameters',
+    '09_services_and_parameters.ipynb',
+    exercises=[lamp, porter, metronome, pilot],
+    quizzes=[QUIZ],
+    topics=['/odom', '/scan', '/joint_states', '/imu', '/battery_state', '/knock'],
+    given={
+        '/turtlebot': '*',
+        '/gate': 'gate',
+        '/visitor': 'call',
+        '/bell': 'deadlock repair',
+        '/door': 'deadlock',
+        '/cruiser': 'cruiser start-file',
+    },
+)
