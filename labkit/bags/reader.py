@@ -38,6 +38,7 @@ class BagTopic:
         qos_profiles: What its publishers offered, as far as the bag knows.
         serialization_format: `'cdr'`, mostly.
         definition: How the type is defined, '' if the bag does not say.
+        encoding: The language of that: `'ros2msg'` or `'ros2idl'`.
         type_hash: `RIHS01_...`, '' if the bag does not say.
     """
 
@@ -47,6 +48,7 @@ class BagTopic:
     qos_profiles: list[QoSProfile] = field(repr=False)
     serialization_format: str = field(default='cdr', repr=False)
     definition: str = field(default='', repr=False)
+    encoding: str = field(default='', repr=False)
     type_hash: str = field(default='', repr=False)
 
 
@@ -298,6 +300,7 @@ def _topics(files: Sequence[StoredFile], metadata: Metadata | None) -> list[BagT
                 profiles_from(known.qos),
                 known.serialization_format,
                 stored.definition if stored else '',
+                stored.encoding if stored else '',
                 known.type_hash,
             )
         )

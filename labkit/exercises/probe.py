@@ -13,12 +13,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any
 
+from labkit.background.progress_bar import ProgressBar
 from labkit.exercises.callbacks import Callbacks, find_node, is_given
 from labkit.exercises.scope import Scope
 from labkit.exercises.verdict import Fail, LearnerError
 from labkit.exercises.watch import Watch, build
 from labkit.rosgraph.names import EVERY_NODE_HAS, is_hidden
-from labkit.views.progress_bar import ProgressBar
 
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint

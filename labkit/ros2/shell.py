@@ -19,6 +19,7 @@ __all__ = ['COMMANDS', 'Ran', 'command', 'execute', 'history', 'run_line', 'spli
 
 # Command -> the module that has it as `COMMAND`.
 COMMANDS = {
+    'bag': 'labkit.ros2.bag',
     'doctor': 'labkit.ros2.doctor',
     'interface': 'labkit.ros2.interface',
     'node': 'labkit.ros2.node',

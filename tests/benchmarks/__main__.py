@@ -1,7 +1,7 @@
 """All benchmarks: `python tests/benchmarks` in the course's folder. Prints tables; judges nothing.
 
     python tests/benchmarks                      # some 5 minutes, on a machine that is idle
-    python tests/benchmarks messages process     # some: messages process ros2 views course sim
+    python tests/benchmarks messages process     # some: messages process ros2 views bags sim ...
     python tests/benchmarks --quick              # does it run at all?
 
 A table has a figure, the target that the course has set itself, and whether it is met.
@@ -16,6 +16,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import bench_bags
 import bench_course
 import bench_messages
 import bench_process
@@ -32,6 +33,7 @@ BENCHES = {
     'ros2': bench_ros2.tables,
     'views': bench_views.tables,
     'course': bench_course.tables,
+    'bags': bench_bags.tables,
 }
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 BAR = """
 import labkit as lab
-from labkit.views import progress_bar
+from labkit.background import progress_bar
 progress_bar.SHOWN_AFTER_SEC = progress_bar.EVERY_SEC = 0.0
 bar = progress_bar.ProgressBar('Checking')
 bar.show(0.25, '<b> 7 s')
@@ -21,7 +21,7 @@ def test_a_learner_sees_how_far_it_is(kernel: Any) -> None:
 
 
 def test_what_is_done_at_once_needs_no_bar(kernel: Any) -> None:
-    kernel.run('from labkit.views.progress_bar import ProgressBar')
+    kernel.run('from labkit.background.progress_bar import ProgressBar')
     assert kernel.run("ProgressBar('Checking').show(0.5, '')").outputs == []
 
 

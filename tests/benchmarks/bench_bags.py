@@ -1,0 +1,188 @@
+"""A recording against a bare subscription that only counts: throughput, CPU time, memory.
+
+Another process publishes, as fast as is heard: through a file in memory it knows how many have
+come, and never is more than a window ahead, so that nothing is lost on the way. Both hear raw
+messages, with the same QoS, and take turns; what counts is the ratio.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from table import Row
+
+from labkit.background import domains
+
+__all__ = ['tables']
+
+PUBLISHER = """
+import mmap, struct, sys, time
+import rclpy
+from rclpy.qos import QoSProfile
+from rclpy.serialization import serialize_message
+from std_msgs.msg import String, UInt8MultiArray
+
+path, size, count, window = sys.argv[1], *map(int, sys.argv[2:])
+rclpy.init()
+node = rclpy.create_node('flood')
+small = size < 10000
+kind = String if small else UInt8MultiArray
+message = String(data='x' * size) if small else UInt8MultiArray(data=bytes(size))
+data = serialize_message(message)
+publisher = node.create_publisher(kind, '/flood', QoSProfile(depth=2 * window))
+with open(path, 'r+b') as file:
+    came = mmap.mmap(file.fileno(), 8)
+while publisher.get_subscription_count() == 0:
+    time.sleep(0.01)
+print('begin', flush=True)
+sent = 0
+while sent < count:
+    if sent - struct.unpack('<q', came[:8])[0] < window:
+        publisher.publish(data)
+        sent += 1
+    else:
+        time.sleep(0.0001)
+sys.stdin.read()
+"""
+HEARER = """
+import json, mmap, os, struct, subprocess, sys, time
+import psutil
+import labkit as lab
+
+way, folder, storage = sys.argv[1:4]
+size, count, window = map(int, sys.argv[4:])
+lab.start()
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.qos import QoSProfile
+from std_msgs.msg import String, UInt8MultiArray
+from labkit.background.nodes import helper_node
+
+path = os.path.join(folder, 'came')
+with open(path, 'w+b') as file:
+    file.write(bytes(8))
+    file.flush()
+    shared = mmap.mmap(file.fileno(), 8)
+publisher = subprocess.Popen(
+    [sys.executable, '-c', {publisher!r}, path, str(size), str(count), str(window)],
+    stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+)
+bag = os.path.join(folder, 'bag')
+if way == 'record':
+    recording = lab.record(bag, '/flood', storage=storage, timeout_sec=0)
+    came = lambda: recording.counts.get('/flood', 0)
+else:
+    # With no more than the recorder has: what else a node has makes each message dearer.
+    heard = [0]
+
+    def hear(data):
+        heard[0] += 1
+
+    node = lab.spin(helper_node('bare'))
+    kind = String if size < 10000 else UInt8MultiArray
+    events = SubscriptionEventCallbacks(use_default_callbacks=False)
+    node.create_subscription(
+        kind, '/flood', hear, QoSProfile(depth=1000), event_callbacks=events, raw=True
+    )
+    came = lambda: heard[0]
+publisher.stdout.readline()
+process = psutil.Process()
+cpu, begin = sum(process.cpu_times()[:2]), time.perf_counter()
+rss, last, moved = [], 0, begin
+while last < count:
+    time.sleep(0.001)
+    now = came()
+    if now != last:
+        last, moved = now, time.perf_counter()
+        shared[:8] = struct.pack('<q', now)
+        if now >= count * (len(rss) + 1) / 20:
+            rss.append(process.memory_info().rss)
+    elif time.perf_counter() > moved + 20:
+        break
+end = time.perf_counter()
+lost = count - last
+if way == 'record':
+    recording.stop()
+    lost += recording.lost
+cpu = sum(process.cpu_times()[:2]) - cpu
+publisher.communicate()
+print(json.dumps({{
+    'rate': last / (end - begin),
+    'cpu': 1e6 * cpu / count,
+    'lost': lost,
+    'growth': (rss[-1] - rss[len(rss) // 2]) / 1e6 if rss else 0.0,
+}}))
+"""
+
+
+def tables(quick: bool) -> Iterator[tuple[str, list[Row]]]:
+    """Measure, and give title and rows of each table."""
+    rounds = 1 if quick else 5
+    claim = domains.claim_domain()
+    try:
+        yield from _tables(quick, rounds, claim.domain_id)
+    finally:
+        claim.close()
+
+
+def _tables(quick: bool, rounds: int, domain_id: int) -> Iterator[tuple[str, list[Row]]]:
+    for name, size, count, window in (
+        ('100 B', 100, 200 if quick else 40000, 500),
+        ('1 MB', 1_000_000, 20 if quick else 600, 20),
+    ):
+        seen: dict[str, list[dict[str, float]]] = {'bare': [], 'mcap': [], 'sqlite3': []}
+        for number in range(rounds):
+            order = list(seen)
+            for way in order[number % 3 :] + order[: number % 3]:
+                seen[way].append(_heard(way, size, count, window, domain_id))
+        yield f'Recording messages of {name}', list(_rows(seen, quick))
+
+
+def _rows(seen: dict[str, list[dict[str, float]]], quick: bool) -> Iterator[Row]:
+    typical = {
+        way: {key: statistics.median(each[key] for each in found) for key in found[0]}
+        for way, found in seen.items()
+    }
+    words = {'bare': 'a bare subscription', 'mcap': 'to mcap', 'sqlite3': 'to sqlite3'}
+    for way, name in words.items():
+        yield Row(f'throughput: {name}', typical[way]['rate'], 'messages/s')
+    for way in ('mcap', 'sqlite3'):
+        ratio = typical[way]['rate'] / typical['bare']['rate']
+        yield Row(f'throughput: {words[way]} / bare', ratio, '', at_least=0.8)
+    for way, name in words.items():
+        yield Row(f'CPU time a message: {name}', typical[way]['cpu'], 'us')
+    for way in ('mcap', 'sqlite3'):
+        lost = max(each['lost'] for each in seen[way])
+        yield Row(f'lost: {words[way]}', lost, 'messages', at_most=0)
+        limit = None if quick else 20.0
+        yield Row(f'memory, second half: {words[way]}', typical[way]['growth'], 'MB', limit)
+
+
+def _heard(way: str, size: int, count: int, window: int, domain_id: int) -> dict[str, float]:
+    code = HEARER.format(publisher=PUBLISHER)
+    storage = 'mcap' if way == 'bare' else way
+    variables = {
+        **os.environ,
+        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
+        'ROS_DOMAIN_ID': str(domain_id),
+    }
+    with tempfile.TemporaryDirectory() as folder:
+        words = ['bare' if way == 'bare' else 'record', folder, storage, size, count, window]
+        done = subprocess.run(
+            [sys.executable, '-c', code, *map(str, words)],
+            capture_output=True,
+            text=True,
+            timeout=300,
+            env=variables,
+            cwd=Path(folder),
+        )
+    if done.returncode != 0:
+        raise RuntimeError(done.stderr)
+    result: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
+    return result
