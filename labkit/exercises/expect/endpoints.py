@@ -6,8 +6,9 @@ from no attempt at all.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from labkit.errors import nearest
 from labkit.exercises.probe import Probe
@@ -46,16 +47,18 @@ def publisher(probe: Probe, topic: str, *, by: str = '') -> Endpoint:
     return found
 
 
-def subscription(probe: Probe, topic: str, *, by: str = '', offered: Any = None) -> Endpoint:
+def subscription(
+    probe: Probe, topic: str, *, by: str = '', deadline_sec: float = math.inf
+) -> Endpoint:
     """Expect a subscription of the learner's to a topic. Other arguments as for `publisher`.
 
     Args:
         probe: The probe of the check.
         topic: Full name of the topic.
         by: Full name of the node it must belong to; any node if empty.
-        offered: QoS profile of the publishers that it has to match; a usual one if None.
+        deadline_sec: The deadline that publishers offer there, s; a usual one offers none.
     """
-    return _find(probe, SUBSCRIPTION, topic, by, offered)
+    return _find(probe, SUBSCRIPTION, topic, by, deadline_sec)
 
 
 def node(probe: Probe, name: str) -> str:
@@ -165,7 +168,9 @@ def qos(endpoint: Endpoint, *, reliability: str = '', durability: str = '') -> N
             )
 
 
-def _find(probe: Probe, kind: str, topic: str, by: str, offered: Any = None) -> Endpoint:
+def _find(
+    probe: Probe, kind: str, topic: str, by: str, deadline_sec: float = math.inf
+) -> Endpoint:
     ask = probe.publishers if kind == PUBLISHER else probe.subscriptions
     msg_type = probe.scope.msg_type((kind, topic))
 
@@ -179,7 +184,7 @@ def _find(probe: Probe, kind: str, topic: str, by: str, offered: Any = None) -> 
         if endpoint.msg_type != msg_type:
             _refuse_type(endpoint, kind, msg_type)
         if kind == SUBSCRIPTION:
-            _refuse_qos(endpoint, offered)
+            _refuse_qos(endpoint, deadline_sec)
     return matching()[0]
 
 
@@ -194,22 +199,23 @@ def _refuse_type(endpoint: Endpoint, kind: str, msg_type: str) -> NoReturn:
     )
 
 
-def _refuse_qos(subscription: Endpoint, offered: Any) -> None:
+def _refuse_qos(subscription: Endpoint, deadline_sec: float) -> None:
     """Raise Fail if a subscription asks for more than publishers usually offer."""
-    from rclpy.duration import Infinite
+    from rclpy.duration import Duration, Infinite
     from rclpy.qos import LivelinessPolicy, QoSProfile
 
     from labkit.rosgraph.matching import qos_mismatch
 
+    has_deadline = deadline_sec < math.inf
     # What a depth alone is in the graph.
     usual = QoSProfile(  # type: ignore[no-untyped-call]
         depth=10,
-        deadline=Infinite,
+        deadline=Duration(seconds=deadline_sec) if has_deadline else Infinite,
         liveliness=LivelinessPolicy.AUTOMATIC,
         liveliness_lease_duration=Infinite,
     )
-    reason = qos_mismatch(offered or usual, subscription.qos)
-    if reason and offered is not None:
+    reason = qos_mismatch(usual, subscription.qos)
+    if reason and has_deadline:
         raise Fail(
             f'a subscription to {subscription.topic} that matches what is published there',
             f'the QoS profile of {subscription.node} asks for more: '

@@ -43,9 +43,8 @@ _PROFILE = """        profile = QoSProfile(
 """
 _DURATION = 'from rclpy.duration import Duration\n'
 _QOS = 'from rclpy.qos import DurabilityPolicy, QoSProfile\n'
-_SECOND_LOCK = """
-lock = lab.spin(Node('lock'))
-lock.create_subscription(Int16, 'door', print, 10)
+_SECOND_LOCK = """    lock = Node('lock')
+    lock.create_subscription(Int16, 'door', print, 10)
 """
 
 
@@ -151,7 +150,7 @@ lab.spin(node)
                     'durability=DurabilityPolicy.TRANSIENT_LOCAL)\n',
                 ),
             ),
-            'subscription has a deadline, but publisher does not',
+            'subscription deadline is less than publisher deadline',
         ),
         Wrong(
             'a deadline that is too long',
@@ -174,8 +173,11 @@ lab.spin(node)
         ),
         Wrong(
             'a lock that asks for less',
-            _as_given() + _SECOND_LOCK,
+            changed(
+                in_process(_as_given()), ('    rclpy.spin(', _SECOND_LOCK + '    rclpy.spin(')
+            ),
             'On a robot that end belongs to somebody else',
+            process=True,
         ),
         Wrong(
             'five seconds for five times a second',
@@ -211,7 +213,7 @@ lab.spin(node)
         Wrong(
             'a number of seconds for a Duration',
             changed(_DOOR, (_DURATION, ''), ('deadline=Duration(seconds=0.5)', 'deadline=0.5')),
-            'Duration',
+            'profile = QoSProfile(',
             outcome=Outcome.ERROR,
         ),
         Wrong('not spun', changed(_DOOR, ('lab.spin(Door())', 'Door()')), 'lab.spin(node)'),

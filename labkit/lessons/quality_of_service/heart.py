@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from labkit.exercises import Fail, Probe, expect
 from labkit.exercises.clauses import Clause, Subscribes
@@ -66,11 +66,17 @@ class _Heart:
     """
 
     def __init__(self, probe: Probe, alarms: Watch) -> None:
+        from rclpy.duration import Duration
+        from rclpy.qos import QoSProfile
+
         from labkit.exercises.watch import build
 
         self._probe, self._alarms = probe, alarms
         self._beat = build(EMPTY, {})
-        self._publisher = probe.node.create_publisher(type(self._beat), HEART, _profile())
+        profile = QoSProfile(  # type: ignore[no-untyped-call]
+            depth=10, deadline=Duration(seconds=OFFERED_SEC)
+        )
+        self._publisher = probe.node.create_publisher(type(self._beat), HEART, profile)
         probe.wait(self._publisher.get_subscription_count, PATIENCE_SEC)
         self.last = 0.0
 
@@ -111,7 +117,7 @@ def judge(probe: Probe) -> str:
         Fail: A clause is not fulfilled; the exception names it.
     """
     with naming(_HEARS):
-        hears = expect.subscription(probe, HEART, offered=_profile())
+        hears = expect.subscription(probe, HEART, deadline_sec=OFFERED_SEC)
         expect.spun(probe, hears)
     with naming(_BARKS):
         expect.publisher(probe, ALARM, by=hears.node)
@@ -127,16 +133,6 @@ def judge(probe: Probe) -> str:
             _refuse_haste(delay)
             delays.append(delay)
     return f'{hears.node} noticed each of {len(delays)} silences, and kept quiet in between.'
-
-
-def _profile() -> Any:
-    """Return what the heart offers."""
-    from rclpy.duration import Duration
-    from rclpy.qos import QoSProfile
-
-    return QoSProfile(  # type: ignore[no-untyped-call]
-        depth=10, deadline=Duration(seconds=OFFERED_SEC)
-    )
 
 
 def _refuse_noise(alarms: list[float]) -> None:

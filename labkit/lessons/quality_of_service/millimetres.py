@@ -41,6 +41,13 @@ _NARROW = """        self.subscription = self.create_subscription(
             Int16, 'range', self.on_range, qos_profile_sensor_data
         )
 """
+_DEFAULT = _NARROW.replace(
+    "(\n            Int16, 'range', self.on_range, qos_profile_sensor_data\n        )",
+    "(Int16, 'range', self.on_range, 10)",
+)
+_SECOND_SONAR = """    sonar = Node('sonar')
+    sonar.create_publisher(Int16, 'range', 10)
+"""
 
 
 def _explain(number: int, came: Sequence[int]) -> tuple[str, str]:
@@ -113,9 +120,8 @@ lab.spin(node)
                 (
                     _NARROW,
                     '        for info in self.get_publishers_info_by_topic("range"):\n'
-                    '            profile = QoSProfile(\n'
-                    '                depth=5, reliability=info.qos_profile.reliability\n'
-                    '            )\n'
+                    '            profile = QoSProfile(depth=5, '
+                    'reliability=info.qos_profile.reliability)\n'
                     "        self.create_subscription(Int16, 'range', self.on_range, profile)\n",
                 ),
                 ('from std_msgs', 'from rclpy.qos import QoSProfile\nfrom std_msgs'),
@@ -143,11 +149,7 @@ lab.spin(node)
             changed(
                 _CODE,
                 (_IMPORT, ''),
-                (
-                    _NARROW,
-                    "        self.subscription = self.create_subscription(Int16, 'range', "
-                    'self.on_range, 10)\n',
-                ),
+                (_NARROW, _DEFAULT),
             ),
             'best effort publisher and reliable subscription',
         ),
@@ -186,30 +188,20 @@ lab.spin(node)
             changed(
                 _CODE,
                 ("'range_mm', 10)", "'range_mm', qos_profile_sensor_data)"),
-                (
-                    _NARROW,
-                    "        self.subscription = self.create_subscription(Int16, 'range', "
-                    'self.on_range, 10)\n',
-                ),
+                (_NARROW, _DEFAULT),
             ),
             'change that of /millimetres',
         ),
         Wrong(
             'a second sonar that is reliable',
             changed(
-                _CODE,
+                in_process(_CODE),
                 (_IMPORT, ''),
-                (
-                    _NARROW,
-                    "        self.subscription = self.create_subscription(Int16, 'range', "
-                    'self.on_range, 10)\n',
-                ),
-            )
-            + """
-sonar = lab.spin(Node('sonar'))
-sonar.create_publisher(Int16, 'range', 10)
-""",
+                (_NARROW, _DEFAULT),
+                ('    rclpy.spin(', _SECOND_SONAR + '    rclpy.spin('),
+            ),
             'On a robot that end belongs to somebody else',
+            process=True,
         ),
         Wrong(
             'centimetres as they are',
@@ -252,7 +244,7 @@ sonar.create_publisher(Int16, 'range', 10)
         ),
         Wrong(
             'the default profile, in a process of its own',
-            changed(in_process(_CODE), (_IMPORT, ''), ('qos_profile_sensor_data', '10')),
+            changed(in_process(_CODE), (_IMPORT, ''), (_NARROW, _DEFAULT)),
             'best effort publisher and reliable subscription',
             process=True,
         ),

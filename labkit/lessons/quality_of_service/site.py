@@ -190,7 +190,7 @@ lab.spin(node)
                 ("'site', profile)", "'site', 10)"),
                 ("'move', self.on_move, 10)", "'move', self.on_move, profile)"),
             ),
-            'asks for more than',
+            'does not match that of a usual publisher',
         ),
         Wrong(
             'a publisher for each name',
@@ -222,7 +222,7 @@ lab.spin(node)
         Wrong(
             'publishes the text',
             changed(_SITE, ('publish(msg)', 'publish(msg.data)')),
-            'takes a message, not',
+            'publish() takes a message of the type',
             outcome=Outcome.ERROR,
         ),
         Wrong(
@@ -241,7 +241,11 @@ lab.spin(node)
         Wrong('not spun', changed(_SITE, ('lab.spin(Site())', 'Site()')), 'lab.spin(node)'),
         Wrong(
             'volatile, in a process of its own',
-            changed(in_process(_SITE), (_KEPT, 'QoSProfile(depth=1)')),
+            changed(
+                in_process(_SITE),
+                (_KEPT, 'QoSProfile(depth=1)'),
+                ('import DurabilityPolicy, QoSProfile', 'import QoSProfile'),
+            ),
             'with durability transient_local',
             process=True,
         ),
