@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from labkit.exercises.progress import progress
     from labkit.sim.turtlebot import Turtlebot
     from labkit.views.arena import arena
+    from labkit.views.bag import bag
     from labkit.views.graph import graph
     from labkit.views.monitor import monitor
     from labkit.views.plot import plot
@@ -43,6 +44,7 @@ __all__ = [
     'LabTimeout',
     'Turtlebot',
     'arena',
+    'bag',
     'doctor',
     'graph',
     'lesson',
@@ -67,6 +69,7 @@ __all__ = [
 _HOMES = {
     'Turtlebot': 'labkit.sim.turtlebot',
     'arena': 'labkit.views.arena',
+    'bag': 'labkit.views.bag',
     'doctor': 'labkit.checkup.report',
     'graph': 'labkit.views.graph',
     'lesson': 'labkit.exercises.lesson',

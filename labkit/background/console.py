@@ -153,6 +153,9 @@ class Console:
             return Cell()
         if self._cell is not None and self.speaks_in(threading.get_ident()):
             return self._cell
+        if self._give_logs_back is None:
+            # ROS does not run, and nobody would say when this cell has ended.
+            return Cell(compat.running_request())
         if self._running is None:
             self._running = Cell(compat.running_request())
         return self._running

@@ -21,7 +21,7 @@ from labkit.views.feed import Feed, heard
 from labkit.views.live import helper
 from labkit.views.live_page import LivePage, News
 from labkit.views.plot_fields import Source, parse, resolve, unit_of
-from labkit.views.plot_picture import COLOURS, Floats, Line, thin, to_svg
+from labkit.views.plot_picture import COLOURS, Floats, Line, in_words, thin, to_svg
 
 __all__ = ['Plot', 'plot']
 
@@ -248,13 +248,7 @@ def _problems(series: list[Series], feeds: list[Feed]) -> list[str]:
 
 
 def _in_words(series: Series, values: list[float], wanted: int) -> str:
-    unit = f' {series.unit}' if series.unit else ''
     of = '' if len(values) == wanted else f' of {wanted}'
     plural = 's' if wanted > 1 else ''
-    numbers = [float(f'{value:.4g}') + 0.0 for value in values]
-    finite = [number for number in numbers if math.isfinite(number)]
-    text = f'{series.source.text}: {len(values)}{of} message{plural}'
-    text += f', first {numbers[0]:g}{unit}, last {numbers[-1]:g}{unit}'
-    if finite:
-        text += f', least {min(finite):g}{unit}, greatest {max(finite):g}{unit}'
-    return text
+    numbers = in_words(values, series.unit)
+    return f'{series.source.text}: {len(values)}{of} message{plural}, {numbers}'

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ['COLOURS', 'DASHES', 'Line', 'limits', 'thin', 'ticks', 'to_svg']
+__all__ = ['COLOURS', 'DASHES', 'Line', 'in_words', 'limits', 'thin', 'ticks', 'to_svg']
 
 Floats = NDArray[np.float64]
 
@@ -32,6 +32,17 @@ class Line:
     label: str
     unit: str
     values: Sequence[float]
+
+
+def in_words(values: Sequence[float], unit: str) -> str:
+    """Return the first, the last, the least and the greatest of numbers as words."""
+    unit = f' {unit}' if unit else ''
+    numbers = [float(f'{value:.4g}') + 0.0 for value in values]
+    finite = [number for number in numbers if math.isfinite(number)]
+    text = f'first {numbers[0]:g}{unit}, last {numbers[-1]:g}{unit}'
+    if finite:
+        text += f', least {min(finite):g}{unit}, greatest {max(finite):g}{unit}'
+    return text
 
 
 def limits(values: Sequence[float]) -> tuple[float, float]:

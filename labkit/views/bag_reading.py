@@ -1,0 +1,323 @@
+"""What a picture of a bag shows, read from it: never all of its messages at once.
+
+When messages came is told by the bag's index. What is drawn of their contents is read message by
+message, and of very many only some, evenly chosen.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from typing import Any
+
+import numpy as np
+
+from labkit.bags.reader import Bag, BagTopic
+from labkit.errors import LabError, nearest
+from labkit.rosgraph.interfaces import message_class
+from labkit.rosgraph.refusals import Refused
+from labkit.sim.kinematics import Pose
+from labkit.views.message_tree import fields_of, is_message
+from labkit.views.plot_fields import Source, resolve, unit_of
+from labkit.views.plot_picture import Floats
+from labkit.views.robot_messages import motion_of
+
+__all__ = [
+    'BINS',
+    'ODOMETRY',
+    'SCAN',
+    'Samples',
+    'Strip',
+    'Track',
+    'check_field',
+    'chosen_topic',
+    'number_paths',
+    'read_samples',
+    'read_strip',
+    'read_track',
+]
+
+ODOMETRY, SCAN = 'nav_msgs/msg/Odometry', 'sensor_msgs/msg/LaserScan'
+# Columns of a strip.
+BINS = 240
+# So many messages of a topic are read for a picture; of more, every n-th.
+MOST_SAMPLES = 5000
+# Fields of a type that are offered to be drawn. Some types have thousands.
+MOST_FIELDS = 200
+
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class Strip:
+    """When the messages of a topic came.
+
+    Attributes:
+        topic: The topic.
+        first_sec: When the first one came, s since the bag begins.
+        last_sec: When the last one came.
+        gap: Where nothing came for longest: how long, and from when on, s; None if there are
+            less than two messages.
+        bins: How many messages came in each column of the strip.
+    """
+
+    topic: BagTopic
+    first_sec: float
+    last_sec: float
+    gap: tuple[float, float] | None
+    bins: Any
+
+    @property
+    def rate(self) -> float | None:
+        """Return how many messages came in a second, from the first one to the last one, Hz."""
+        took = self.last_sec - self.first_sec
+        return (self.topic.count - 1) / took if took > 0 else None
+
+
+@dataclass(frozen=True)
+class Samples:
+    """The numbers of one field.
+
+    Attributes:
+        source: The field.
+        unit: Its unit, '' if none is known.
+        times: When the messages came, s since the bag begins.
+        values: What they said.
+        step: Every `step`-th message was read.
+        problem: Why there is less than there should be, '' if all is well.
+    """
+
+    source: Source
+    unit: str
+    times: Floats
+    values: Floats
+    step: int
+    problem: str
+
+
+@dataclass(frozen=True)
+class Track:
+    """Where a robot was.
+
+    Attributes:
+        topic: The topic of its odometry.
+        times: When, s since the bag begins.
+        numbers: x, y, yaw, v and w for each time.
+    """
+
+    topic: str
+    times: Floats
+    numbers: Any
+
+    def pose_at(self, seconds: float) -> Pose | None:
+        """Return the last pose at a time or before it, None if there is none."""
+        index = int(np.searchsorted(self.times, seconds, side='right')) - 1
+        return None if index < 0 else Pose(*map(float, self.numbers[index, :3]))
+
+
+def read_strip(bag: Bag, topic: BagTopic) -> Strip:
+    """Return when the messages of a topic came.
+
+    Raises:
+        LabError: The bag is damaged.
+    """
+    stamps = bag.stamps(topic.name)
+    # Two types on one topic have one strip.
+    seconds = (stamps - bag.start_ns) / 1e9
+    if not len(seconds):
+        return Strip(topic, 0.0, 0.0, None, np.zeros(BINS, dtype=np.int64))
+    bins, _ = np.histogram(seconds, BINS, (0.0, max(bag.duration_sec, 1e-9)))
+    gap = None
+    if len(seconds) > 1:
+        # Of whole nanoseconds: of pauses that are the same, the first one counts.
+        pauses = np.diff(stamps)
+        longest = int(np.argmax(pauses))
+        gap = float(pauses[longest] / 1e9), float(seconds[longest])
+    return Strip(topic, float(seconds[0]), float(seconds[-1]), gap, bins)
+
+
+def chosen_topic(bag: Bag, wanted: str | None, msg_type: str, near: str = '') -> str:
+    """Return the name of a topic of a type, '' if there is none.
+
+    Args:
+        bag: The bag.
+        wanted: The topic that is asked for; None for the fullest, '' for none.
+        msg_type: Its type.
+        near: A topic of the same robot: one of its namespace is preferred.
+
+    Raises:
+        LabError: The bag has no such topic, or its type is another one.
+    """
+    if wanted == '':
+        return ''
+    if wanted is not None:
+        topic = bag.topic(wanted)
+        if topic.msg_type != msg_type:
+            raise LabError(
+                f'{topic.name} must be of type {msg_type}, but it is of type {topic.msg_type}.'
+            )
+        return topic.name
+    space = near.rpartition('/')[0]
+    found = [topic for topic in bag.topics if topic.msg_type == msg_type and topic.count]
+    found.sort(key=lambda topic: (topic.name.rpartition('/')[0] != space, -topic.count))
+    return found[0].name if found else ''
+
+
+def read_track(bag: Bag, topic: str, progress: Progress) -> Track:
+    """Return where a robot was.
+
+    Raises:
+        LabError: The bag is damaged.
+    """
+    rows: list[tuple[float, ...]] = []
+    for seconds, message in _some(bag, topic, progress):
+        motion = motion_of(message)
+        if motion is not None:
+            rows.append((seconds, *motion[0], *motion[1]))
+    table = np.array(rows, dtype=np.float64).reshape(-1, 6)
+    return Track(topic, table[:, 0], table[:, 1:])
+
+
+def check_field(bag: Bag, source: Source) -> None:
+    """Raise a LabError unless a bag has a topic with such a field, and it is a number."""
+    topic = bag.topic(source.topic)
+    if topic.count:
+        _getter(bag, topic, source)
+
+
+def read_samples(bag: Bag, sources: Sequence[Source], progress: Progress) -> list[Samples]:
+    """Return the numbers of fields of one topic.
+
+    Args:
+        bag: The bag.
+        sources: The fields.
+        progress: Called with how far it is, from 0 to 1.
+
+    Raises:
+        LabError: There is no such field, or it is not a number.
+    """
+    topic = bag.topic(sources[0].topic)
+    if not topic.count:
+        none = np.empty(0)
+        words = f'{topic.name} has no messages in this bag.'
+        return [Samples(source, '', none, none, 1, words) for source in sources]
+    getters = [_getter(bag, topic, source) for source in sources]
+    times: list[float] = []
+    values: list[list[float]] = [[] for _ in sources]
+    problem = ''
+    try:
+        for seconds, message in _some(bag, topic.name, progress):
+            times.append(seconds)
+            for (get, _), numbers in zip(getters, values, strict=True):
+                numbers.append(_number(get, message))
+    except LabError as error:
+        problem = error.message
+    moments = np.array(times, dtype=np.float64)
+    return [
+        Samples(source, unit, moments, np.array(numbers), _step(topic.count), problem)
+        for source, (_, unit), numbers in zip(sources, getters, values, strict=True)
+    ]
+
+
+def number_paths(message: Any) -> list[str]:
+    """Return the paths of a message's fields that are numbers; of arrays, the first element's."""
+    found: list[str] = []
+    for path in _paths(message, ''):
+        found.append(path)
+        if len(found) >= MOST_FIELDS:
+            break
+    # Stamps and covariances are seldom what is looked for.
+    return sorted(found, key=lambda path: ('covariance' in path, path.startswith('header.')))
+
+
+# --- Details -------------------------------------------------------------------------------------
+
+
+def _step(count: int) -> int:
+    return math.ceil(count / MOST_SAMPLES) or 1
+
+
+def _some(bag: Bag, topic: str, progress: Progress) -> Iterator[tuple[float, Any]]:
+    """Yield times and messages of a topic: all of them, or every n-th."""
+    stamps = np.unique(bag.stamps(topic))
+    chosen = stamps[:: _step(len(stamps))]
+    for number, stamp in enumerate(chosen.tolist()):
+        progress(number / len(chosen))
+        found = bag.at(topic, stamp)
+        if found is not None:
+            yield (stamp - bag.start_ns) / 1e9, found.message
+
+
+def _getter(bag: Bag, topic: BagTopic, source: Source) -> tuple[Callable[[Any], Any], str]:
+    """Return what takes a field out of a message, and its unit.
+
+    Raises:
+        LabError: There is no such field, or it is not a number.
+    """
+    try:
+        msg_type = message_class(topic.msg_type)
+    except Refused:
+        return _foreign_getter(bag, topic, source), ''
+    return resolve(source, msg_type), unit_of(source.path, msg_type)
+
+
+def _foreign_getter(bag: Bag, topic: BagTopic, source: Source) -> Callable[[Any], Any]:
+    """Return what takes a field out of a message whose type is not installed here."""
+
+    def take(message: Any, part: tuple[str, str]) -> Any:
+        name, index = part
+        value = getattr(message, name)
+        return value[int(index)] if index else value
+
+    parts = re.findall(r'(\w+)(?:\[(\d+)\])?', source.path)
+
+    def get(message: Any) -> Any:
+        return reduce(take, parts, message)
+
+    first = bag.at(topic.name, int(bag.stamps(topic.name)[0]))
+    assert first is not None
+    message = first.message
+    try:
+        value = get(message)
+    except IndexError:
+        return get
+    except (AttributeError, TypeError):
+        value = None
+    if not _is_number(value):
+        paths = number_paths(message)
+        near = nearest(source.path, paths)
+        todo = (
+            f'Did you mean {f"{source.topic}.{near}"!r}?'
+            if near
+            else f'Its numbers: {", ".join(paths[:4]) or "none"}.'
+        )
+        raise LabError(
+            f'{source.text!r}: {topic.msg_type} has no number {source.path!r}.', todo=todo
+        )
+    return get
+
+
+def _number(get: Callable[[Any], Any], message: Any) -> float:
+    try:
+        return float(get(message))
+    except IndexError:
+        # The array is shorter in this message.
+        return math.nan
+
+
+def _paths(message: Any, start: str) -> Iterator[str]:
+    for name in fields_of(message):
+        value, path = getattr(message, name), f'{start}{name}'
+        if not isinstance(value, (str, bytes)) and hasattr(value, '__len__') and len(value):
+            value, path = value[0], f'{path}[0]'
+        if is_message(value):
+            yield from _paths(value, f'{path}.')
+        elif _is_number(value):
+            yield path
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (bool, int, float, np.number, np.bool_))
