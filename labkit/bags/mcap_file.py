@@ -5,6 +5,7 @@ from __future__ import annotations
 import heapq
 import os
 import struct
+import zlib
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,6 +23,7 @@ _FOOTER_SIZE = RECORD.size + 20 + len(MAGIC)
 # Channel, sequence, time of receipt, time of publishing.
 _MESSAGE = struct.Struct('<HIQQ')
 _CHUNK = struct.Struct('<QQQI')
+_CRC_AT = 24
 
 _Entries = Any
 """A row each message: its time, ns, and where its record begins; of numpy."""
@@ -38,7 +40,7 @@ class _Chunk:
         stored_size: Bytes in the file.
         size: Bytes without compression.
         compression: `'zstd'`, `'lz4'` or ''.
-        crc: Of the records, 0 if there is none.
+        crc_at: Where the checksum of its records is, which is 0 if there is none.
         indexes: Channel -> where the list of its messages is in the file, or the list itself.
         count: How many messages it has, as far as the index knows.
         loose: Whether these are messages outside of any chunk, each read for itself.
@@ -50,7 +52,7 @@ class _Chunk:
     stored_size: int
     size: int
     compression: str
-    crc: int
+    crc_at: int
     indexes: dict[int, int | _Entries] = field(default_factory=dict)
     count: int = 0
     loose: bool = False
@@ -305,14 +307,16 @@ class McapFile:
             ValueError: They are damaged.
         """
         data = self._exactly(chunk.position, chunk.stored_size)
+        (crc,) = struct.unpack('<I', self._exactly(chunk.crc_at, 4))
         if not chunk.compression:
+            if crc and zlib.crc32(data) != crc:
+                raise ValueError('a checksum does not fit')
             return data
-        from rosbags.rosbag2 import ReaderError
         from rosbags.rosbag2.storage_mcap import decompress
 
         try:
-            return decompress(data, chunk.compression, chunk.size, chunk.crc)
-        except (ReaderError, RuntimeError, OSError) as error:
+            return decompress(data, chunk.compression, chunk.size, crc)
+        except Exception as error:  # of three libraries, about bytes that may be anything
             raise ValueError(str(error)) from error
 
     def _exactly(self, position: int, size: int) -> bytes:
@@ -341,19 +345,21 @@ def _indexed(content: bytes) -> _Chunk:
     in_indexes = fields.number('Q')
     compression = fields.text()
     stored, size = fields.numbers('QQ')
-    header = RECORD.size + _CHUNK.size + 4 + len(compression) + 8
+    begin += RECORD.size
+    header = _CHUNK.size + 4 + len(compression) + 8
     # Each index says, besides sixteen bytes a message, what it is, and of which channel.
     messages = (in_indexes - len(indexes) * (RECORD.size + 6)) // 16
-    return _Chunk(start, end, begin + header, stored, size, compression, 0, indexes, messages)
+    crc_at = begin + _CRC_AT
+    return _Chunk(start, end, begin + header, stored, size, compression, crc_at, indexes, messages)
 
 
 def _chunk_at(begin: int, header: bytes) -> _Chunk:
     """Return a chunk as the record itself describes it, without the index of its messages."""
-    start, end, size, crc = _CHUNK.unpack_from(header)
+    start, end, size, _ = _CHUNK.unpack_from(header)
     fields = Fields(header, _CHUNK.size)
     compression = fields.text()
     stored = fields.number('Q')
-    return _Chunk(start, end, begin + fields.position, stored, size, compression, crc)
+    return _Chunk(start, end, begin + fields.position, stored, size, compression, begin + _CRC_AT)
 
 
 def _loose_chunk(found: dict[int, list[tuple[int, int]]]) -> _Chunk:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 import struct
+import zlib
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -104,7 +105,9 @@ class McapWriter:
             return
         has_messages = bool(self._indexes)
         first = self._first_ns if has_messages else 0
-        head = struct.pack('<QQQI', first, self._last_ns, self._filled, 0) + packed_text('')
+        body = b''.join(self._parts)
+        crc = zlib.crc32(body)
+        head = struct.pack('<QQQI', first, self._last_ns, self._filled, crc) + packed_text('')
         head += struct.pack('<Q', self._filled)
         record = RECORD.pack(Op.CHUNK, len(head) + self._filled) + head
         begin, size = self._end, len(record) + self._filled
@@ -115,7 +118,7 @@ class McapWriter:
             content = struct.pack('<HI', topic, len(entries))
             indexes.append(pack(Op.MESSAGE_INDEX, content, bytes(entries)))
             at += len(indexes[-1])
-        self._put(b''.join([record, *self._parts, *indexes]))
+        self._put(record, body, *indexes)
         if has_messages:
             of_indexes = b''.join(places)
             self._chunk_indexes.append(
@@ -158,7 +161,7 @@ class McapWriter:
                 offsets.append(pack(Op.SUMMARY_OFFSET, struct.pack('<BQQ', op, at, len(content))))
             at += len(content)
         footer = pack(Op.FOOTER, struct.pack('<QQI', begin, at, 0))
-        self._put(b''.join([said, end, *(text for _, text in groups), *offsets, footer, MAGIC]))
+        self._put(said, end, *(text for _, text in groups), *offsets, footer, MAGIC)
         self._file.close()
 
     def abandon(self) -> None:
@@ -185,13 +188,14 @@ class McapWriter:
         self._parts.append(record)
         self._filled += len(record)
 
-    def _put(self, data: bytes) -> None:
+    def _put(self, *parts: bytes) -> None:
         """Write all of it, or nothing."""
         try:
-            view = memoryview(data)
-            while view:
-                view = view[self._file.write(view) or 0 :]
+            for part in parts:
+                view = memoryview(part)
+                while view:
+                    view = view[self._file.write(view) or 0 :]
         except OSError:
             os.ftruncate(self._file.fileno(), self._end)
             raise
-        self._end += len(data)
+        self._end += sum(map(len, parts))
