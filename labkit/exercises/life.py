@@ -37,6 +37,10 @@ LARGE_STEP_SEC = 2.0
 # How long an answer may take that comes from a thread or another process, s of real time.
 PATIENCE_SEC = 0.8
 POLL_SEC = 0.002
+# What is on its way from another process has come when it was quiet for so long, and in any case
+# after so long, s: some node may publish on the topic in real time, without a pause.
+QUIET_SEC = 0.1
+LATE_SEC = 1.0
 # So many messages of another process may be on their way at once.
 ON_THE_WAY = 2
 
@@ -295,10 +299,10 @@ class _Course:
 
     def wait_for_late_ones(self) -> None:
         """Wait until nothing more comes of other processes."""
-        count = -1
-        while (now := self._count(self.watches)) != count:
+        count, end = -1, time.monotonic() + LATE_SEC
+        while (now := self._count(self.watches)) != count and time.monotonic() < end:
             count = now
-            time.sleep(0.1)
+            time.sleep(QUIET_SEC)
             self._look()
 
     def _count(self, topics: Sequence[str] | Mapping[str, Watch]) -> int:
