@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
+from typing import Any
 
 from labkit.exercises.life import _Course
 
@@ -24,12 +25,9 @@ class Endless:
 def test_a_topic_that_is_never_quiet_is_not_waited_for_without_an_end():
     """A sensor that the lesson gives publishes on, in real time."""
     topic = Endless()
-    course = _Course(
-        probe=SimpleNamespace(look=lambda seconds: None),
-        passing=SimpleNamespace(seconds=30.0),
-        watches={'/range': topic},
-        moments=[],
-        until=None,
-    )
+    probe: Any = SimpleNamespace(look=lambda seconds: None)
+    passing: Any = SimpleNamespace(seconds=30.0)
+    watches: Any = {'/range': topic}
+    course = _Course(probe, passing, watches, moments=[], until=None)
     course.wait_for_late_ones()
     assert topic.count
