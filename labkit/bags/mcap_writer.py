@@ -28,6 +28,7 @@ from labkit.bags.stored import StoredTopic
 __all__ = ['McapWriter']
 
 CHUNK_BYTES = 1 << 20
+_FEW = 32
 _PROFILE, _LIBRARY = 'ros2', 'labkit'
 _MESSAGE = struct.Struct('<BQHIQQ')
 _PLACE = struct.Struct('<QQ')
@@ -105,8 +106,11 @@ class McapWriter:
             return
         has_messages = bool(self._indexes)
         first = self._first_ns if has_messages else 0
-        body = b''.join(self._parts)
-        crc = zlib.crc32(body)
+        # Many small pieces are faster as one; large ones are not copied.
+        body = [b''.join(self._parts)] if len(self._parts) > _FEW else self._parts
+        crc = 0
+        for part in body:
+            crc = zlib.crc32(part, crc)
         head = struct.pack('<QQQI', first, self._last_ns, self._filled, crc) + packed_text('')
         head += struct.pack('<Q', self._filled)
         record = RECORD.pack(Op.CHUNK, len(head) + self._filled) + head
@@ -118,7 +122,7 @@ class McapWriter:
             content = struct.pack('<HI', topic, len(entries))
             indexes.append(pack(Op.MESSAGE_INDEX, content, bytes(entries)))
             at += len(indexes[-1])
-        self._put(record, body, *indexes)
+        self._put(record, *body, *indexes)
         if has_messages:
             of_indexes = b''.join(places)
             self._chunk_indexes.append(
