@@ -75,6 +75,9 @@ class BackgroundExecutor(SingleThreadedExecutor):
         # The thread that is looking at a condition of `wait` just now.
         self._looking: int | None = None
         self._ready: list[tuple[Any, Any, Any]] = []
+        # What was ready in the round before, and how many rounds in a row held nothing else.
+        self._before: set[Task] = set()
+        self._idle_rounds = 0
         self._thread = threading.Thread(target=self._spin, name='labkit', daemon=True)
 
     def start(self) -> None:
@@ -322,10 +325,10 @@ class BackgroundExecutor(SingleThreadedExecutor):
             finally:
                 self._gathering = False
             self._ready.sort(key=_is_timer)
+            if settling is not None and (not self._ready or self._only_awaits()):
+                settling.set()
+                self._settling = None
             if not self._ready:
-                if settling is not None:
-                    settling.set()
-                    self._settling = None
                 return
         task, entity, node = self._ready.pop(0)
         entry = self._owners.get(task) if node is None else self._entries.get(node)
@@ -333,6 +336,17 @@ class BackgroundExecutor(SingleThreadedExecutor):
             _drop(task)
         else:
             self._run(task, entity, entry)
+
+    def _only_awaits(self) -> bool:
+        """Tell whether nothing is left but coroutines that await what does not come.
+
+        One that awaits is ready in each round. What it awaits may have come in the round before,
+        so there have to be two rounds without anything new.
+        """
+        tasks = {task for task, _, _ in self._ready}
+        self._idle_rounds = self._idle_rounds + 1 if tasks <= self._before else 0
+        self._before = tasks
+        return self._idle_rounds > 1
 
     def _closed(self) -> bool:
         return self._closing

@@ -9,7 +9,7 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 
-__all__ = ['draw_int16s', 'draw_texts']
+__all__ = ['draw_float', 'draw_int16s', 'draw_texts']
 
 _WORDS = ('boat', 'harbour', 'Wind', 'NORTH', 'grün', 'Öl', 'señor', 'çay', 'λάμδα', 'Żuk', '日本')
 INT16 = (-32768, 32767)
@@ -51,3 +51,8 @@ def draw_int16s(low: int = INT16[0], high: int = INT16[1], step: int = 1) -> lis
     drawn = [allowed[i] for i in random.sample(middle, 4 + MORE)]
     # The limits come last: what is wrong with any number is not to look like a matter of limits.
     return [*drawn, *near_zero[:1], drawn[0], allowed[0], allowed[-1]]
+
+
+def draw_float(low: float, high: float) -> float:
+    """Return a number between two others, with three decimals, so that it is read easily."""
+    return round(random.uniform(low, high), 3)

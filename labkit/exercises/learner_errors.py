@@ -229,12 +229,6 @@ _KNOWN = (
     ),
     (
         ('AttributeError',),
-        r"'NoneType' object has no attribute 'successful'",
-        'The callback that is asked before a parameter is set has given nothing back.',
-        'End it with: return SetParametersResult(successful=True)',
-    ),
-    (
-        ('AttributeError',),
         r"'NoneType' object has no attribute '(?P<name>\w+)'",
         'What should have {name} is None. It was not set, or it is the result of a future that '
         'was not done yet.',

@@ -132,8 +132,9 @@ class Answers(Clause):
         count: int,
     ) -> NoReturn:
         hears = evidence.subscription(self.inner, self.by)
-        at, value = missing[0]
-        came = [v for t, v in left if at <= t < at + WITHIN_SEC]
+        # Some texts hide what is wrong, as one of digits that are to become capital letters does.
+        came_of = [(v, [w for t, w in left if at <= t < at + WITHIN_SEC]) for at, v in missing]
+        value, came = next((pair for pair in came_of if {*pair[1]} - {pair[0]}), came_of[0])
         if not left:
             hanging(evidence.probe)
         right = self.answer(value)
@@ -204,6 +205,8 @@ class Answers(Clause):
         why, todo = '', f'Publish on {self.outer} only in the callback for {self.inner}, and once.'
         if other is not None:
             why = f'What comes on {others[other]} is answered, too. Nobody asked for that.'
+        elif Counter(v for _, v in left) == Counter(self.answer(v) for _, v in heard):
+            why = 'A message is answered more than once.'
         elif self._repeats(heard, left) >= MANY:
             why = 'The answer is repeated, again and again: a timer or a loop publishes it.'
         elif answered:

@@ -222,10 +222,12 @@ class Clause(ABC):
     Attributes:
         period: The shortest time between two messages that it is about, s; 0 if there is none.
         judges_parts: Whether it can judge a life that an error has ended early.
+        own_life: Whether it lets time pass by itself. The other clauses of its task need none.
     """
 
     period: float = 0.0
     judges_parts = False
+    own_life = False
 
     @property
     @abstractmethod
@@ -275,7 +277,8 @@ def judge(probe: Probe, clauses: Sequence[Clause]) -> str:
     said = []
     _find(clauses, evidence)
     try:
-        evidence.gather(clauses)
+        if not any(clause.own_life for clause in clauses):
+            evidence.gather(clauses)
         for clause in clauses:
             with naming(clause):
                 said.append(clause.judge(evidence))

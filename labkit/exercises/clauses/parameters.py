@@ -13,6 +13,7 @@ from labkit.exercises import expect
 from labkit.exercises.clauses.base import Clause, Evidence, Stream
 from labkit.exercises.clauses.publishing import Publishes
 from labkit.exercises.expect import timing
+from labkit.exercises.life import LIFE_SEC
 from labkit.exercises.verdict import Fail
 
 if TYPE_CHECKING:
@@ -25,6 +26,10 @@ Values = Mapping[str, Any]
 
 # How many messages of a changed rate are looked at, and how long at least, s.
 MESSAGES, LEAST_SEC = 12, 3.0
+# Fewer than that do not tell a rate.
+FEW = 3
+# What rclpy says where a callback does not return a SetParametersResult (rclpy/node.py).
+INVALID = 'Callback returned an invalid type'
 LOOK_ONLY = (
     'Let the callback that may refuse only look. What follows a change belongs into '
     'add_post_set_parameters_callback().'
@@ -140,6 +145,7 @@ class Follows(Clause):
     draw: Callable[[], Sequence[Values]]
     hz: Callable[[Values], float]
     rule: Callable[[Values, Stream], None] = lambda _values, _stream: None
+    own_life = True
 
     @property
     def text(self) -> str:
@@ -153,15 +159,24 @@ class Follows(Clause):
     def judge(self, evidence: Evidence) -> str:
         """Set the parameters, and look at what is published then."""
         sets = self.draw()
-        with _kept(evidence.probe, self.node, list(sets[0])):
+        with _kept(evidence.probe, self.node, list(sets[0])) as before:
             for values in sets:
-                self._judge_one(evidence, values)
+                self._set(evidence.probe, values)
+                self.look(evidence, values, before)
+                before = values
         return f'{self.node} follows {_show(sets[0])}, and {len(sets) - 1} more.'
 
-    def _judge_one(self, evidence: Evidence, values: Values) -> None:
-        probe = evidence.probe
+    def _set(self, probe: Probe, values: Values) -> None:
         complaint = _set(probe, self.node, values)
         if complaint is not None:
+            if complaint == INVALID:
+                raise Fail(
+                    f'{self.node} takes {_show(values)}',
+                    f'it refuses: {complaint}',
+                    why='The callback that is asked before a change has not given back a '
+                    'SetParametersResult. Without "return" a function gives back None.',
+                    todo='End it with: return SetParametersResult(successful=True)',
+                )
             raise Fail(
                 f'{self.node} takes {_show(values)}',
                 f'it refuses: {complaint or "without a reason"}',
@@ -171,35 +186,58 @@ class Follows(Clause):
                 if len(values) > 1
                 else 'Compare what your callback, or the range, allows with the task.',
             )
-        self.look(evidence, values)
 
-    def look(self, evidence: Evidence, values: Values) -> None:
-        """Let time pass, and look at what is published while the node has these values.
+    def look(self, evidence: Evidence, values: Values, before: Values) -> None:
+        """Let time pass, and look at what is published.
+
+        Args:
+            evidence: What was seen up to now.
+            values: The values that the node has now,
+            before: and those that it had before.
 
         Raises:
             Fail: It is not what belongs to them.
         """
-        probe, hz = evidence.probe, self.hz(values)
-        rate = Publishes(self.topic, hz, probe.scope.publishes[self.topic], by=self.node)
-        topics = {self.topic: rate.msg_type}
-        life = evidence.live(topics, max(LEAST_SEC, MESSAGES / hz), [rate], nodes=[self.node])
+        rate = self._rate(evidence.probe, values)
+        topics, seconds = {self.topic: rate.msg_type}, max(LEAST_SEC, MESSAGES / rate.hz)
+        life = evidence.live(topics, seconds, [rate], nodes=[self.node])
+        if len(life.on(self.topic)) < FEW:
+            # So much too slow that the reason shows only later, such as a rate for a period.
+            seconds = max(LIFE_SEC, FEW * rate.hz)
+            life = evidence.live(topics, seconds, [rate], nodes=[self.node])
         now = replace(evidence, life=life)
         now.refuse_trouble(())
         try:
-            rate.judge(now)
-            self.rule(values, now.streams[self.topic, self.node])
+            self._fit(now, values)
         except Fail as fail:
+            expected = f'with {_show(values)}: {fail.expected}'
+            if not self._is_as_before(now, before):
+                raise Fail(expected, fail.seen, why=fail.why, todo=fail.todo) from None
             raise Fail(
-                f'with {_show(values)}: {fail.expected}',
+                expected,
                 fail.seen,
                 why='The parameter has changed, and what the node does has not: it has read the '
-                'value once, or its timer still has the old period.'
-                if life.on(self.topic)
-                else fail.why,
+                'value once, or its timer still has the old period.',
                 todo='Change what depends on the parameter in a callback: '
                 'self.add_post_set_parameters_callback(self.on_change). Or read the parameter '
                 'anew each time.',
             ) from None
+
+    def _rate(self, probe: Probe, values: Values) -> Publishes:
+        msg_type = probe.scope.publishes[self.topic]
+        return Publishes(self.topic, self.hz(values), msg_type, by=self.node)
+
+    def _fit(self, evidence: Evidence, values: Values) -> None:
+        self._rate(evidence.probe, values).judge(evidence)
+        self.rule(values, evidence.streams[self.topic, self.node])
+
+    def _is_as_before(self, evidence: Evidence, before: Values) -> bool:
+        """Tell whether what was published belongs to the values before the change."""
+        try:
+            self._fit(evidence, before)
+        except (Fail, ArithmeticError):
+            return False
+        return True
 
 
 @dataclass(frozen=True, eq=False)
@@ -236,25 +274,18 @@ class Refuses(Clause):
                 seen=f'it refuses: {complaint or "without a reason"}',
                 todo='Compare what your callback, or the range, allows with the task.',
             )
-            for values in sets:
-                self._judge_one(probe, keeps, values)
+            taken = [values for values in sets if not self._is_refused(probe, keeps, values)]
+            self._judge_taken(keeps, taken, sets)
             self._look(evidence, keeps)
         return f'{node} refuses {_show(sets[0])}, and {len(sets) - 1} more.'
 
-    def _judge_one(self, probe: Probe, keeps: Values, values: Values) -> None:
+    def _is_refused(self, probe: Probe, keeps: Values, values: Values) -> bool:
+        """Try to set values; tell whether they are refused, with a reason, and nothing changes."""
         complaint = _set(probe, self.node, values)
+        if complaint is None:
+            _set(probe, self.node, keeps)
+            return False
         tried = f'{_show(values)}, while it has {_show(keeps)}'
-        expect.that(
-            complaint is not None,
-            expected=f'{self.node} refuses {tried}',
-            seen='it takes it',
-            why='A comparison with nan is always False. So "if value > limit" lets nan pass.'
-            if any(isinstance(value, float) and math.isnan(value) for value in values.values())
-            else 'Nothing looks at the value before the node uses it.',
-            todo='Limit it by a range in the descriptor, or in a callback that returns '
-            "SetParametersResult(successful=False, reason='...'): "
-            'self.add_on_set_parameters_callback(self.on_set).',
-        )
         expect.that(
             complaint,
             expected=f'a reason why {self.node} refuses {tried}',
@@ -270,12 +301,35 @@ class Refuses(Clause):
             why=f'It has refused {_show(values)}, and changed all the same.',
             todo=LOOK_ONLY,
         )
+        return True
+
+    def _judge_taken(self, keeps: Values, taken: Sequence[Values], sets: Sequence[Values]) -> None:
+        """Raise Fail if values were taken that are to be refused."""
+        if not taken:
+            return
+        # That nan is a number of its own kind is the reason only where nothing else is taken.
+        plain = [values for values in taken if not any(map(_is_nan, values.values()))]
+        why = 'Some values are refused, and this one is not.'
+        if len(keeps) > 1:
+            why += ' What is allowed depends on both parameters, and each of them may change.'
+        if len(taken) == len(sets):
+            why = 'Nothing looks at the value before the node uses it.'
+        elif not plain:
+            why = 'A comparison with nan is always False. So "if value > limit" lets nan pass.'
+        raise Fail(
+            f'{self.node} refuses {_show((plain or taken)[0])}, while it has {_show(keeps)}',
+            'it takes it',
+            why=why,
+            todo='Limit it by a range in the descriptor, or in a callback that returns '
+            "SetParametersResult(successful=False, reason='...'): "
+            'self.add_on_set_parameters_callback(self.on_set).',
+        )
 
     def _look(self, evidence: Evidence, keeps: Values) -> None:
         if self.follows is None:
             return
         try:
-            self.follows.look(evidence, keeps)
+            self.follows.look(evidence, keeps, keeps)
         except Fail as fail:
             raise Fail(
                 f'{fail.expected}, after it has refused other values',
@@ -287,6 +341,10 @@ class Refuses(Clause):
 
 def _show(values: Values) -> str:
     return ', '.join(f'{name} = {value!r}' for name, value in values.items())
+
+
+def _is_nan(value: Any) -> bool:
+    return isinstance(value, float) and math.isnan(value)
 
 
 def _messages(values: Values) -> list[Any]:
@@ -318,11 +376,11 @@ def _get(probe: Probe, node: str, names: list[str]) -> dict[str, Any]:
 
 
 @contextmanager
-def _kept(probe: Probe, node: str, names: list[str]) -> Iterator[None]:
-    """Give parameters back the values that they had before."""
+def _kept(probe: Probe, node: str, names: list[str]) -> Iterator[Values]:
+    """Give parameters back the values that they had before; these are what the block gets."""
     before = _get(probe, node, names)
     try:
-        yield
+        yield before
     finally:
         if before:
             _set(probe, node, before)

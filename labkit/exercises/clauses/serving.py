@@ -19,6 +19,8 @@ __all__ = ['Call', 'Responds', 'Serves']
 # How long a client may take to find its server, and a response to come, s of real time.
 READY_SEC = 5.0
 RESPONSE_SEC = 5.0
+# After so long it is looked whether a callback hangs, s.
+PATIENCE_SEC = 1.0
 
 
 @dataclass(frozen=True)
@@ -65,8 +67,8 @@ class Responds(Clause):
         words: What is asked for, in words of the task.
         draw: Draws the requests: groups of fields. Those of a group are sent at once, by several
             clients.
-        rule: Gets all calls up to now, in their order, and raises Fail if the last ones were
-            answered wrongly. The order within a group is that of the responses.
+        rule: Gets all calls in the order of their responses, and raises Fail if one was answered
+            wrongly.
     """
 
     service: str
@@ -95,10 +97,10 @@ class Responds(Clause):
             probe.wait(lambda: all(client.service_is_ready() for client in clients), READY_SEC)
             for group in groups:
                 calls += self._ask(probe, clients, srv_type, group)
-                self.rule(calls)
         finally:
             for client in clients:
                 node.destroy_client(client)
+        self.rule(calls)
         return f'{self.service} has answered {len(calls)} calls.'
 
     def _ask(
@@ -112,7 +114,13 @@ class Responds(Clause):
                 lambda done, fields=fields: found.append(Call(fields, done.result()))
             )
         began = time.monotonic()
-        if not probe.wait(lambda: len(found) == len(group), RESPONSE_SEC):
+
+        def all_there() -> bool:
+            return len(found) == len(group)
+
+        if not probe.wait(all_there, PATIENCE_SEC):
+            expect.hanging(probe)
+        if not probe.wait(all_there, RESPONSE_SEC):
             self._refuse_silence(probe, group, len(found), time.monotonic() - began)
         return found
 

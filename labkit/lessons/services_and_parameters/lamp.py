@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 from labkit.exercises import Exercise, Fail, Outcome, Solution, Style, Wrong, changed
@@ -73,30 +74,41 @@ def _word(on: bool) -> str:
 
 
 def _judge(calls: Sequence[Call]) -> None:
-    """Judge the last response; how the lamp was before the first call is not known."""
-    call = calls[-1]
-    asked, response = call.request['data'], call.response
-    request = f'the request data = {asked}'
-    if response.message != _word(asked):
-        _refuse_message(request, asked, response.message)
-    if len(calls) < 2:
-        return
-    before = calls[-2].request['data']
-    if response.success != (asked != before):
-        why = 'success tells whether the lamp has changed. Compare the request with the state.'
-        same = {c.response.success == c.request['data'] for c in calls} == {True}
-        if {c.response.success for c in calls} == {True}:
-            why = 'success is always True, though the lamp was as it was asked for already.'
-        elif same:
-            why = 'success says what was asked for, and not whether anything has changed.'
-        elif len(calls) > 2 and response.success and asked == before:
-            why = 'The lamp was switched before, and the node has not remembered it.'
-        raise Fail(
-            f'success = {asked != before} upon {request}, while the lamp is {_word(before)}',
-            f'success = {response.success}',
-            why=why,
-            todo='Compare request.data with self.is_on before you change self.is_on.',
+    """Judge the responses; how the lamp was before the first call is not known."""
+    for call in calls:
+        asked, seen = call.request['data'], call.response.message
+        if seen != _word(asked):
+            _refuse_message(f'the request data = {asked}', asked, seen)
+    for before, call in pairwise(calls):
+        asked, was = call.request['data'], before.request['data']
+        if call.response.success != (asked != was):
+            raise Fail(
+                f'success = {asked != was} upon data = {asked}, while the lamp is {_word(was)}',
+                f'success = {call.response.success}',
+                why=_success_trouble(calls),
+                todo='Compare request.data with self.is_on before you change self.is_on.',
+            )
+
+
+def _success_trouble(calls: Sequence[Call]) -> str:
+    """Say what success stands for, if it is not whether the lamp has changed."""
+    seen = [call.response.success for call in calls]
+    if len({*seen}) == 1:
+        return (
+            f'success is always {seen[0]}. It has to tell whether this request has changed the '
+            'lamp.'
         )
+    if seen == [call.request['data'] for call in calls]:
+        return (
+            'success says what was asked for. Nothing is compared with how the lamp was before, '
+            'or the node has not remembered that.'
+        )
+    if not any(
+        now.response.success == (now.request['data'] != was.request['data'])
+        for was, now in pairwise(calls)
+    ):
+        return 'success is True where nothing has changed, and False where something has.'
+    return 'success is right for some requests only. It has to compare each one with the state.'
 
 
 def _refuse_message(request: str, asked: bool, seen: str) -> None:
@@ -199,7 +211,12 @@ lamp = Exercise(
                     '        response.success = request.data != self.is_on\n',
                 ),
             ),
-            'Compare the request with the state.',
+            'success is always False',
+        ),
+        Wrong(
+            'the opposite',
+            changed(_LAMP, ('request.data != self.is_on', 'request.data == self.is_on')),
+            'success is True where nothing has changed',
         ),
         Wrong(
             'message before the change',
@@ -222,7 +239,7 @@ lamp = Exercise(
             changed(
                 _LAMP, ('        self.is_on = request.data\n', '        on = request.data\n')
             ).replace("'on' if self.is_on", "'on' if on"),
-            'the lamp',
+            'or the node has not remembered that',
         ),
         Wrong(
             'no message',
@@ -240,7 +257,7 @@ lamp = Exercise(
                 _LAMP,
                 ('        self.is_on = request.data\n', '        self.is_on = not self.is_on\n'),
             ),
-            'the lamp',
+            'or the opposite of what was asked for',
         ),
         Wrong(
             'no return',
@@ -279,7 +296,7 @@ lamp = Exercise(
                 _LAMP,
                 (
                     '        return response\n',
-                    '        import time\n\n        time.sleep(3600)\n        return response\n',
+                    '        import time\n\n        time.sleep(3)\n        return response\n',
                 ),
             ),
             'While a callback runs, no other one can',

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from labkit.exercises import Exercise, Fail, Outcome, Solution, Style, Wrong, changed, expect
 from labkit.exercises.clauses import Follows, HasParameter, Named, Refuses, Stream
 from labkit.exercises.clauses.parameters import Values
+from labkit.exercises.draws import draw_float
 from labkit.lessons._script import in_process, started_by_subprocess
 
 __all__ = ['pilot']
@@ -59,20 +60,23 @@ _CALLBACK = '        self.add_on_set_parameters_callback(self.on_set)\n'
 
 def _draw() -> Sequence[Values]:
     """Return pairs in which the second speed is above the first limit: they go together."""
-    low = round(random.uniform(0.05, 0.1), 3)
-    high = round(random.uniform(0.15, 0.2), 3)
-    return [{'speed': low - 0.03, 'limit': low}, {'speed': high, 'limit': high + 0.01}]
+    low = draw_float(0.05, 0.1)
+    high = draw_float(0.15, 0.2)
+    return [
+        {'speed': draw_float(0.01, low), 'limit': low},
+        {'speed': high, 'limit': draw_float(high, 0.22)},
+    ]
 
 
 def _bad() -> tuple[Values, Sequence[Values]]:
-    speed, limit = round(random.uniform(0.05, 0.1), 3), round(random.uniform(0.12, 0.2), 3)
+    speed, limit = draw_float(0.05, 0.1), draw_float(0.12, 0.2)
     bad: list[Values] = [
-        {'speed': limit + random.uniform(0.001, 1.0)},
-        {'speed': -random.uniform(0.01, 1.0)},
-        {'limit': speed - random.uniform(0.001, 0.04)},
+        {'speed': draw_float(limit + 0.001, limit + 1.0)},
+        {'speed': draw_float(-1.0, -0.01)},
+        {'limit': draw_float(0.0, speed - 0.001)},
         {'speed': math.nan},
         {'limit': math.nan},
-        {'speed': 2 * limit, 'limit': 1.5 * limit},
+        {'speed': draw_float(0.5, 0.9), 'limit': draw_float(0.3, 0.4)},
     ]
     random.shuffle(bad)
     return {'speed': speed, 'limit': limit}, bad
@@ -87,7 +91,17 @@ def _says_speed(values: Values, stream: Stream) -> None:
             raise Fail(
                 f'linear.x = {values["speed"]}, all else 0.0, in each message on {TOPIC}',
                 f'linear and angular: {expect.show(seen)}',
+                why=_speed_trouble(seen, values),
             )
+
+
+def _speed_trouble(seen: Sequence[float], values: Values) -> str:
+    """Say what is wrong with a command; '' if it may be the speed of before."""
+    if any(seen[1:]):
+        return 'Only linear.x is asked for. Another field makes the robot do something else.'
+    if seen[0] == values['limit']:
+        return 'That is the limit, and not the speed.'
+    return ''
 
 
 _FOLLOWS = Follows(
@@ -229,12 +243,12 @@ pilot = Exercise(
                     "        if 0.0 <= values.get('speed', 0.0) <= limit:\n",
                 ),
             ),
-            'refuses limit =',
+            'Some values are refused, and this one is not.',
         ),
         Wrong(
             'a fixed limit',
             changed(_PILOT, ("<= values['limit']:", '<= 0.22:')),
-            'the node uses it',
+            'Some values are refused, and this one is not.',
         ),
         Wrong(
             'no reason',
@@ -244,7 +258,7 @@ pilot = Exercise(
         Wrong(
             'drives backwards',
             changed(_PILOT, ('if 0.0 <= values', 'if values')),
-            'the node uses it',
+            'Some values are refused, and this one is not.',
         ),
         Wrong(
             'reads the speed once',
@@ -267,7 +281,7 @@ pilot = Exercise(
                     "msg.linear.x = self.get_parameter('limit')",
                 ),
             ),
-            'linear.x =',
+            'That is the limit, and not the speed.',
         ),
         Wrong(
             'turns',
@@ -278,7 +292,7 @@ pilot = Exercise(
                     '        msg = Twist()\n        msg.angular.z = 0.5\n',
                 ),
             ),
-            'all else 0.0',
+            'Only linear.x is asked for.',
         ),
         Wrong(
             'no limit declared',
