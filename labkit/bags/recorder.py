@@ -108,6 +108,11 @@ class Recording(Session):
         """Return how many messages were recorded."""
         return sum(self._counts.values())
 
+    @property
+    def waiting(self) -> int:
+        """Return how many of these wait in memory to be written."""
+        return len(self._queue)
+
     def wait_for(
         self, count: int, topic: str | None = None, *, timeout_sec: float | None = 5.0
     ) -> None:
