@@ -1,0 +1,38 @@
+"""The exercises and the quiz of `10_bags.ipynb`."""
+
+from __future__ import annotations
+
+from labkit.exercises import Lesson
+from labkit.lessons.bags.distance import distance
+from labkit.lessons.bags.half_speed import half_speed
+from labkit.lessons.bags.one_topic import one_topic
+from labkit.lessons.bags.quiz import QUIZ
+
+__all__ = ['LESSON']
+
+LESSON = Lesson(
+    'bags',
+    '10_bags.ipynb',
+    exercises=[one_topic, distance, half_speed],
+    quizzes=[QUIZ],
+    topics=[
+        '/cmd_vel',
+        '/odom',
+        '/scan',
+        '/joint_states',
+        '/imu',
+        '/battery_state',
+        '/clock',
+        '/temperature',
+        '/wind',
+        '/rain',
+    ],
+    given={
+        '/turtlebot': '*',
+        '/pilot': 'pilot',
+        '/odometer': 'odometer',
+        '/twin': 'twin',
+        '/clerk': 'clock',
+        '/weather': 'weather',
+    },
+)
