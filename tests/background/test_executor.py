@@ -157,3 +157,61 @@ def test_a_condition_that_waits_itself_is_refused(kernel, waiting):
     assert 'inside the condition of a wait can not work' in result.traceback
     assert 'call lab.wait_for_message(...) on its own' in result.traceback
     assert not kernel.run('lab.wait_until(lambda: ticker.count > 2)').error
+
+
+def test_a_coroutine_that_waits_for_itself_lets_the_executor_settle(script):
+    # Client and timer are in one callback group: the response can not be taken.
+    result = script(
+        SETUP
+        + """
+from std_srvs.srv import Trigger
+
+class Deadlock(Node):
+    def __init__(self):
+        super().__init__('deadlock')
+        self.asked = 0
+        self.client = self.create_client(Trigger, 'answer')
+        self.timer = self.create_timer(0.01, self.on_timer)
+
+    async def on_timer(self):
+        self.asked += 1
+        await self.client.call_async(Trigger.Request())
+
+server = lab.spin(Node('server'))
+server.create_service(Trigger, 'answer', lambda request, response: response)
+deadlock = lab.spin(Deadlock())
+lab.wait_until(lambda: deadlock.asked)
+ticker = lab.spin(Ticker(lambda node: node.timers.__next__().cancel()))
+lab.wait_until(lambda: ticker.count)
+print(runtime.executor.settle(5.0), deadlock.asked)
+"""
+    )
+    assert (result.exit_code, result.stdout) == (0, 'True 1\n'), result.stderr
+
+
+def test_a_coroutine_goes_on_before_the_executor_has_settled(script):
+    result = script(
+        SETUP
+        + """
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from std_srvs.srv import Trigger
+
+node, heard = lab.spin(Node('asker')), []
+server = lab.spin(Node('server'))
+server.create_service(Trigger, 'answer', lambda request, response: response)
+group = MutuallyExclusiveCallbackGroup()
+client = node.create_client(Trigger, 'answer', callback_group=group)
+
+async def on_message(msg):
+    for _ in range(3):
+        await client.call_async(Trigger.Request())
+    heard.append(msg.data)
+
+node.create_subscription(String, 'ask', on_message, 10)
+publisher = node.create_publisher(String, 'ask', 10)
+lab.wait_until(lambda: publisher.get_subscription_count() and client.service_is_ready())
+publisher.publish(String(data='a'))
+print(runtime.executor.settle(5.0), heard)
+"""
+    )
+    assert (result.exit_code, result.stdout) == (0, "True ['a']\n"), result.stderr

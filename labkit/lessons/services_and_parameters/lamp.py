@@ -277,7 +277,7 @@ lamp = Exercise(
         ),
         Wrong(
             'Trigger',
-            changed(_LAMP, ('SetBool', 'Trigger'), ('request.data', 'True')),
+            changed(_LAMP, ('SetBool', 'Trigger'), ('request.data', 'bool(request)')),
             'with the type std_srvs/srv/Trigger',
         ),
         Wrong(

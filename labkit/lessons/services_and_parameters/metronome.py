@@ -168,6 +168,27 @@ metronome = Exercise(
     ],
     wrong=[
         Wrong(
+            'another node name',
+            changed(_METRONOME, ("__init__('metronome'", "__init__('metronom'")),
+            'The name is what super().__init__() gets',
+        ),
+        Wrong(
+            'reacts before it is decided',
+            changed(
+                _METRONOME,
+                ('add_post_set', 'add_pre_set'),
+                (
+                    _CHANGE,
+                    '                value = parameter.value\n'
+                    '                if isinstance(value, float) and 0.0 < value < 50.0:\n'
+                    '                    self.destroy_timer(self.timer)\n'
+                    '                    self.start_timer(value)\n'
+                    '        return parameters\n',
+                ),
+            ),
+            'The node has refused a value, and uses it all the same.',
+        ),
+        Wrong(
             'no reaction',
             changed(_METRONOME, (_POST, '')),
             'The parameter has changed, and what the node does has not',
@@ -215,7 +236,10 @@ metronome = Exercise(
         ),
         Wrong(
             'not declared',
-            changed(_METRONOME, ("        self.declare_parameter('rate', 2.0, descriptor)\n", '')),
+            changed(
+                _METRONOME,
+                ("self.declare_parameter('rate', 2.0, descriptor)", 'self.about = descriptor'),
+            ),
             'A node has the parameters that it declares',
         ),
         Wrong(

@@ -184,12 +184,17 @@ pilot = Exercise(
             changed(
                 _PILOT,
                 (
-                    'ParameterDescriptor(description=description))',
-                    'ParameterDescriptor(\n            description=description, '
-                    'floating_point_range=[FloatingPointRange(\n                from_value=0.0, '
-                    'to_value=1000.0)]))',
+                    '        self.declare_parameter(name, value, '
+                    'ParameterDescriptor(description=description))\n',
+                    '        positive = FloatingPointRange(from_value=0.0, to_value=1000.0)\n'
+                    '        descriptor = ParameterDescriptor('
+                    'description=description, floating_point_range=[positive])\n'
+                    '        self.declare_parameter(name, value, descriptor)\n',
                 ),
-                ('import ParameterDescriptor', 'import FloatingPointRange, ParameterDescriptor'),
+                (
+                    'import ParameterDescriptor, SetParametersResult\n',
+                    'import FloatingPointRange, ParameterDescriptor, SetParametersResult\n',
+                ),
             ),
         ),
         Style(
@@ -206,6 +211,11 @@ pilot = Exercise(
         Style('own process', in_process(_PILOT), process=True),
     ],
     wrong=[
+        Wrong(
+            'another node name',
+            changed(_PILOT, ("__init__('pilot'", "__init__('pilo'")),
+            'The name is what super().__init__() gets',
+        ),
         Wrong('no callback', changed(_PILOT, (_CALLBACK, '')), 'the node uses it'),
         Wrong(
             'lets nan pass',

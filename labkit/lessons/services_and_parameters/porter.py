@@ -242,11 +242,13 @@ porter = Exercise(
             changed(
                 _PORTER,
                 (
-                    'add_done_callback(self.on_response)',
-                    'add_done_callback(\n            lambda done: self.publisher.publish('
-                    'String(data=done.result().message))\n        )',
+                    _CALLBACK,
+                    '    def on_wish(self, msg):\n'
+                    '        future = self.client.call_async(SetBool.Request(data=msg.data))\n'
+                    '        future.add_done_callback(lambda done: self.say(done.result()))\n\n'
+                    '    def say(self, response):\n'
+                    '        self.publisher.publish(String(data=response.message))\n',
                 ),
-                (_CALLBACK.partition('\n\n')[2], ''),
             ),
         ),
         Style(
@@ -315,7 +317,9 @@ porter = Exercise(
         Wrong(
             'no done callback',
             changed(
-                _PORTER, ('        future.add_done_callback(self.on_response)\n', '        ...\n')
+                _PORTER,
+                ('        future.add_done_callback(self.on_response)\n', ''),
+                ('        future = self.client', '        self.future = self.client'),
             ),
             'nothing was published when its response came',
         ),
