@@ -6,6 +6,7 @@ differs by a letter: ROS says nothing in any of these cases, and each looks the 
 
 from __future__ import annotations
 
+import copy
 from typing import Any
 
 from rclpy.duration import Duration
@@ -48,10 +49,12 @@ def qos_mismatch(offered: QoSProfile, requested: QoSProfile) -> str:
         requested: That of a subscription. An endpoint of the graph reports history and depth as
             unknown; they play no part in matching.
     """
-    compatibility, reason = qos_check_compatible(offered, requested)
+    compatibility, reason = qos_check_compatible(_as_set(offered), _as_set(requested))
     if compatibility != QoSCompatibility.ERROR:
         return ''
-    return str(reason).removeprefix('ERROR: ').strip().rstrip(';.')
+    parts = [part.removeprefix('ERROR: ').strip(' .') for part in str(reason).split(';')]
+    first, *others = filter(None, parts)
+    return '; '.join([first, *(f'{other[:1].lower()}{other[1:]}' for other in others)])
 
 
 def why_apart(publisher: Endpoint, subscription: Endpoint) -> str:
@@ -89,6 +92,18 @@ def how_to_match(publisher: Endpoint, subscription: Endpoint) -> str:
                 else f'Give {mine} a {name} of {_seconds(given)} at least, or {limit}.'
             ]
     return ' '.join(said)
+
+
+def _as_set(profile: QoSProfile) -> QoSProfile:
+    """Return a profile in which a time without an end is one that was not set.
+
+    The graph reports both as endless, and that would be told as a deadline that is too long.
+    """
+    plain = copy.copy(profile)
+    for policy in ('deadline', 'liveliness_lease_duration'):
+        if _is_endless(getattr(plain, policy)):
+            setattr(plain, policy, Duration())
+    return plain
 
 
 def _is_endless(duration: Duration) -> bool:

@@ -77,6 +77,10 @@ def test_each_policy_can_be_mended_at_either_end(policy, offered, asked, todo):
 def test_all_policies_that_differ_are_named():
     mouth = end('/mouth', reliability=BEST)
     ear = end('/ear', durability=KEPT, deadline=Duration(seconds=0.2))
+    assert why_apart(mouth, ear) == (
+        'Best effort publisher and reliable subscription; volatile publisher and transient local '
+        'subscription; subscription has a deadline, but publisher does not'
+    )
     said = how_to_match(mouth, ear)
     assert [said.count(word) for word in ('BEST_EFFORT', 'VOLATILE', 'deadline')] == [1, 1, 1]
 
@@ -102,9 +106,11 @@ lab.start()
 mouth, ear = Node('mouth'), Node('ear')
 mouth.create_publisher(Int16, '/topic', 10)
 ear.create_subscription(Int16, '/topic', print, QoSProfile(depth=1, deadline=Duration(seconds=1)))
-print([pair.todo for pair in read_graph(runtime.helper).mismatches])
+for pair in read_graph(runtime.helper).mismatches:
+    print(pair.reason, pair.todo, sep='\\n')
 """
     )
     assert result.stdout == (
-        f"['Take the deadline of {MINE} away, or give {YOURS} one of 1 s at most.']\n"
+        'Subscription has a deadline, but publisher does not\n'
+        f'Take the deadline of {MINE} away, or give {YOURS} one of 1 s at most.\n'
     ), result.stderr

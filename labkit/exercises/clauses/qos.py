@@ -72,7 +72,8 @@ class Matches(Clause):
                     f'{self.node} as the lesson has made it',
                     f'another node of that name, {probe.place(end)}',
                     why='On a robot that end belongs to somebody else: you can not change it.',
-                    todo=f'{self.start} Then change your own node.',
+                    todo='End it, and change your own node. If that of the lesson is gone: '
+                    f'{self.start}',
                 )
         return ends
 

@@ -231,7 +231,8 @@ def _refuse_qos(subscription: Endpoint, deadline_sec: float) -> None:
             f'{reason}',
             why='No message goes from one side to the other where QoS profiles do not match, and '
             'nobody says so.',
-            todo='Pass a number alone as the last argument, the depth. The rest is usual then.',
+            todo='Ask for less in the profile of the subscription. A number alone, the depth, '
+            'asks for what is usual.',
         )
 
 

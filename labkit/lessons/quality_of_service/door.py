@@ -150,7 +150,7 @@ lab.spin(node)
                     'durability=DurabilityPolicy.TRANSIENT_LOCAL)\n',
                 ),
             ),
-            'subscription deadline is less than publisher deadline',
+            'subscription has a deadline, but publisher does not',
         ),
         Wrong(
             'a deadline that is too long',

@@ -139,7 +139,7 @@ def _refuse_noise(alarms: list[float]) -> None:
     if alarms:
         raise Fail(
             f'nothing on {ALARM} while a heartbeat comes every {PERIOD_SEC} s',
-            f'{len(alarms)} messages on {ALARM} meanwhile',
+            f'{len(alarms)} message{"s" * (len(alarms) > 1)} on {ALARM} meanwhile',
             why='The alarm does not depend on whether heartbeats come: a timer or the callback of '
             'the heartbeat publishes it, or the time is too short.',
             todo=f'Publish when {SILENCE_SEC} s have passed without a heartbeat, as the event of '
