@@ -40,7 +40,7 @@ class Server:
 
 
 def servers(node: Node) -> list[Server]:
-    """Return the services that nodes offer, without those that every node has.
+    """Return the services that nodes offer, without those that every node has, in order of names.
 
     A service comes into the graph after the name of its node.
 
@@ -48,7 +48,7 @@ def servers(node: Node) -> list[Server]:
         node: The node to ask with.
     """
     found = []
-    for name in dict.fromkeys(node_names(node)):
+    for name in sorted({*node_names(node)}):
         try:
             offered = node.get_service_names_and_types_by_node(*split_node_name(name))
         except NodeNameNonExistentError:
