@@ -75,8 +75,6 @@ class _Way:
 class _SumOfSteps(Clause):
     """Each message is answered with the sum of all steps so far."""
 
-    judges_parts = True
-
     @property
     def text(self) -> str:
         """What is asked for."""
@@ -172,8 +170,6 @@ class _SumOfSteps(Clause):
 @dataclass(frozen=True, eq=False)
 class _NoJumps(Clause):
     """What was not driven is not counted."""
-
-    judges_parts = True
 
     @property
     def text(self) -> str:
@@ -282,7 +278,8 @@ def _explain(ways: Sequence[_Way], before: float, now: float) -> tuple[str, str]
             'The way from the first place is added each time: the last place is never renewed.',
             'self.last = place belongs to each message, not only to the first one.',
         )
-    if abs(now - math.hypot(way.x, way.y)) < NEAR or now < before:
+    lines = (math.dist((ways[0].x, ways[0].y), (way.x, way.y)), math.hypot(way.x, way.y))
+    if any(abs(now - line) < NEAR for line in lines) or now < before:
         return (
             'It is the straight line to where the robot is now. A robot that drives round and '
             'comes back has driven, too.',
@@ -336,7 +333,7 @@ distance = Exercise(
             'numpy',
             changed(
                 _NODE,
-                ('import math\n', 'import numpy as np\n'),
+                ('import math\n\n', 'import numpy as np\n'),
                 ('place = (position.x, position.y)', 'place = np.array([position.x, position.y])'),
                 ('math.dist(self.last, place)', 'float(np.linalg.norm(place - self.last))'),
             ),
@@ -435,12 +432,11 @@ node.create_subscription(Odometry, '/odom', on_odometry, 10)
             'never renews the last place',
             changed(
                 _NODE,
-                ('        self.last = place\n', ''),
                 (
-                    '        if self.last is not None:\n',
-                    '        if self.last is None or math.dist(self.last, place) >= 0.5:\n'
-                    '            self.last = place\n        else:\n',
+                    '        self.last = place\n',
+                    '        else:\n            self.last = place\n',
                 ),
+                ('step < 0.5', 'step < 5'),
             ),
             'the last place is never renewed',
         ),
@@ -501,6 +497,11 @@ node.create_subscription(Odometry, '/odom', on_odometry, 10)
             changed(_NODE, ('        if self.last is not None:\n', '        if True:\n')),
             'NoneType',
             outcome=Outcome.ERROR,
+        ),
+        Wrong(
+            'listens elsewhere',
+            changed(_NODE, ("Odometry, 'odom'", "Odometry, 'odometry'")),
+            '/odometry',
         ),
         Wrong(
             'another topic',

@@ -127,7 +127,7 @@ def _write(path: Path, rows: Iterable[tuple[float, str, Any]]) -> None:
     for seconds, topic, message in sorted(rows, key=lambda row: row[:2]):
         if topic not in numbers:
             name = type_name(type(message))
-            qos = profiles_to_text([QoSProfile(depth=10)])  # type: ignore[no-untyped-call]
+            qos = profiles_to_text([QoSProfile(depth=50)])  # type: ignore[no-untyped-call]
             numbers[topic] = writer.add_topic(
                 topic, name, qos=qos, definition=full_definition(name), encoding=ENCODING
             )

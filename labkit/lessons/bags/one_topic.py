@@ -20,6 +20,7 @@ recording = lab.record('bags/temperature', '/temperature', storage='sqlite3', ov
 recording.wait_for(20)
 recording.stop()
 """
+_CALL = "recording = lab.record('bags/temperature', '/temperature', "
 _OTHERS = "['/wind', '/rain', '/rosout', '/parameter_events']"
 
 
@@ -105,7 +106,12 @@ lab.wait_until(lambda: recording.done)
         ),
         Style(
             'all but the others',
-            changed(_RECORD, ("'/temperature', ", f'exclude={_OTHERS}, ')),
+            changed(
+                _RECORD,
+                (_CALL, f'OTHERS = {_OTHERS}\n' + _CALL),
+                ("'/temperature', storage", 'exclude=OTHERS, storage'),
+                ('recording =', '\nrecording ='),
+            ),
         ),
         Style(
             'command line',
@@ -145,7 +151,12 @@ shutil.rmtree('bags/temperature', ignore_errors=True)
         ),
         Wrong(
             'two topics',
-            changed(_RECORD, ("'/temperature', ", "['/temperature', '/wind'], ")),
+            changed(
+                _RECORD,
+                (_CALL, "NAMES = ['/temperature', '/wind']\n" + _CALL),
+                ("'/temperature', storage", 'NAMES, storage'),
+                ('recording =', '\nrecording ='),
+            ),
             'More was chosen than the one topic.',
         ),
         Wrong(
