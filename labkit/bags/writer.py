@@ -118,8 +118,14 @@ class BagWriter:
 
     def write(self, messages: Sequence[Message]) -> None:
         """Write messages, in the order in which they came."""
-        if not messages:
-            return
+        if self._split_bytes or self._split_ns:
+            for message in messages:
+                self._write([message])
+        elif messages:
+            self._write(messages)
+
+    def _write(self, messages: Sequence[Message]) -> None:
+        """Write messages to one file, a new one if it is time to."""
         if self._is_full(messages[0][1]):
             self._end_file()
             self._begin_file()

@@ -64,7 +64,7 @@ def _candidates(words: list[str], last: str) -> Iterable[str]:
 def _arguments(parser: Parser, words: list[str], last: str) -> Iterable[str]:
     """Return what may stand at the end of the words after the verb."""
     known, wanted = parser.guess(words)
-    in_option = wanted is not None and bool(wanted.option_strings)
+    in_option = wanted is not None and bool(wanted.option_strings) and wanted.nargs != '+'
     if last.startswith('-') and not in_option:
         shown = [action for action in parser.actions if action.help != argparse.SUPPRESS]
         names = [name for action in shown for name in action.option_strings]

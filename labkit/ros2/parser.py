@@ -111,15 +111,17 @@ class Parser(argparse.ArgumentParser):
         positionals = [action for action in self._actions if not action.option_strings]
         known = argparse.Namespace()
         waiting: argparse.Action | None = None
+        several = False  # whether more words of the option may follow
         for word in words:
-            if waiting is not None:
+            if waiting is not None and not (several and word in options):
                 setattr(known, waiting.dest, word)
-                waiting = None
+                waiting = waiting if several else None
             elif word in options or word.startswith('--'):
                 # An option may be cut short, as long as it is clear which one it is.
                 meant = [action for name, action in options.items() if name.startswith(word)]
                 action = options.get(word) or next(iter(meant), None)
-                waiting = action if action is not None and action.nargs is None else None
+                nargs = action.nargs if action is not None else 0
+                waiting, several = action if nargs in (None, '+') else None, nargs == '+'
             elif (not word.startswith('-') or word == '-') and positionals:
                 setattr(known, positionals[0].dest, word)
                 if positionals[0].nargs not in ('+', '*', argparse.REMAINDER):

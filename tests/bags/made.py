@@ -10,6 +10,7 @@ from typing import Any, Protocol
 import yaml
 from mcap.writer import CompressionType, Writer
 from rclpy.serialization import serialize_message
+from rosbags.typesys import Stores, get_typestore
 from std_msgs.msg import Int16, String
 
 __all__ = [
@@ -37,6 +38,7 @@ class Maker(Protocol):
 
 TYPES = {'/chatter': 'std_msgs/msg/String', '/count': 'std_msgs/msg/Int16'}
 DEFINITIONS = {'std_msgs/msg/String': 'string data\n', 'std_msgs/msg/Int16': 'int16 data\n'}
+HASHES = {kind: get_typestore(Stores.ROS2_JAZZY).hash_rihs01(kind) for kind in DEFINITIONS}
 # As version 9 of metadata.yaml writes it, and as the versions before did.
 QOS_9 = """
 - history: keep_last
@@ -87,7 +89,7 @@ def metadata(
                     'type': TYPES[name],
                     'serialization_format': 'cdr',
                     'offered_qos_profiles': yaml.safe_load(QOS_9) if version >= 9 else QOS_5,
-                    'type_description_hash': 'RIHS01_00',
+                    'type_description_hash': HASHES[TYPES[name]],
                 },
                 'message_count': count[name],
             }
@@ -129,7 +131,7 @@ def make_sqlite(
             'type_description_hash TEXT NOT NULL);'
         )
         for kind, text in DEFINITIONS.items():
-            row = (kind, 'ros2msg', text, 'RIHS01_00')
+            row = (kind, 'ros2msg', text, HASHES[kind])
             database.execute(
                 'INSERT INTO message_definitions(topic_type, encoding, '
                 'encoded_message_definition, type_description_hash) VALUES(?, ?, ?, ?)',
@@ -138,7 +140,14 @@ def make_sqlite(
     numbers = {topic: number for number, topic in enumerate(TYPES, 1)}
     for topic, number in numbers.items():
         qos = QOS_9 if version >= 9 else QOS_5
-        values = [number, topic, TYPES[topic], 'cdr', qos, *(['RIHS01_00'] if new else [])]
+        values = [
+            number,
+            topic,
+            TYPES[topic],
+            'cdr',
+            qos,
+            *([HASHES[TYPES[topic]]] if new else []),
+        ]
         database.execute(f'INSERT INTO topics VALUES({",".join("?" * len(values))})', values)
     for topic, after, data in messages:
         database.execute(
