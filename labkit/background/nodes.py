@@ -86,9 +86,14 @@ def full_name(node: Node) -> str:
 
 
 class _Made:
-    """The nodes that were made since `follow`, as long as something holds them."""
+    """The nodes that were made since `follow`, as long as something holds them.
+
+    Attributes:
+        count: How many were ever made.
+    """
 
     def __init__(self) -> None:
+        self.count = 0
         self._lock = threading.Lock()
         self._nodes: WeakSet[Node] | None = None
         self._kinds: WeakSet[type[Node]] = WeakSet()
@@ -107,6 +112,7 @@ class _Made:
     def add(self, node: Node) -> None:
         """Note a node that is about to be made."""
         with self._lock:
+            self.count += 1
             self._kinds.add(type(node))
             if self._nodes is not None:
                 self._nodes.add(node)

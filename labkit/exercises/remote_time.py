@@ -24,8 +24,12 @@ GUARD = Path(__file__).with_name('time_guard.py')
 # How long a node may take to answer for the first time, s of real time. One that does not is not
 # spun, or at work for long, and is left in real time.
 FIRST_ANSWER_SEC = 1.2
+# How long the services of a node may take to come into the graph after its name, s of real time.
+SERVICES_SEC = 1.0
 # And how long later on. One that does not answer then is not asked again.
 ANSWER_SEC = 3.0
+# The first question of a client is asked again when no answer has come for so long, s.
+AGAIN_SEC = 0.5
 # How long a question is kept that nobody waits for, s of real time: it has to be on its way.
 LATE_SEC = 0.1
 # How long a clock may take to be found by a node, s of real time.
@@ -57,8 +61,11 @@ class RemoteTime:
         from rclpy.qos import QoSProfile, ReliabilityPolicy
         from rosgraph_msgs.msg import Clock
 
+        from labkit.background.patience import answer_sec
+
         if self._node.count_publishers('/clock'):
             self.names = []  # somebody else tells the time
+        _wait(lambda: all(map(self._has_parameters, self.names)), SERVICES_SEC)
         self.names = [name for name in self.names if self._has_parameters(name)]
         if not self.names:
             return self
@@ -67,9 +74,8 @@ class RemoteTime:
         )
         self._clock = self._node.create_publisher(Clock, '/clock', profile)
         self._guard = _start_guard(self.names)
-        self._told = {
-            name: self._use_sim_time(name, True, FIRST_ANSWER_SEC) for name in self.names
-        }
+        patience = answer_sec(FIRST_ANSWER_SEC)
+        self._told = {name: self._use_sim_time(name, True, patience) for name in self.names}
         self.names = [name for name, follows in self._told.items() if follows]
         self._clients = {
             name: self._node.create_client(GetParameters, f'{name}/get_parameters')
@@ -78,6 +84,9 @@ class RemoteTime:
         _wait(lambda: self._clock.get_subscription_count() >= len(self.names), MATCH_SEC)
         for client in self._clients.values():
             _wait(client.service_is_ready, ANSWER_SEC)
+            # The node may find this client later than this client the node; see `call_again`.
+            request = GetParameters.Request(names=['use_sim_time'])
+            _wait(lambda: _answer(client, request).wait(AGAIN_SEC), patience)  # noqa: B023
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -142,10 +151,10 @@ class RemoteTime:
             with ServiceCalls(self._node, SetParameters, f'{name}/set_parameters') as service:
                 if not service.wait_until_ready(ANSWER_SEC):
                     return False
-                response = service.call(request, timeout_sec)
+                response = service.call_again(request, timeout_sec)
         except LabError:
             return False
-        return all(result.successful for result in response.results)
+        return response is not None and all(result.successful for result in response.results)
 
 
 def _answer(client: Any, request: Any) -> threading.Event:

@@ -238,12 +238,13 @@ def runs(probe: Probe, name: str) -> bool:
     node = probe.node_object(name)
     if node is not None:
         return node.executor is not None
+    from labkit.background.patience import answer_sec
     from labkit.background.service_calls import wait_until_spun
 
     service, asker = f'{name}/list_parameters', probe.spun_node
     # Services come into the graph after the name of their node.
     found = probe.wait_to_appear(lambda: service in dict(asker.get_service_names_and_types()))
-    return not found or wait_until_spun(asker, name, ANSWER_SEC)
+    return not found or wait_until_spun(asker, name, answer_sec(ANSWER_SEC))
 
 
 def _intervals(stream: Sequence[Sample]) -> list[float]:
