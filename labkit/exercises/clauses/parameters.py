@@ -27,7 +27,7 @@ Values = Mapping[str, Any]
 # How many messages of a changed rate are looked at, and how long at least, s.
 MESSAGES, LEAST_SEC = 12, 3.0
 # Fewer than that do not tell a rate.
-FEW = 3
+FEW = 6
 # What rclpy says where a callback does not return a SetParametersResult (rclpy/node.py).
 INVALID = 'Callback returned an invalid type'
 LOOK_ONLY = (
@@ -160,6 +160,7 @@ class Follows(Clause):
         """Set the parameters, and look at what is published then."""
         sets = self.draw()
         with _kept(evidence.probe, self.node, list(sets[0])) as before:
+            self.look(evidence, before, before)
             for values in sets:
                 self._set(evidence.probe, values)
                 self.look(evidence, values, before)
@@ -211,7 +212,7 @@ class Follows(Clause):
             self._fit(now, values)
         except Fail as fail:
             expected = f'with {_show(values)}: {fail.expected}'
-            if not self._is_as_before(now, before):
+            if before == values or not self._is_as_before(now, before):
                 raise Fail(expected, fail.seen, why=fail.why, todo=fail.todo) from None
             raise Fail(
                 expected,

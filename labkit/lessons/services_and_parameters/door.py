@@ -2,29 +2,40 @@
 
 from __future__ import annotations
 
-from rclpy.node import Node
-from std_srvs.srv import SetBool
+from typing import TYPE_CHECKING, Any
 
-__all__ = ['Door']
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+__all__ = ['is_door', 'make_door']
+
+KEEPER = 'Ada'
 
 
-class Door(Node):
-    """Serves `/move_door`: true opens it, false closes it.
+def make_door() -> Node:
+    """Return a node that serves `/move_door`: true opens the door, false closes it.
 
-    Attributes:
-        keeper: Who looks after it; the responses name them.
-        calls: What was asked for, in the order of the calls.
+    Its `keeper` is named in the responses, and `calls` holds what was asked for.
     """
+    from rclpy.node import Node
+    from std_srvs.srv import SetBool
 
-    def __init__(self) -> None:
-        super().__init__('door')
-        self.keeper = 'Ada'
-        self.calls: list[bool] = []
-        self.create_service(SetBool, 'move_door', self.on_move)
+    class Door(Node):
+        def __init__(self) -> None:
+            super().__init__('door')
+            self.keeper = KEEPER
+            self.calls: list[bool] = []
+            self.create_service(SetBool, 'move_door', self.on_move)
 
-    def on_move(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
-        """Move it."""
-        self.calls.append(request.data)
-        response.success = True
-        response.message = f'{self.keeper} {"opened" if request.data else "closed"} the door'
-        return response
+        def on_move(self, request: Any, response: Any) -> Any:
+            self.calls.append(request.data)
+            response.success = True
+            response.message = f'{self.keeper} {"opened" if request.data else "closed"} the door'
+            return response
+
+    return Door()
+
+
+def is_door(node: object) -> bool:
+    """Tell whether a node is such a door."""
+    return hasattr(node, 'keeper') and hasattr(node, 'calls')

@@ -168,6 +168,11 @@ metronome = Exercise(
     ],
     wrong=[
         Wrong(
+            'begins with another rate',
+            changed(_METRONOME, ('start_timer(2.0)', 'start_timer(4.0)')),
+            'with rate = 2.0',
+        ),
+        Wrong(
             'another node name',
             changed(_METRONOME, ("__init__('metronome'", "__init__('metronom'")),
             'The name is what super().__init__() gets',

@@ -18,7 +18,7 @@ BOOL, STRING = 'std_msgs/msg/Bool', 'std_msgs/msg/String'
 NODE = '/porter'
 KEEPERS = ('Ada', 'Bo', 'Chidi', 'Dilek', 'Eva', 'Finn', 'Guo', 'Hana')
 ANSWER_SEC = 2.5
-CELL = 'door = lab.spin(Door())'
+CELL = 'door = lab.spin(make_door())'
 
 _PORTER = """
 from rclpy.node import Node
@@ -72,11 +72,11 @@ def _door(evidence: Evidence) -> Any:
     Raises:
         Fail: It is not there, or nobody spins it.
     """
-    from labkit.lessons.services_and_parameters.door import Door
+    from labkit.lessons.services_and_parameters.door import is_door
 
     found = evidence.probe.node_object('/door')
     expect.that(
-        isinstance(found, Door) and found.executor is not None,
+        is_door(found) and found.executor is not None,
         expected=f'the door of this lesson, which serves {SERVICE}',
         seen='no door',
         why='Your node is there, and what it should call is not.',
