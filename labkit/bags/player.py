@@ -42,6 +42,8 @@ MATCH_SEC = 2.0
 # How long the last messages may take to be heard, s.
 HEARD_SEC = 1.0
 _POLL_SEC = 0.01
+# Who was held up for longer goes on from there, with the same pauses, s.
+LATE_SEC = 0.05
 # A loop takes so long at least, s.
 LOOP_SEC = 0.1
 # rosgraph_msgs' own QoS for /clock is best effort, depth 1; publishers offer reliable.
@@ -245,6 +247,9 @@ class Playing(Session):
                 passed = 0.0 if self._paused else (now - self._base_at) * self.rate
                 left = (sec - self._base_sec - passed) / self.rate
                 if left <= 0 and not self._paused:
+                    if left < -LATE_SEC:
+                        # What is late is not rushed through: queues of listeners would run over.
+                        self._base_at -= left
                     break
                 limit = None if self._paused else left
                 if self._clock is not None:
