@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -27,6 +28,9 @@ KINDS = ('best_effort', 'reliable')
 TOPICS = tuple(f'/{word}_{kind}' for word in ('pictures', 'seen') for kind in KINDS)
 DEPTH = 100
 START_SEC = 25.0
+# How long it waits until somebody hears its answers, s.
+FOUND_SEC = 5.0
+POLL_SEC = 0.01
 
 _process: Process | None = None
 
@@ -88,6 +92,10 @@ def main() -> None:
         profile = QoSProfile(depth=DEPTH, reliability=reliability)  # type: ignore[no-untyped-call]
 
         def on_picture(msg: String) -> None:
+            # Who asks may be discovered later than what it sends.
+            end = time.monotonic() + FOUND_SEC
+            while not answers.get_subscription_count() and time.monotonic() < end:
+                time.sleep(POLL_SEC)
             answers.publish(Int16(data=int(msg.data)))
 
         rover.create_subscription(String, f'pictures_{kind}', on_picture, profile)
