@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import re
 import zlib
@@ -217,19 +218,26 @@ class Number(Question):
     def judge(self, given: Any) -> Feedback:
         """Say whether an answer is right, and why."""
         numbers = self._numbers(given)
+        if not numbers:  # it has another unit
+            return Feedback(False, [('why', self._mistake(spelling.numbers(str(given))))])
         answer = _value(self.answer)
         for number in numbers:
             if abs(number - answer) <= max(self.tolerance, 1e-9) * abs(answer):
                 return Feedback(True, [('why', self.why)])
+        why = self._mistake(numbers) or self.explain(numbers[0]) or self.otherwise
+        return Feedback(False, [('why', why)])
+
+    def _mistake(self, numbers: Sequence[float]) -> str:
+        """Return what is wrong about a typical wrong number, '' if it is none."""
         for number, (value, why) in product(numbers, self.wrong.items()):
             # Nobody types all decimals of a number that has many.
             off = 1e-9 if float(value).is_integer() else 0.005
             if math.isclose(number, value, rel_tol=max(off, self.tolerance / 2)):
-                return Feedback(False, [('why', why)])
-        return Feedback(False, [('why', self.explain(numbers[0]) or self.otherwise)])
+                return why
+        return ''
 
     def _numbers(self, given: Any) -> list[float]:
-        """Return what an answer may mean.
+        """Return what an answer may mean; nothing if it is a typical wrong one in another unit.
 
         Raises:
             LabError: It is no number, or has another unit.
@@ -239,6 +247,9 @@ class Number(Question):
         except ValueError as error:
             if str(error) == 'no number':
                 raise LabError(f'The answer must be a number, but it is {given!r}.') from None
+            with contextlib.suppress(ValueError):
+                if self._mistake(spelling.numbers(str(given))):
+                    return []
             raise LabError(
                 f'The answer must be a number in {self.unit}, but the unit of {given!r} is '
                 f'{str(error)!r}.',
