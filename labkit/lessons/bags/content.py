@@ -11,6 +11,7 @@ from labkit.errors import LabError, nearest
 from labkit.exercises import Fail, NotAttempted, Probe
 from labkit.exercises.clauses import Clause
 from labkit.exercises.clauses.base import naming
+from labkit.exercises.learner_errors import last_cell
 
 if TYPE_CHECKING:
     from labkit.bags.reader import Bag, BagMessage
@@ -20,6 +21,9 @@ __all__ = ['Found', 'Is', 'IsThere', 'OnlyTopic', 'judge_bag']
 
 # Topics that every node has, and that are recorded where all are.
 _OF_EVERY_NODE = ('/parameter_events', '/rosout')
+
+# Path of a bag -> when the bag was written that was judged last.
+_judged: dict[str, float] = {}
 
 
 @dataclass(frozen=True)
@@ -145,6 +149,7 @@ def judge_bag(probe: Probe, clauses: Sequence[Clause]) -> str:
     where, only, *others = clauses
     assert isinstance(where, IsThere) and isinstance(only, OnlyTopic)
     with naming(where):
+        _refuse_old(where.path)
         bag = _opened(where.path)
     with bag:
         with naming(only):
@@ -155,6 +160,15 @@ def judge_bag(probe: Probe, clauses: Sequence[Clause]) -> str:
             with naming(clause):
                 clause.look(found)
         return f'{where.path} has {len(found.messages)} messages of {only.topic}, and no others.'
+
+
+def _refuse_old(path: str) -> None:
+    """Raise what the last cell has raised, if the bag is still the one that was judged before."""
+    written = _written(Path(path))
+    error = last_cell.learner_error()
+    if error is not None and written and _judged.get(path) == written:
+        raise error
+    _judged[path] = written
 
 
 def _opened(path: str) -> Bag:

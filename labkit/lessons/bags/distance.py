@@ -118,6 +118,7 @@ class _SumOfSteps(Clause):
             wanted = way.step if way.counts else 0.0
             if way.counts and abs(now - before - wanted) > NEAR:
                 self._refuse(ways, answers, number)
+        self._refuse_beginning(came)
         if len(came) > len(ways):
             raise Fail(
                 f'{len(ways)} messages on {OUTER}, one for each on {INNER}',
@@ -141,6 +142,18 @@ class _SumOfSteps(Clause):
             todo='Publish at the end of the callback: '
             'self.publisher.publish(Float64(data=self.total))',
         )
+
+    def _refuse_beginning(self, came: Sequence[Sample]) -> None:
+        """Raise Fail if the first message of a node, if that is seen, is not 0."""
+        begun = [float(sample.message.data) for sample in came if sample.number == 1]
+        values = [*begun, *(float(s.message.data) for s in came if s.message.data < -NEAR)]
+        if values and abs(values[0]) > NEAR:
+            raise Fail(
+                f'0.0 m as the first message on {OUTER}: nothing has been driven yet',
+                f'{values[0]:.3f} m',
+                why='The sum does not begin at 0.0, or the way to the first place is counted.',
+                todo='Begin with self.total = 0.0 and self.last = None.',
+            )
 
     def _refuse_missing(self, evidence: Evidence, way: _Way) -> NoReturn:
         hanging(evidence.probe)
@@ -497,6 +510,11 @@ node.create_subscription(Odometry, '/odom', on_odometry, 10)
             changed(_NODE, ('        if self.last is not None:\n', '        if True:\n')),
             'NoneType',
             outcome=Outcome.ERROR,
+        ),
+        Wrong(
+            'begins at 1',
+            changed(_NODE, ('self.total = 0.0', 'self.total = 1.0')),
+            'The sum does not begin at 0.0',
         ),
         Wrong(
             'listens elsewhere',
