@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any
 from labkit import settings
 from labkit.background.console import Cell
 from labkit.background.discovery import calm, has_all_services
+from labkit.background.patience import busyness
 from labkit.background.program import READY
 from labkit.background.runtime import runtime
 from labkit.background.service_calls import wait_until_spun
@@ -371,7 +372,7 @@ def starting_children(gids: Collection[bytes]) -> tuple[bool, bool]:
     import psutil
 
     appeared = {process_id(gid) for gid in gids}
-    oldest = time.time() - _YOUNG_SEC
+    oldest = time.time() - _YOUNG_SEC * busyness()
 
     def is_starting(child: psutil.Process) -> bool:
         if child.status() == psutil.STATUS_SLEEPING and child.children():

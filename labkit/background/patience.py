@@ -6,7 +6,7 @@ import os
 
 from labkit.background.nodes import made
 
-__all__ = ['answer_sec']
+__all__ = ['answer_sec', 'busyness']
 
 # So many times as long, at most, however busy the machine is.
 MOST_BUSY = 3.0
@@ -17,11 +17,16 @@ NODE_SEC = 0.01
 MOST_SEC = 20.0
 
 
+def busyness() -> float:
+    """Return how many times as long something takes as on a calm machine, about."""
+    load = os.getloadavg()[0] / (os.cpu_count() or 1)
+    return min(max(load, 1.0), MOST_BUSY)
+
+
 def answer_sec(calm_sec: float) -> float:
     """Return how long a node of another process may take to answer, s.
 
     Args:
         calm_sec: How long on a calm machine, and in a session that has just begun, s.
     """
-    busy = os.getloadavg()[0] / (os.cpu_count() or 1)
-    return min(calm_sec * min(max(busy, 1.0), MOST_BUSY) + NODE_SEC * made.count, MOST_SEC)
+    return min(calm_sec * busyness() + NODE_SEC * made.count, MOST_SEC)

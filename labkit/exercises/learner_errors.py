@@ -230,7 +230,7 @@ _KNOWN = (
     (
         ('AttributeError',),
         r"'NoneType' object has no attribute '(?P<name>\w+)'",
-        'What should have {name} is None. It was not set, or it is the result of a future that '
+        'What stands before .{name} is None. It was not set, or it is the result of a future that '
         'was not done yet.',
         'Set it before it is used. The result of a future is there in the callback that its '
         'add_done_callback() gets.',

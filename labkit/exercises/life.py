@@ -139,6 +139,7 @@ def live(
     tick: float = 0.05,
     fine_sec: float = math.inf,
     rest: float = 0.2,
+    hurry: bool = True,
     before: Callable[[VirtualTime], None] | None = None,
     until: Callable[[float, Mapping[str, Watch]], bool] | None = None,
 ) -> Life:
@@ -155,6 +156,8 @@ def live(
         tick: How exactly time is known for nodes of other processes, s,
         fine_sec: for so long, s;
         rest: and how exactly afterwards, s.
+        hurry: Whether it may be known less exactly afterwards when it takes long. What a node says
+            once in each step, as to a robot, would be lost then.
         before: Called when time stands still, before it begins to pass.
         until: Called after each event with the seconds that have passed, and what has come: it
             says whether that is enough.
@@ -193,7 +196,7 @@ def live(
             passing.tick = tick if passing.seconds < fine_sec else rest
             course.go(min(seconds, max(fine_sec, passing.seconds)))
             passing.tick = rest
-            if life.remote:
+            if life.remote and hurry:
                 life.rest = course.hurry(seconds)
             course.go(seconds)
             if life.remote:

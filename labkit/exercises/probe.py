@@ -138,11 +138,12 @@ class Probe:
         # Every node publishes there.
         infos = self.node.get_publishers_info_by_topic('/parameter_events')
         from labkit.background.child_processes import starting_children
+        from labkit.background.patience import busyness
 
         new, known = starting_children([bytes(info.endpoint_gid) for info in infos])
         if self._fresh or new or self._is_half_seen():
-            return PROCESS_GRACE_SEC
-        return ENDPOINT_GRACE_SEC if known else 0.0
+            return PROCESS_GRACE_SEC * busyness()
+        return ENDPOINT_GRACE_SEC * busyness() if known else 0.0
 
     def _is_half_seen(self) -> bool:
         """Tell whether a node of another process is in the graph, and nothing yet that it does.

@@ -41,7 +41,7 @@ import time
 node = Counter('ones')
 while '_check_ones' not in node.get_node_names():
     time.sleep(0.01)
-time.sleep(2)
+time.sleep(8)
 rclpy.spin(node)
 """
 )

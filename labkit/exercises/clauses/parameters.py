@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from labkit.errors import LabError, nearest
 from labkit.exercises import expect
@@ -100,7 +100,7 @@ class HasParameter(Clause):
         if self.limits is not None:
             self._judge_limits([*found.floating_point_range, *found.integer_range])
 
-    def _refuse_missing(self, names: Sequence[str]) -> None:
+    def _refuse_missing(self, names: Sequence[str]) -> NoReturn:
         near = nearest(self.name, list(names))
         raise Fail(
             f'{self.node} has the parameter {self.name}',

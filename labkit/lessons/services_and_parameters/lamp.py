@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import Any
+from typing import Any, NoReturn
 
 from labkit.exercises import Exercise, Fail, Outcome, Solution, Style, Wrong, changed
 from labkit.exercises.clauses import Call, Named, Responds, Serves
@@ -111,7 +111,7 @@ def _success_trouble(calls: Sequence[Call]) -> str:
     return 'success is right for some requests only. It has to compare each one with the state.'
 
 
-def _refuse_message(request: str, asked: bool, seen: str) -> None:
+def _refuse_message(request: str, asked: bool, seen: str) -> NoReturn:
     why = 'The message says how the lamp is after the request, in one word.'
     if seen == _word(not asked):
         why = 'It says how the lamp was before, or the opposite of what was asked for.'

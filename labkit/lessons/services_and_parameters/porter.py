@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NoReturn
 
 from labkit.exercises import Exercise, Fail, Outcome, Solution, Style, Wrong, changed, expect
 from labkit.exercises.clauses import Answers, Clause, Evidence, Named
@@ -133,7 +133,9 @@ class _Calls(Clause):
             self._refuse(evidence, heard, list(calls))
         return f'{len(heard)} messages, {len(calls)} calls of {SERVICE}.'
 
-    def _refuse(self, evidence: Evidence, heard: Sequence[bool], calls: Sequence[bool]) -> None:
+    def _refuse(
+        self, evidence: Evidence, heard: Sequence[bool], calls: Sequence[bool]
+    ) -> NoReturn:
         self._refuse_deadlock(evidence, heard, calls)
         why = 'What is called differs from what was heard.'
         todo = 'In the callback of the subscription: SetBool.Request(data=msg.data)'

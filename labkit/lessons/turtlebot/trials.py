@@ -240,6 +240,7 @@ class Trials:
             tick=TICK_SEC,
             fine_sec=FINE_SEC,
             rest=LATER_TICK_SEC,
+            hurry=False,
             before=begin,
             until=until,
         )

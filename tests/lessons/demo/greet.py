@@ -133,7 +133,7 @@ lab.spin(node)
         Wrong(
             'no publisher',
             changed(GREETER, ("self.create_publisher(String, 'demo_complete', 10)", 'None')),
-            'NoneType has nothing called publish',
+            'What stands before .publish is None.',
             outcome=Outcome.ERROR,
         ),
         Wrong(
