@@ -359,11 +359,14 @@ def end_earlier(command: list[str]) -> None:
             process.stop()
 
 
-def starting_children(gids: Collection[bytes]) -> tuple[bool, bool]:
+def starting_children(
+    gids: Collection[bytes], others: Collection[bytes] = ()
+) -> tuple[bool, bool]:
     """Tell whether this process has lately started others, whose nodes may be about to appear.
 
     Args:
         gids: Global ids of endpoints that are in the graph.
+        others: Those of processes that are not asked for.
 
     Returns:
         Whether one of them has nothing in the graph yet, and whether one has: what else it makes
@@ -372,6 +375,7 @@ def starting_children(gids: Collection[bytes]) -> tuple[bool, bool]:
     import psutil
 
     appeared = {process_id(gid) for gid in gids}
+    ignored = {process_id(gid) for gid in others}
     oldest = time.time() - _YOUNG_SEC * busyness()
 
     def is_starting(child: psutil.Process) -> bool:
@@ -388,7 +392,7 @@ def starting_children(gids: Collection[bytes]) -> tuple[bool, bool]:
     found = set()
     for child in psutil.Process().children(recursive=True):
         try:
-            if is_starting(child):
+            if child.pid & 0xFFFF not in ignored and is_starting(child):
                 found.add(child.pid & 0xFFFF in appeared)
         except psutil.NoSuchProcess:
             continue

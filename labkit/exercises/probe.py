@@ -133,17 +133,26 @@ class Probe:
 
     def _grace(self) -> float:
         """Return how long what is not there may still be on its way, in seconds."""
+        from labkit.background.patience import busyness
+
+        new, known = self._starting()
+        return busyness() * (PROCESS_GRACE_SEC if new else ENDPOINT_GRACE_SEC if known else 0.0)
+
+    def _starting(self) -> tuple[bool, bool]:
+        """Tell whether something was started lately that is not, or is, in the graph yet.
+
+        Processes of the lesson's own nodes are left out.
+        """
         if os.environ.get('ROS_AUTOMATIC_DISCOVERY_RANGE') == 'OFF':
-            return 0.0
+            return False, False
         # Every node publishes there.
         infos = self.node.get_publishers_info_by_topic('/parameter_events')
         from labkit.background.child_processes import starting_children
-        from labkit.background.patience import busyness
 
-        new, known = starting_children([bytes(info.endpoint_gid) for info in infos])
-        if self._fresh or new or self._is_half_seen():
-            return PROCESS_GRACE_SEC * busyness()
-        return ENDPOINT_GRACE_SEC * busyness() if known else 0.0
+        gids = {bytes(info.endpoint_gid): _full_name(info) for info in infos}
+        lessons = [gid for gid, name in gids.items() if is_given(name, self.scope)]
+        new, known = starting_children(gids.keys(), lessons)
+        return self._fresh or new or self._is_half_seen(), known
 
     def _is_half_seen(self) -> bool:
         """Tell whether a node of another process is in the graph, and nothing yet that it does.
@@ -158,11 +167,11 @@ class Probe:
 
     def process_is_starting(self) -> bool:
         """Tell whether a process was started that is not, or not all, in the graph yet."""
-        return self._grace() >= PROCESS_GRACE_SEC
+        return self._starting()[0]
 
     def something_is_starting(self) -> bool:
         """Tell whether a process, or ROS itself, was started a moment ago."""
-        return self._grace() > 0.0
+        return any(self._starting())
 
     # -- virtual time ---------------------------------------------------------------------------
 
@@ -361,6 +370,10 @@ class Probe:
                 f'it runs {self.place(endpoint)}',
                 todo='End it there, start it here, and check again.',
             )
+
+
+def _full_name(info: Any) -> str:
+    return f'{info.node_namespace.rstrip("/")}/{info.node_name}'
 
 
 def _interrupt(gid: bytes) -> bool:

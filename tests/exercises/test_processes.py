@@ -37,7 +37,7 @@ LATE = START.replace("'ones'", "'ones', 'late'")
 # The process counts as one that was started long ago.
 NOT_YOUNG = """
 from labkit.background import child_processes
-child_processes.starting_children = lambda gids: (False, False)
+child_processes.starting_children = lambda gids, others: (False, False)
 """
 
 

@@ -270,7 +270,8 @@ class Publishes(Clause):
         if evidence.has_ended_early():
             raise NotAttempted
         # The graph may know a process before that process knows who listens.
-        young = not probe.in_this_process(source) and probe.something_is_starting()
+        young = not probe.in_this_process(source) and source.node not in evidence.life.remote
+        young = young and probe.something_is_starting()
         try:
             watch = timing.messages(probe, source, count=3, hz=self.hz, at_least=self.at_least)
         except Fail as fail:

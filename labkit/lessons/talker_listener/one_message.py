@@ -27,8 +27,9 @@ __all__ = ['say_once']
 
 STRING = 'std_msgs/msg/String'
 TOPIC = '/door'
-# So long time passes while nobody listens, s: another one each time.
-ALONE_SEC = (20.0, 40.0)
+# So long time passes while nobody listens, s: another one each time, but never so long that a node
+# that looks once a minute is just about to.
+ALONE_SEC = (20.0, 29.0)
 # How long a thread of this process may take to see that somebody listens, s of real time.
 LATE_SEC = 1.5
 # What comes soon after a message comes from a node that keeps a time of its own, s of real time.
