@@ -18,6 +18,9 @@ STATES = [
     for state in states_of(exercise)
 ]
 
+# The first test of a lesson waits for its turn among the others, and for all of its states.
+pytestmark = pytest.mark.timeout(2400)
+
 Findings = dict[tuple[str, str], Finding]
 
 

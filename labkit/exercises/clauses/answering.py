@@ -81,12 +81,15 @@ class Answers(Clause):
         """Return messages to be answered, and some on topics that are none of its business."""
         hears = evidence.subscription(self.inner, self.by)
         spun(evidence.probe, hears)
+        values = self.draw()
         tests = [
             Test(self.inner, hears.msg_type, {self.field: value}, (self.outer,))
-            for value in self.draw()
+            for value in values
         ]
         for other in _others(evidence.probe, hears)[:MAX_OTHERS]:
-            tests.append(Test(other.topic, other.msg_type, {self.field: self.draw()[1]}))
+            # An answer to it tells by itself where it comes from.
+            value = next((value for value in self.draw() if value not in values), values[1])
+            tests.append(Test(other.topic, other.msg_type, {self.field: value}))
         return tests
 
     def judge(self, evidence: Evidence) -> str:

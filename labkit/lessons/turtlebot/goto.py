@@ -304,7 +304,7 @@ go_to = Exercise(
         Wrong('stops too early', changed(_GO_TO, ('< 0.05', '< 0.15')), 'It stops too early'),
         Wrong(
             'too slow',
-            changed(_GO_TO, ('= 0.2', '= 0.03')),
+            changed(_GO_TO, ('= 0.2', '= 0.02')),
             'after the message',
         ),
         Wrong(
