@@ -108,7 +108,9 @@ lab.wait_until(lambda: recording.done)
             changed(
                 _RECORD,
                 # Other notebooks of this domain may have topics, too.
-                ("'/temperature', storage", "exclude=['^/(?!temperature$)'], storage"),
+                ("'/temperature', storage", "exclude=['^/(?!temp)'], storage"),
+                ('recording = lab.record(', 'recording = lab.record(\n    '),
+                ('overwrite=True)', 'overwrite=True\n)'),
             ),
         ),
         Style(

@@ -11,7 +11,7 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -67,6 +67,10 @@ def behind_a_hill() -> Iterator[None]:
     """Let the rover be out of reach in a `with` block: its process stands still."""
     assert _process is not None and _process.output
     number = int(_process.output[0])
+    # A publisher may find the rover before the rover finds it. What is sent then is lost.
+    end = time.monotonic() + START_SEC
+    while not _knows_its_publishers(_process.output) and time.monotonic() < end:
+        time.sleep(POLL_SEC)
     os.kill(number, signal.SIGSTOP)
     try:
         yield
@@ -74,9 +78,16 @@ def behind_a_hill() -> Iterator[None]:
         os.kill(number, signal.SIGCONT)
 
 
+def _knows_its_publishers(lines: Sequence[str]) -> bool:
+    """Tell whether each subscription of the rover has said last that it has a publisher."""
+    counts = dict(line.split() for line in lines[1:])
+    return all(int(counts.get(kind, '0')) for kind in KINDS)
+
+
 def main() -> None:
     """Hear and answer until it is interrupted."""
     import rclpy
+    from rclpy.event_handler import SubscriptionEventCallbacks
     from rclpy.node import Node
     from rclpy.qos import QoSProfile, ReliabilityPolicy
     from std_msgs.msg import Int16, String
@@ -98,7 +109,11 @@ def main() -> None:
                 time.sleep(POLL_SEC)
             answers.publish(Int16(data=int(msg.data)))
 
-        rover.create_subscription(String, f'pictures_{kind}', on_picture, profile)
+        tell = SubscriptionEventCallbacks(
+            matched=lambda event: print(kind, event.current_count, flush=True)  # type: ignore[attr-defined]
+        )
+        topic = f'pictures_{kind}'
+        rover.create_subscription(String, topic, on_picture, profile, event_callbacks=tell)
 
     listen('best_effort', ReliabilityPolicy.BEST_EFFORT)
     listen('reliable', ReliabilityPolicy.RELIABLE)
