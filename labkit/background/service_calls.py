@@ -11,6 +11,7 @@ from rclpy.node import Node
 
 from labkit.background.compat import RCLError
 from labkit.background.discovery import soon
+from labkit.background.patience import answer_sec
 from labkit.errors import LabError, LabTimeout
 from labkit.rosgraph.interfaces import type_name
 
@@ -20,8 +21,9 @@ POLL_SEC = 0.05
 # As long as that, a service that the graph knows may take to be ready.
 READY_SEC = 5.0
 ANSWER_SEC = 5.0
-# A request that may be made twice is made again when no answer has come for so long.
-AGAIN_SEC = 0.5
+# A request that may be made twice is made again when no answer has come for so long. One that sets
+# something is given longer: the callback of the node may take its time.
+AGAIN_SEC, SET_AGAIN_SEC = 0.5, 2.0
 # As long as that, a node may take to be spun. Some programs never spin theirs.
 SPUN_SEC = 1.0
 
@@ -71,12 +73,17 @@ class ServiceCalls:
             time.sleep(POLL_SEC / 5)
         return True
 
-    def call(self, request: Any, timeout_sec: float | None) -> Any:
+    def call(
+        self, request: Any, timeout_sec: float | None, *, again_sec: float | None = None
+    ) -> Any:
         """Call the service.
 
         Args:
             request: The request.
             timeout_sec: Seconds to wait for the answer, None for no end.
+            again_sec: Seconds after which it is called once more, for what may be done twice. A
+                server that has not found this client yet throws its answer away after 0.1 s
+                (rmw_fastrtps, rmw_response.cpp).
 
         Returns:
             The response.
@@ -85,39 +92,28 @@ class ServiceCalls:
             LabTimeout: No answer came in time.
         """
         done = threading.Event()
-        future = self._client.call_async(request)
-        future.add_done_callback(lambda _: done.set())  # type: ignore[no-untyped-call]
-        end = None if timeout_sec is None else time.monotonic() + timeout_sec
+        futures: list[Any] = []
+
+        def ask() -> float:
+            future = self._client.call_async(request)
+            future.add_done_callback(lambda _: done.set())  # type: ignore[no-untyped-call]
+            futures.append(future)
+            return time.monotonic()
+
+        asked = begun = ask()
         # In slices: between them the stop button is heard.
         while not done.wait(POLL_SEC):
-            if end is not None and time.monotonic() >= end:
-                future.cancel()  # type: ignore[no-untyped-call]
+            now = time.monotonic()
+            if timeout_sec is not None and now >= begun + timeout_sec:
+                for future in futures:
+                    future.cancel()
                 raise LabTimeout(
                     f'{self.name} did not answer within {timeout_sec:g} s.',
                     todo='Is the node that offers it spinning, and do its callbacks return?',
                 )
-        return future.result()  # type: ignore[no-untyped-call]
-
-    def call_again(self, request: Any, timeout_sec: float) -> Any:
-        """Call the service, again and again until it answers; for what may be done twice.
-
-        A server that has not found this client yet throws its answer away after 0.1 s
-        (rmw_fastrtps, rmw_response.cpp).
-
-        Args:
-            request: The request.
-            timeout_sec: Seconds to wait for the answer.
-
-        Returns:
-            The response, None if none came in time.
-        """
-        end = time.monotonic() + timeout_sec
-        while (left := end - time.monotonic()) > 0:
-            try:
-                return self.call(request, min(left, AGAIN_SEC))
-            except LabTimeout:
-                continue
-        return None
+            if again_sec is not None and now >= asked + again_sec:
+                asked = ask()
+        return next(future.result() for future in futures if future.done())
 
 
 def call_node(node: Node, srv_type: Any, node_name: str, service: str, request: Any) -> Any:
@@ -142,7 +138,8 @@ def call_node(node: Node, srv_type: Any, node_name: str, service: str, request: 
     with ServiceCalls(node, srv_type, name) as service_calls:
         if not service_calls.wait_until_ready(READY_SEC):
             raise LabTimeout('Wait for service timed out')
-        return service_calls.call(request, ANSWER_SEC)
+        again_sec = SET_AGAIN_SEC if service.startswith('set_') else AGAIN_SEC
+        return service_calls.call(request, answer_sec(ANSWER_SEC), again_sec=again_sec)
 
 
 def wait_until_spun(node: Node, node_name: str, timeout_sec: float = SPUN_SEC) -> bool:
@@ -162,4 +159,8 @@ def wait_until_spun(node: Node, node_name: str, timeout_sec: float = SPUN_SEC) -
     with ServiceCalls(node, ListParameters, name) as service:
         if not service.wait_until_ready(timeout_sec):
             return False
-        return service.call_again(ListParameters.Request(), timeout_sec) is not None
+        try:
+            service.call(ListParameters.Request(), timeout_sec, again_sec=AGAIN_SEC)
+        except LabTimeout:
+            return False
+        return True

@@ -147,7 +147,7 @@ class Probe:
             return False, False
         # Every node publishes there.
         infos = self.node.get_publishers_info_by_topic('/parameter_events')
-        from labkit.background.child_processes import starting_children
+        from labkit.background.children import starting_children
 
         gids = {bytes(info.endpoint_gid): _full_name(info) for info in infos}
         lessons = [gid for gid, name in gids.items() if is_given(name, self.scope)]
@@ -267,7 +267,7 @@ class Probe:
         """Tell whether a node is of this process, or of one that this process has started."""
         if self.node_object(name) is not None:
             return True
-        from labkit.background.child_processes import is_of_child
+        from labkit.background.children import is_of_child
 
         ends = [*self.all_publishers(), *self.all_subscriptions()]
         return any(end.node == name and is_of_child(end.gid) for end in ends)
@@ -377,6 +377,6 @@ def _full_name(info: Any) -> str:
 
 
 def _interrupt(gid: bytes) -> bool:
-    from labkit.background.child_processes import interrupt_child
+    from labkit.background.children import interrupt_child
 
     return interrupt_child(gid)

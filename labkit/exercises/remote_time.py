@@ -84,7 +84,7 @@ class RemoteTime:
         _wait(lambda: self._clock.get_subscription_count() >= len(self.names), MATCH_SEC)
         for client in self._clients.values():
             _wait(client.service_is_ready, ANSWER_SEC)
-            # The node may find this client later than this client the node; see `call_again`.
+            # The node may find this client later than this client the node: `ServiceCalls.call`.
             request = GetParameters.Request(names=['use_sim_time'])
             _wait(lambda: _answer(client, request).wait(AGAIN_SEC), patience)  # noqa: B023
         return self
@@ -151,10 +151,10 @@ class RemoteTime:
             with ServiceCalls(self._node, SetParameters, f'{name}/set_parameters') as service:
                 if not service.wait_until_ready(ANSWER_SEC):
                     return False
-                response = service.call_again(request, timeout_sec)
+                response = service.call(request, timeout_sec, again_sec=AGAIN_SEC)
         except LabError:
             return False
-        return response is not None and all(result.successful for result in response.results)
+        return all(result.successful for result in response.results)
 
 
 def _answer(client: Any, request: Any) -> threading.Event:

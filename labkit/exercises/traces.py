@@ -154,7 +154,7 @@ def _is_written(kind: type) -> bool:
 
 def _refuse_process(probe: Probe, task: str) -> None:
     """Raise Fail if a process that this notebook has started for this exercise is over."""
-    from labkit.background.child_processes import ended_children
+    from labkit.background.children import ended_children
 
     for child in ended_children():
         # The lesson and other exercises have processes that have ended, too.

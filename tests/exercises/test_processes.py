@@ -36,8 +36,8 @@ process = subprocess.Popen([sys.executable, {str(NODE)!r}, 'ones'])
 LATE = START.replace("'ones'", "'ones', 'late'")
 # The process counts as one that was started long ago.
 NOT_YOUNG = """
-from labkit.background import child_processes
-child_processes.starting_children = lambda gids, others: (False, False)
+from labkit.background import children
+children.starting_children = lambda gids, others: (False, False)
 """
 
 

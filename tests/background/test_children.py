@@ -1,0 +1,130 @@
+"""The children of a process, whoever has started them: seen starting, interrupted, ended."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from labkit.background.domains import claim_domain
+
+
+@pytest.fixture
+def env() -> Iterator[dict[str, str]]:
+    claim = claim_domain()
+    yield {
+        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
+        'ROS_DOMAIN_ID': str(claim.domain_id),
+    }
+    claim.close()
+
+
+CHILD = """
+import rclpy
+from rclpy.node import Node
+rclpy.init()
+try:
+    rclpy.spin(Node('child'))
+except KeyboardInterrupt:
+    pass
+"""
+STARTED = {
+    'Popen': 'subprocess.Popen([sys.executable, path])',
+    'a shell': 'subprocess.Popen(f"{python} {path}; true", shell=True)',
+    'asyncio': 'await asyncio.create_subprocess_exec(sys.executable, path)',
+    'a shell of asyncio': 'await asyncio.create_subprocess_shell(f"{python} {path}; true")',
+    'a session of its own': 'subprocess.Popen([sys.executable, path], start_new_session=True)',
+}
+
+
+@pytest.mark.parametrize('how', STARTED)
+def test_a_child_is_seen_starting_and_can_be_interrupted(
+    start_kernel: Any, env: dict[str, str], how: str
+) -> None:
+    kernel = start_kernel(**env)
+    kernel.run(
+        'import asyncio, subprocess, sys, time\n'
+        'import labkit as lab\n'
+        'from labkit.background.children import *\n'
+        'from labkit.background.runtime import runtime\n'
+        'python, path = sys.executable, "child.py"\nlab.start()\n'
+        f'open(path, "w").write({CHILD!r})\n'
+        'def gids():\n'
+        '    infos = runtime.helper.get_publishers_info_by_topic("/parameter_events")\n'
+        '    return [bytes(i.endpoint_gid) for i in infos if i.node_name == "child"]\n'
+    )
+    starting = kernel.run(f'child = {STARTED[how]}\nprint(starting_children([]))')
+    assert (starting.error, starting.text) == ('', '(True, False)\n')
+    seen = kernel.run(
+        'print(runtime.wait(gids, 50))\n'
+        'print(runtime.wait(lambda: starting_children(gids())[0] is False, 50))\n'
+        'print(interrupt_child(gids()[0]), interrupt_child(b"\\0" * 16))\n'
+        'print(runtime.wait(lambda: not gids(), 50))\n'
+    )
+    assert (seen.error, seen.text) == ('', 'True\nTrue\nTrue False\nTrue\n')
+    ended = kernel.run('print(runtime.wait(ended_children, 50))')
+    assert (ended.error, ended.text) == ('', 'True\n')
+    if 'asyncio' in how:  # its loop learns of the end between two cells
+        kernel.run('while child.returncode is None:\n    await asyncio.sleep(0.01)')
+    told = kernel.run(
+        'print(ended_children() == ended_children())\n'
+        '(end,) = ended_children()\nprint(end.pid == child.pid, end.exit_code)\nprint(end.command)'
+    )
+    assert told.error == ''
+    assert told.text.startswith('True\nTrue 0\n')
+    assert 'child.py' in told.text
+
+
+def test_a_child_that_has_ended_is_told_and_can_still_be_waited_for(script: Any) -> None:
+    code = """
+import os, signal, subprocess, sys
+from labkit.background.child_processes import environment, start_process
+from labkit.background.children import ended_children
+from labkit.background.runtime import runtime
+
+def start(code):
+    return subprocess.Popen([sys.executable, '-S', '-c', code])
+
+waited, zombie = start('raise SystemExit(3)'), start('raise SystemExit(4)')
+running = start('import time; time.sleep(99)')
+killed = start('import os; os.kill(os.getpid(), 9)')
+pid = os.fork()
+if pid == 0:
+    os._exit(5)
+own = start_process('own', ['true'], environment())
+own._reader.join()
+waited.wait()
+while len(ended_children()) < 4:
+    pass
+told = {child.pid: (child.exit_code, child.command[-1:]) for child in ended_children()}
+print(told[waited.pid], told[zombie.pid], told[pid], told[killed.pid][0], running.pid in told)
+print(zombie.wait(), killed.wait(), os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]))
+running.kill()
+"""
+    result = script(code)
+    told = "(3, ('raise SystemExit(3)',)) (4, ('raise SystemExit(4)',)) (5, ()) -9 False\n4 -9 5\n"
+    assert result.stdout == told, result.stderr
+
+
+def test_a_process_that_wants_a_processor_is_still_starting(script: Any) -> None:
+    result = script(
+        """
+import subprocess, sys, time
+import psutil
+from labkit.background import children
+
+children._YOUNG_SEC = 0.0  # as if it had been started long ago
+idle = subprocess.Popen([sys.executable, '-S', '-c', 'input()'], stdin=subprocess.PIPE)
+while psutil.Process(idle.pid).status() != psutil.STATUS_SLEEPING:
+    time.sleep(0.01)
+print(children.starting_children([]))
+busy = subprocess.Popen([sys.executable, '-S', '-c', 'while True: pass'])
+while psutil.Process(busy.pid).status() != psutil.STATUS_RUNNING:
+    time.sleep(0.01)
+print(children.starting_children([]))
+busy.kill()
+idle.kill()
+"""
+    )
+    assert result.stdout == '(False, False)\n(True, False)\n', result.stderr
