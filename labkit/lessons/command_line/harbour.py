@@ -7,10 +7,9 @@ come and who listens is drawn by lot, so the answers are in the graph and nowher
 from __future__ import annotations
 
 import random
-import sys
 from typing import TYPE_CHECKING, Any
 
-from labkit.errors import LabTimeout
+from labkit.lessons._companion import start_companion
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -35,7 +34,6 @@ MEASURES = {
 }
 # So far apart that what is measured on a busy machine tells one from another.
 RATES_HZ = (3, 5, 8, 12)
-START_SEC = 25.0
 
 _process: Process | None = None
 
@@ -49,22 +47,7 @@ def open_harbour() -> None:
         LabTimeout: Its nodes did not come.
     """
     global _process
-    from labkit.background.child_processes import environment, start_process
-    from labkit.background.runtime import runtime
-    from labkit.rosgraph.snapshot import node_names
-
-    if _process is not None:
-        _process.stop()
-    runtime.start()
-    assert runtime.helper is not None
-    before = node_names(runtime.helper)
-    command = [sys.executable, '-c', f'from {__name__} import main; main()']
-    _process = start_process('harbour', command, environment(), announces=True)
-    if not _process.wait_for_nodes(runtime.helper, before, START_SEC):
-        raise LabTimeout(
-            f'Waited {START_SEC:.0f} s for the nodes of the harbour, but they did not come.',
-            todo='Run the cell again. If that does not help, lab.doctor() looks for the reason.',
-        )
+    _process = start_companion('harbour', __name__, _process)
     print(f'The harbour is open: {len(NODES)} nodes in a process of their own.')
 
 

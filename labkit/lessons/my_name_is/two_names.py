@@ -112,7 +112,8 @@ class _EachAnswers(Clause):
         # Of two equal texts of one check each may be answered twice, by mistake.
         pairs = [(text, name) for text in texts for name in names]
         often = any(answers[t + n] > 2 * texts[t] * names.count(n) for t, n in pairs)
-        if often and all(answers[text + name] for text, name in pairs):
+        # The lesson's first stage speaks in between: what repeats its last answer forgets a test.
+        if often and 2 * sum(answers[text + name] > 0 for text, name in pairs) > len(pairs):
             self._refuse_more(evidence, list(answers.elements()), often=True)
         left = list(came)
         for at, text in heard:

@@ -7,10 +7,9 @@ on a topic; between processes the mistake is silent, and that is what is to be s
 from __future__ import annotations
 
 import random
-import sys
 from typing import TYPE_CHECKING
 
-from labkit.errors import LabTimeout
+from labkit.lessons._companion import start_companion
 
 if TYPE_CHECKING:
     from labkit.background.child_processes import Process
@@ -24,7 +23,6 @@ GATES = ('/gate_a', '/gate_b', '/gate_c', '/gate_d', '/gate_e')
 NODES = ('/referee', *GATES)
 
 PERIOD_SEC = 0.1
-START_SEC = 25.0
 
 _process: Process | None = None
 
@@ -39,22 +37,7 @@ def open_stadium() -> None:
         LabTimeout: Its nodes did not come.
     """
     global _process
-    from labkit.background.child_processes import environment, start_process
-    from labkit.background.runtime import runtime
-    from labkit.rosgraph.snapshot import node_names
-
-    if _process is not None:
-        _process.stop()
-    runtime.start()
-    assert runtime.helper is not None
-    before = node_names(runtime.helper)
-    command = [sys.executable, '-c', f'from {__name__} import main; main()']
-    _process = start_process('stadium', command, environment(), announces=True)
-    if not _process.wait_for_nodes(runtime.helper, before, START_SEC):
-        raise LabTimeout(
-            f'Waited {START_SEC:.0f} s for the nodes of the stadium, but they did not come.',
-            todo='Run the cell again. If that does not help, lab.doctor() looks for the reason.',
-        )
+    _process = start_companion('stadium', __name__, _process)
 
 
 def wrong_gates() -> list[str]:

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import os
 import signal
-import sys
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from labkit.errors import LabTimeout
+from labkit.lessons._companion import start_companion
 
 if TYPE_CHECKING:
     from labkit.background.child_processes import Process
@@ -44,22 +43,7 @@ def start_rover() -> None:
         LabTimeout: It did not come.
     """
     global _process
-    from labkit.background.child_processes import environment, start_process
-    from labkit.background.runtime import runtime
-    from labkit.rosgraph.snapshot import node_names
-
-    if _process is not None:
-        _process.stop()
-    runtime.start()
-    assert runtime.helper is not None
-    before = node_names(runtime.helper)
-    command = [sys.executable, '-c', f'from {__name__} import main; main()']
-    _process = start_process('rover', command, environment(), announces=True)
-    if not _process.wait_for_nodes(runtime.helper, before, START_SEC):
-        raise LabTimeout(
-            f'Waited {START_SEC:.0f} s for the rover, but it did not come.',
-            todo='Run the cell again. If that does not help, lab.doctor() looks for the reason.',
-        )
+    _process = start_companion('rover', __name__, _process)
 
 
 @contextmanager

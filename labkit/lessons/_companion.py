@@ -1,0 +1,49 @@
+"""A process that a lesson starts beside the notebook, such as its stadium or its harbour."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from labkit.errors import LabTimeout
+
+if TYPE_CHECKING:
+    from labkit.background.child_processes import Process
+
+__all__ = ['start_companion']
+
+START_SEC = 25.0
+
+
+def start_companion(name: str, module: str, earlier: Process | None) -> Process:
+    """Start the function `main()` of a module as a process, and wait until its nodes are there.
+
+    Args:
+        name: What it is called in the list of `lab.processes()`.
+        module: Name of the module. Its nodes say what they have: `spin_until_interrupted`.
+        earlier: The one that was started before, which is ended first.
+
+    Returns:
+        The process.
+
+    Raises:
+        LabTimeout: Its nodes did not come.
+    """
+    from labkit.background.child_processes import environment, start_process
+    from labkit.background.runtime import runtime
+    from labkit.rosgraph.snapshot import node_names
+
+    if earlier is not None:
+        earlier.stop()
+    runtime.start()
+    assert runtime.helper is not None
+    before = node_names(runtime.helper)
+    command = [sys.executable, '-c', f'from {module} import main; main()']
+    process = start_process(name, command, environment(), announces=True)
+    if not process.wait_for_nodes(runtime.helper, before, START_SEC):
+        process.stop()
+        raise LabTimeout(
+            f'Waited {START_SEC:.0f} s for the nodes of the {name}, but they did not come.',
+            todo='Run the cell again. If that does not help, lab.doctor() looks for the reason.',
+        )
+    return process
