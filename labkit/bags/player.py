@@ -18,7 +18,6 @@ from rosgraph_msgs.msg import Clock
 
 from labkit.background.compat import RCLError
 from labkit.background.discovery import asking_node
-from labkit.background.nodes import node_exists
 from labkit.background.runtime import runtime
 from labkit.bags.offers import offered_profile
 from labkit.bags.reader import Bag, BagMessage, BagTopic, open_bag
@@ -268,19 +267,13 @@ class Playing(Session):
 
     def _publish(self, message: BagMessage) -> None:
         name, publisher = self._publishers[message.topic, message.msg_type]
-        try:
-            publisher.publish(message.data)
-        except Exception:
-            if node_exists(self._node):
-                raise
-            self._stopping.set()  # its node has ended
-            return
+        publisher.publish(message.data)
         self.counts[name] += 1
 
     def _wait_until_heard(self) -> None:
         """Wait until what was published has come to others, and was heard in this process."""
         for _, publisher in self._publishers.values():
-            if node_exists(self._node) and not self._stopping.is_set():
+            if not self._stopping.is_set():
                 publisher.wait_for_all_acked(Duration(seconds=HEARD_SEC))
         if runtime.started and not self._stopping.is_set():
             runtime.executor.settle(HEARD_SEC)

@@ -5,8 +5,11 @@ from __future__ import annotations
 import threading
 from typing import TYPE_CHECKING, ClassVar, TypeVar
 
+from rclpy.exceptions import InvalidHandle
+
 from labkit.background.nodes import after_destroy, helper_node, node_exists
 from labkit.background.runtime import runtime
+from labkit.errors import LabError
 from labkit.rosgraph.snapshot import node_names
 
 if TYPE_CHECKING:
@@ -34,7 +37,7 @@ class Session:
         self.error: Exception | None = None
         self._cell = runtime.console.current_cell()
         self._name = node_name
-        self._stopping = threading.Event()
+        self._stopping, self._ended = threading.Event(), threading.Event()
         self._node: Node = helper_node(_free_name(node_name))
         runtime.add(self._node)
         self._thread = threading.Thread(target=self._run, name=node_name, daemon=True)
@@ -42,12 +45,12 @@ class Session:
     @property
     def done(self) -> bool:
         """Tell whether it has ended."""
-        return not self._thread.is_alive()
+        return self._ended.is_set()
 
     def stop(self) -> None:
         """End it, and wait until all is put away. Without effect when it has ended."""
         self._stopping.set()
-        self._release()
+        self._end_node()
         if self._thread.is_alive() and self._thread is not threading.current_thread():
             self._thread.join()
 
@@ -67,10 +70,16 @@ class Session:
     def _run(self) -> None:
         try:
             self._work()
+        except InvalidHandle:
+            self._stopping.set()  # its node ends, and its publishers are the first to go
         except Exception as error:  # a thread that raises tells nobody
-            self._fail(error)
+            # Once ROS is shut down, nothing can be published; that is no news of the disk.
+            if isinstance(error, LabError) or node_exists(self._node):
+                self._fail(error)
         finally:
-            self._release()
+            self._end_node()
+            self._ended.set()
+            Session._going_on.remove(self)
 
     def _work(self) -> None:
         """Do what is to be done, until `_stopping` is set."""
@@ -81,10 +90,7 @@ class Session:
         self.error = error
         runtime.console.write_under(self._cell, f'{self._name}: {error}\n')
 
-    def _release(self) -> None:
-        """End its node."""
-        if self in Session._going_on:
-            Session._going_on.remove(self)
+    def _end_node(self) -> None:
         if node_exists(self._node):
             runtime.destroy(self._node)
 
