@@ -5,7 +5,9 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
-from labkit.exercises.life import _Course
+import pytest
+
+from labkit.exercises.life import ON_THE_WAY, Life, _Course
 
 
 class Endless:
@@ -31,3 +33,22 @@ def test_a_topic_that_is_never_quiet_is_not_waited_for_without_an_end():
     course = _Course(probe, passing, watches, moments=[], until=None)
     course.wait_for_late_ones()
     assert topic.count
+
+
+@pytest.mark.parametrize(
+    ('strangers', 'unknown', 'left'),
+    [(0, 0, ['known']), (0, 1, ['known', 'odd 0']), (1, ON_THE_WAY, ['known'])],
+)
+def test_what_may_be_said_upon_messages_of_others_is_left_out(
+    strangers: int, unknown: int, left: list[str]
+) -> None:
+    life = Life(strangers={'/range': strangers})
+    extra = [(1.0, 'known'), *((2.0, f'odd {number}') for number in range(unknown))]
+    found = life.without_strangers('/range', extra, {'known', 'other'})
+    assert [value for _, value in found] == left
+
+
+def test_what_is_said_more_often_than_others_speak_counts() -> None:
+    life = Life(strangers={'/range': 1, '/other': 9})
+    extra = [(float(number), f'odd {number}') for number in range(ON_THE_WAY + 1)]
+    assert life.without_strangers('/range', extra, set()) == extra

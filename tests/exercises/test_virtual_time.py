@@ -119,6 +119,33 @@ def test_a_thread_with_a_rate_misses_no_beat(lab: ModuleType) -> None:
     assert gaps(life, '/odds') == {0.1}
 
 
+def test_a_thread_with_a_rate_that_works_for_long_once_is_not_lost(lab: ModuleType) -> None:
+    """A machine may be so busy that a thread gets no time for a while."""
+    node = lab.spin(Node('loop'))
+    publisher = node.create_publisher(Int16, 'odds', 10)
+    ended = threading.Event()
+
+    def work() -> None:
+        rate = node.create_rate(10)
+        number = 0
+        with contextlib.suppress(ROSInterruptException):
+            while not ended.is_set():
+                end = time.monotonic() + (0.8 if number == 50 else 0.0)
+                while time.monotonic() < end:
+                    pass
+                publisher.publish(Int16(data=number))
+                number += 1
+                rate.sleep()
+
+    thread = threading.Thread(target=work, daemon=True)
+    thread.start()
+    life = see({'/odds': INT16}, {'/loop'})
+    ended.set()
+    thread.join()
+    assert gaps(life, '/odds') == {0.1}
+    assert max(sample.message.data for sample in life.on('/odds')) > 100
+
+
 def test_what_a_message_sets_off_happens_at_the_same_time(lab: ModuleType) -> None:
     class Evens(Node):
         def __init__(self) -> None:

@@ -5,7 +5,11 @@ from __future__ import annotations
 import pytest
 
 from labkit.exercises import Fail
-from labkit.lessons.command_line.last_command import explain_last_command, forget_commands
+from labkit.lessons.command_line.last_command import (
+    commanded_rate,
+    explain_last_command,
+    forget_commands,
+)
 from labkit.ros2.shell import Ran, history, run_line
 from labkit.rosgraph.refusals import Refusal
 
@@ -78,3 +82,16 @@ def test_what_a_learner_types_is_explained(capsys: pytest.CaptureFixture[str]) -
     forget_commands()
     run_line('topic pub --once //odds std_msgs/msg/Int16 "{data: 1}"')
     assert 'One slash at the beginning' in fail().why
+
+
+@pytest.mark.parametrize(
+    ('option', 'rate_hz'),
+    [('', 1.0), ('-r 5', 5.0), ('-r2.5', 2.5), ('--rate 4', 4.0), ('--rate=0.5', 0.5)],
+)
+def test_rate_is_that_of_the_last_command_that_was_accepted(option: str, rate_hz: float) -> None:
+    history.append(Ran((*PUB, '/odds', '-r', '9'), '', None, '/odds'))
+    history.append(Ran((*PUB, *option.split(), '/odds'), '', None, '/odds'))
+    history.append(Ran((*PUB, '/odds', '-r', '7'), 'What is wrong.', Refusal.OTHER, '/odds'))
+    history.append(Ran((*PUB, '/other', '-r', '8'), '', None, '/other'))
+    assert commanded_rate('/odds') == rate_hz
+    assert commanded_rate('/limit') is None
