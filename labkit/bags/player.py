@@ -19,13 +19,13 @@ from rosgraph_msgs.msg import Clock
 from labkit.background.compat import RCLError
 from labkit.background.discovery import asking_node
 from labkit.background.runtime import runtime
+from labkit.bags.listeners import wait_for_listeners
 from labkit.bags.offers import offered_profile
 from labkit.bags.reader import Bag, BagMessage, BagTopic, open_bag
 from labkit.bags.session import Session, end_earlier
 from labkit.errors import LabError, LabTimeout
-from labkit.rosgraph.endpoints import subscriptions
 from labkit.rosgraph.interfaces import message_class
-from labkit.rosgraph.matching import other_type_here, qos_mismatch
+from labkit.rosgraph.matching import other_type_here
 from labkit.rosgraph.names import full_topic_name
 from labkit.rosgraph.refusals import Refused
 
@@ -40,7 +40,6 @@ CLOCK = '/clock'
 MATCH_SEC = 2.0
 # How long the last messages may take to be heard, s.
 HEARD_SEC = 1.0
-_POLL_SEC = 0.01
 # Who was held up for longer goes on from there, with the same pauses, s.
 LATE_SEC = 0.05
 # A loop takes so long at least, s.
@@ -185,26 +184,13 @@ class Playing(Session):
         self._publishers[topic.name, topic.msg_type] = (name, publisher)
         self.counts[name] = 0
 
-    def _wait_for_subscribers(self) -> None:
-        """Wait until those who are in the graph already hear the publishers."""
-        end = time.monotonic() + MATCH_SEC
-        for name, publisher in self._publishers.values():
-            while time.monotonic() < end and not self._stopping.is_set():
-                asking = [
-                    end_
-                    for end_ in subscriptions(self._node, name)
-                    if not qos_mismatch(publisher.qos_profile, end_.qos)
-                ]
-                if publisher.get_subscription_count() >= len(asking):
-                    break
-                time.sleep(_POLL_SEC)
-
     # -- playing, in a thread of its own --------------------------------------------------------
 
     def _work(self) -> None:
         try:
             with self.bag:
-                self._wait_for_subscribers()
+                published = [publisher for _, publisher in self._publishers.values()]
+                wait_for_listeners(self._node, published, MATCH_SEC, self._stopping.is_set)
                 begin: float | None = self._start_sec
                 while begin is not None and not self._stopping.is_set():
                     begin = self._play_from(begin)

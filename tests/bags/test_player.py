@@ -286,8 +286,25 @@ print(len(heard), heard[0])
 """
 
 
+PLAY = """
+import os, signal, sys, time
+import labkit as lab
+from labkit.background.discovery import asking_node
+
+asking_node()
+if '{held_up}':
+    os.kill(int(sys.argv[1]), signal.SIGSTOP)
+playing = lab.play('drive', rate=10)
+if '{held_up}':
+    time.sleep(0.5)
+    os.kill(int(sys.argv[1]), signal.SIGCONT)
+playing.wait(60)
+"""
+
+
+@pytest.mark.parametrize('held_up', ['', 'held up'])
 def test_another_process_hears_the_first_message(
-    tmp_path: Path, messages: list[Stored], lab_env: dict[str, str]
+    tmp_path: Path, messages: list[Stored], lab_env: dict[str, str], held_up: str
 ) -> None:
     made.make_mcap(tmp_path / 'drive', messages)
     claim = domains.claim_domain()
@@ -306,8 +323,8 @@ def test_another_process_hears_the_first_message(
     try:
         assert hearer.stdout is not None
         assert hearer.stdout.readline() == 'ready\n'
-        play = "import labkit as lab\nlab.play('drive', rate=10).wait(60)"
-        done = subprocess.run([sys.executable, '-c', play], env=env, cwd=tmp_path, timeout=120)
+        play = [sys.executable, '-c', PLAY.format(held_up=held_up), str(hearer.pid)]
+        done = subprocess.run(play, env=env, cwd=tmp_path, timeout=120)
         assert done.returncode == 0
         out, _ = hearer.communicate(timeout=120)
     finally:

@@ -199,20 +199,12 @@ class Follows(Clause):
         Raises:
             Fail: It is not what belongs to them.
         """
-        rate = self._rate(evidence.probe, values)
-        topics, seconds = {self.topic: rate.msg_type}, max(LEAST_SEC, MESSAGES / rate.hz)
-        life = evidence.live(topics, seconds, [rate], nodes=[self.node])
-        if len(life.on(self.topic)) < FEW:
-            # So much too slow that the reason shows only later, such as a rate for a period.
-            seconds = max(LIFE_SEC, FEW * rate.hz)
-            life = evidence.live(topics, seconds, [rate], nodes=[self.node])
-        now = replace(evidence, life=life)
-        now.refuse_trouble(())
+        now = self._seen(evidence, values)
         try:
             self._fit(now, values)
         except Fail as fail:
             expected = f'with {_show(values)}: {fail.expected}'
-            if before == values or not self._is_as_before(now, before):
+            if before == values or not self._is_as_before(evidence, before):
                 raise Fail(expected, fail.seen, why=fail.why, todo=fail.todo) from None
             raise Fail(
                 expected,
@@ -224,6 +216,19 @@ class Follows(Clause):
                 'anew each time.',
             ) from None
 
+    def _seen(self, evidence: Evidence, values: Values) -> Evidence:
+        """Let time pass as exactly as the rate needs it that belongs to these values."""
+        rate = self._rate(evidence.probe, values)
+        topics, seconds = {self.topic: rate.msg_type}, max(LEAST_SEC, MESSAGES / rate.hz)
+        life = evidence.live(topics, seconds, [rate], nodes=[self.node])
+        if len(life.on(self.topic)) < FEW:
+            # So much too slow that the reason shows only later, such as a rate for a period.
+            seconds = max(LIFE_SEC, FEW * rate.hz)
+            life = evidence.live(topics, seconds, [rate], nodes=[self.node])
+        now = replace(evidence, life=life)
+        now.refuse_trouble(())
+        return now
+
     def _rate(self, probe: Probe, values: Values) -> Publishes:
         msg_type = probe.scope.publishes[self.topic]
         return Publishes(self.topic, self.hz(values), msg_type, by=self.node)
@@ -233,9 +238,9 @@ class Follows(Clause):
         self.rule(values, evidence.streams[self.topic, self.node])
 
     def _is_as_before(self, evidence: Evidence, before: Values) -> bool:
-        """Tell whether what was published belongs to the values before the change."""
+        """Tell whether what is published belongs to the values before the change."""
         try:
-            self._fit(evidence, before)
+            self._fit(self._seen(evidence, before), before)
         except (Fail, ArithmeticError):
             return False
         return True
