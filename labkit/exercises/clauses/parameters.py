@@ -28,6 +28,8 @@ Values = Mapping[str, Any]
 MESSAGES, LEAST_SEC = 12, 3.0
 # Fewer than that do not tell a rate.
 FEW = 6
+# What comes so slowly is looked at in steps of this rate, Hz.
+SLOW_HZ = 2.0
 # What rclpy says where a callback does not return a SetParametersResult (rclpy/node.py).
 INVALID = 'Callback returned an invalid type'
 LOOK_ONLY = (
@@ -223,8 +225,8 @@ class Follows(Clause):
         life = evidence.live(topics, seconds, [rate], nodes=[self.node])
         if len(life.on(self.topic)) < FEW:
             # So much too slow that the reason shows only later, such as a rate for a period.
-            seconds = max(LIFE_SEC, FEW * rate.hz)
-            life = evidence.live(topics, seconds, [rate], nodes=[self.node])
+            seconds, slow = max(LIFE_SEC, FEW * rate.hz), replace(rate, hz=min(rate.hz, SLOW_HZ))
+            life = evidence.live(topics, seconds, [slow], nodes=[self.node])
         now = replace(evidence, life=life)
         now.refuse_trouble(())
         return now
