@@ -38,7 +38,7 @@ from labkit.background.console import Console
 from labkit.background.nodes import NodeEntry
 from labkit.errors import LabError
 
-__all__ = ['BackgroundExecutor']
+__all__ = ['BackgroundExecutor', 'callback_name']
 
 # While nothing happens in ROS, a condition that depends on something else is looked at this often.
 POLL_SEC = 0.05
@@ -285,12 +285,12 @@ class BackgroundExecutor(SingleThreadedExecutor):
         running = self._running
         if running is None or not self.in_callback():
             return None
-        return running[0], _callback_name(running[1])
+        return running[0], callback_name(running[1])
 
     def running_callback(self) -> tuple[str, str] | None:
         """Return the node and the name of the callback that runs at this moment, or None."""
         running = self._running
-        return (running[0].name, _callback_name(running[1])) if running is not None else None
+        return (running[0].name, callback_name(running[1])) if running is not None else None
 
     # -- the background thread ------------------------------------------------------------------
 
@@ -367,7 +367,7 @@ class BackgroundExecutor(SingleThreadedExecutor):
             error = task.exception()
             # Not when the node was removed meanwhile: then the error is that it was.
             if error is not None and entry.node in self._entries:
-                self._console.show_error(entry.name, _callback_name(what), error)
+                self._console.show_error(entry.name, callback_name(what), error)
             entry.counts[entity] = entry.counts.get(entity, 0) + 1
             if entry.budget is not None:
                 entry.budget -= 1
@@ -389,6 +389,7 @@ def _is_timer(work: tuple[Any, Any, Any]) -> bool:
     return isinstance(work[1], Timer)
 
 
-def _callback_name(what: Any) -> str:
+def callback_name(what: Any) -> str:
+    """Return the name of a callback, or of that of a timer, a subscription or a service."""
     callback = getattr(what, 'callback', None) or what
     return getattr(callback, '__name__', None) or type(what).__name__

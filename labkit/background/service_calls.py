@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import threading
 import time
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rcl_interfaces.srv import ListParameters
 from rclpy.node import Node
 
 from labkit.background.compat import RCLError
 from labkit.background.discovery import soon
+from labkit.background.executor import callback_name
 from labkit.background.patience import answer_sec
+from labkit.background.runtime import runtime
 from labkit.errors import LabError, LabTimeout
 from labkit.rosgraph.interfaces import type_name
+
+if TYPE_CHECKING:
+    from labkit.background.console import CallbackError
 
 __all__ = ['ServiceCalls', 'call_node', 'wait_until_spun']
 
@@ -90,9 +95,11 @@ class ServiceCalls:
 
         Raises:
             LabTimeout: No answer came in time.
+            LabError: No answer will come: the callback of this notebook's that serves it failed.
         """
         done = threading.Event()
         futures: list[Any] = []
+        errors = self._errors()
 
         def ask() -> float:
             future = self._client.call_async(request)
@@ -104,16 +111,46 @@ class ServiceCalls:
         # In slices: between them the stop button is heard.
         while not done.wait(POLL_SEC):
             now = time.monotonic()
-            if timeout_sec is not None and now >= begun + timeout_sec:
+            try:
+                self._refuse_failed(errors)
+                self._refuse_late(now - begun, timeout_sec)
+            except LabError:
                 for future in futures:
                     future.cancel()
-                raise LabTimeout(
-                    f'{self.name} did not answer within {timeout_sec:g} s.',
-                    todo='Is the node that offers it spinning, and do its callbacks return?',
-                )
+                raise
             if again_sec is not None and now >= asked + again_sec:
                 asked = ask()
         return next(future.result() for future in futures if future.done())
+
+    def _errors(self) -> list[tuple[CallbackError, int]]:
+        """Return what callbacks of this notebook's that serve it have raised, and how often."""
+        callbacks = {
+            (entry.name, callback_name(service))
+            for entry in runtime.nodes()
+            for service in entry.node.services
+            if service.service_name == self.name
+        }
+        return [
+            (error, error.count)
+            for error in tuple(runtime.console.errors)
+            if (error.node_name, error.callback) in callbacks
+        ]
+
+    def _refuse_failed(self, before: list[tuple[CallbackError, int]]) -> None:
+        found = self._errors()
+        if found and found != before:
+            error = found[-1][0]
+            raise LabError(
+                f'{self.name} gives no answer: {error.callback} of {error.node_name} has failed.',
+                todo='Its error is shown above.',
+            )
+
+    def _refuse_late(self, seconds: float, timeout_sec: float | None) -> None:
+        if timeout_sec is not None and seconds >= timeout_sec:
+            raise LabTimeout(
+                f'{self.name} did not answer within {timeout_sec:g} s.',
+                todo='Is the node that offers it spinning, and do its callbacks return?',
+            )
 
 
 def call_node(node: Node, srv_type: Any, node_name: str, service: str, request: Any) -> Any:

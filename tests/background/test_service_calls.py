@@ -1,0 +1,77 @@
+"""Calls of services: asked again until an answer comes, and given up when none can come."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from std_srvs.srv import SetBool
+
+import labkit
+from labkit.background.parameters import set_parameters
+from labkit.background.runtime import runtime
+from labkit.background.service_calls import ServiceCalls
+from labkit.errors import LabError, LabTimeout
+
+
+class Lamp(Node):
+    """Switched on it fails, switched off it takes its time."""
+
+    def __init__(self) -> None:
+        super().__init__('lamp')
+        self.calls = 0
+        self.create_service(SetBool, 'switch', self.on_switch)
+        self.declare_parameter('volts', 12)
+        self.add_on_set_parameters_callback(self.on_set)
+
+    def on_switch(self, request: Any, response: Any) -> Any:
+        self.calls += 1
+        if request.data:
+            raise ValueError('no current')
+        time.sleep(0.3)
+        response.success = True
+        return response
+
+    def on_set(self, parameters: list[Any]) -> SetParametersResult:
+        raise ValueError('no current')
+
+
+@pytest.fixture
+def lamp() -> Iterator[Lamp]:
+    labkit.start()
+    yield labkit.spin(Lamp())
+    labkit.stop()
+
+
+def test_no_answer_is_waited_for_from_a_callback_that_has_failed(lamp: Lamp) -> None:
+    for _ in range(2):  # an error that is known is counted, not shown
+        with ServiceCalls(runtime.helper, SetBool, '/switch') as service:
+            service.wait_until_ready(60)
+            with pytest.raises(LabError, match='on_switch of /lamp has failed') as caught:
+                service.call(SetBool.Request(data=True), 60)
+            assert not isinstance(caught.value, LabTimeout)
+            assert service.call(SetBool.Request(data=False), 60).success
+    parameter = Parameter('volts', value=5).to_parameter_msg()
+    with pytest.raises(LabError, match='/lamp/set_parameters gives no answer'):
+        set_parameters(runtime.helper, '/lamp', [parameter])
+
+
+def test_what_may_be_done_twice_is_asked_again(lamp: Lamp) -> None:
+    with ServiceCalls(runtime.helper, SetBool, '/switch') as service:
+        service.wait_until_ready(60)
+        assert service.call(SetBool.Request(data=False), 60).success
+        assert lamp.calls == 1
+        assert service.call(SetBool.Request(data=False), 60, again_sec=0.1).success
+        labkit.wait_until(lambda: lamp.calls > 2, timeout_sec=60)
+
+
+def test_a_node_that_takes_too_long_is_told(lamp: Lamp) -> None:
+    with ServiceCalls(runtime.helper, SetBool, '/switch') as service:
+        service.wait_until_ready(60)
+        with pytest.raises(LabTimeout, match=r'/switch did not answer within 0\.1 s'):
+            service.call(SetBool.Request(data=False), 0.1)
