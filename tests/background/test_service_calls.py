@@ -48,9 +48,15 @@ def lamp() -> Iterator[Lamp]:
     labkit.stop()
 
 
-def test_no_answer_is_waited_for_from_a_callback_that_has_failed(lamp: Lamp) -> None:
+@pytest.fixture
+def asker(lamp: Lamp) -> Node:
+    assert runtime.helper is not None
+    return runtime.helper
+
+
+def test_no_answer_is_waited_for_from_a_callback_that_has_failed(lamp: Lamp, asker: Node) -> None:
     for _ in range(2):  # an error that is known is counted, not shown
-        with ServiceCalls(runtime.helper, SetBool, '/switch') as service:
+        with ServiceCalls(asker, SetBool, '/switch') as service:
             service.wait_until_ready(60)
             with pytest.raises(LabError, match='on_switch of /lamp has failed') as caught:
                 service.call(SetBool.Request(data=True), 60)
@@ -58,11 +64,11 @@ def test_no_answer_is_waited_for_from_a_callback_that_has_failed(lamp: Lamp) -> 
             assert service.call(SetBool.Request(data=False), 60).success
     parameter = Parameter('volts', value=5).to_parameter_msg()
     with pytest.raises(LabError, match='/lamp/set_parameters gives no answer'):
-        set_parameters(runtime.helper, '/lamp', [parameter])
+        set_parameters(asker, '/lamp', [parameter])
 
 
-def test_what_may_be_done_twice_is_asked_again(lamp: Lamp) -> None:
-    with ServiceCalls(runtime.helper, SetBool, '/switch') as service:
+def test_what_may_be_done_twice_is_asked_again(lamp: Lamp, asker: Node) -> None:
+    with ServiceCalls(asker, SetBool, '/switch') as service:
         service.wait_until_ready(60)
         assert service.call(SetBool.Request(data=False), 60).success
         assert lamp.calls == 1
@@ -70,8 +76,8 @@ def test_what_may_be_done_twice_is_asked_again(lamp: Lamp) -> None:
         labkit.wait_until(lambda: lamp.calls > 2, timeout_sec=60)
 
 
-def test_a_node_that_takes_too_long_is_told(lamp: Lamp) -> None:
-    with ServiceCalls(runtime.helper, SetBool, '/switch') as service:
+def test_a_node_that_takes_too_long_is_told(lamp: Lamp, asker: Node) -> None:
+    with ServiceCalls(asker, SetBool, '/switch') as service:
         service.wait_until_ready(60)
         with pytest.raises(LabTimeout, match=r'/switch did not answer within 0\.1 s'):
             service.call(SetBool.Request(data=False), 0.1)
