@@ -215,13 +215,18 @@ class _NoJumps(Clause):
 
 
 def _drive(middle: float) -> list[tuple[float, float]]:
-    """Return places of a drive with bends: steps of 5 cm to 40 cm, in all directions."""
-    x, y = middle + random.uniform(-1, 1), random.uniform(3, 9) * random.choice((-1, 1))
-    places = []
-    for _ in range(7):
-        places.append((x, y))
-        length, yaw = random.uniform(0.05, 0.4), random.uniform(-math.pi, math.pi)
-        x, y = x + length * math.cos(yaw), y + length * math.sin(yaw)
+    """Return places of a drive with bends, in all directions, and of a short jump at its end.
+
+    The sum of a step in x and in y is below the limit, too: who adds these is told so.
+    """
+    steps = [(random.uniform(0.05, 0.35), random.uniform(-math.pi, math.pi)) for _ in range(5)]
+    almost = random.uniform(0.44, 0.47), random.choice((0.0, math.pi)) + random.uniform(0.01, 0.04)
+    steps.insert(random.randint(1, len(steps)), almost)
+    steps.append((random.uniform(0.55, 0.6), random.uniform(-math.pi, math.pi)))
+    places = [(middle + random.uniform(-1, 1), random.uniform(3, 9) * random.choice((-1, 1)))]
+    for length, yaw in steps:
+        x, y = places[-1]
+        places.append((x + length * math.cos(yaw), y + length * math.sin(yaw)))
     return places
 
 
@@ -257,6 +262,11 @@ def _explain(ways: Sequence[_Way], before: float, now: float) -> tuple[str, str]
     def is_(value: float) -> bool:
         return abs(more - value) < NEAR
 
+    if is_(0.0) and before > NEAR:
+        return (
+            'Steps before this one were counted, and this one is not.',
+            f'Each step that is shorter than {JUMP} m counts.',
+        )
     if is_(0.0):
         return (
             'The sum does not grow although the robot moves.',
@@ -430,6 +440,16 @@ node.create_subscription(Odometry, '/odom', on_odometry, 10)
                 ),
             ),
             'The robot drives the diagonal of the two.',
+        ),
+        Wrong(
+            'a limit that is too high',
+            changed(_NODE, ('step < 0.5', 'step < 1.0')),
+            'The jump was counted',
+        ),
+        Wrong(
+            'a limit that is too low',
+            changed(_NODE, ('step < 0.5', 'step < 0.4')),
+            'Steps before this one were counted, and this one is not.',
         ),
         Wrong(
             'no root',
