@@ -15,13 +15,22 @@ from labkit.sim.kinematics import Motion, Pose, Twist2
 SIDE, TURN, REST = Twist2(0.2, 0.0), Twist2(0.0, math.pi / 2), Twist2(0.0, 0.0)
 
 
-def driven(third_side: int, held_up: float, *, exact: bool = False) -> Drive:
+def driven(
+    third_side: int = 20,
+    held_up: float = 0.0,
+    *,
+    exact: bool = False,
+    usual: float = 0.1,
+    late_by: float = 0.0,
+) -> Drive:
     """Return a drive round a square.
 
     Args:
         third_side: How many commands the third side has; 20 are right.
         held_up: How much longer than 0.1 s the last of them was obeyed, s.
         exact: Whether time was virtual, so that nothing can be held up.
+        usual: How long a command is obeyed, s,
+        late_by: and two of three for so much longer.
     """
     found = Drive(poses=[(0.0, Pose(0.0, 0.0, 0.0))], exact=exact, margin=0.25)
     time, pose = 0.0, Pose(0.0, 0.0, 0.0)
@@ -29,6 +38,7 @@ def driven(third_side: int, held_up: float, *, exact: bool = False) -> Drive:
         steps = [SIDE] * (third_side if side == 2 else 20) + [TURN] * 10
         for number, twist in enumerate([*steps, REST] if side == 3 else steps):
             late = held_up if side == 2 and number == third_side - 1 else 0.0
+            late += usual - 0.1 + (late_by if number % 3 else 0.0)
             found.commands.append(Command(time, (twist.v, 0.0, 0.0, 0.0, 0.0, twist.w)))
             for _ in range(10):
                 pose = Motion(pose, twist).pose_at((0.1 + late) / 10)
@@ -60,6 +70,18 @@ def test_same_drive_fails_where_the_commands_ask_for_it() -> None:
 def test_drive_far_off_fails_whatever_was_commanded() -> None:
     with pytest.raises(Fail):
         judge(driven(third_side=20, held_up=1.5))
+
+
+def test_commands_that_a_busy_computer_holds_up_all_the_time_count_as_they_were_meant() -> None:
+    judge(driven(late_by=0.03))
+
+
+@pytest.mark.parametrize('usual', [0.115, 0.085])
+def test_a_thread_that_sleeps_too_long_fails_though_its_commands_are_those_of_a_square(
+    usual: float,
+) -> None:
+    with pytest.raises(Fail, match='corner|ends where it began'):
+        judge(driven(usual=usual))
 
 
 def test_drive_that_was_cut_is_not_judged_as_if_it_had_ended() -> None:

@@ -6,7 +6,7 @@ import math
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 from typing import NoReturn
 
 from labkit.exercises import Exercise, Fail, Solution, Style, Wrong, changed
@@ -34,6 +34,8 @@ SIDE = 0.4
 NEAR = 0.1
 # As long as that a command counts, s.
 STEP_SEC = 0.1
+# How far the shortest pauses of a thread may be off 0.1 s, as a part of it.
+SLEEP_TOLERANCE = 0.03
 # Seen from the start: x ahead, y to the left, m.
 CORNERS = ((0.0, 0.0), (SIDE, 0.0), (SIDE, SIDE), (0.0, SIDE), (0.0, 0.0))
 SECONDS = 22.0
@@ -136,8 +138,7 @@ class _Sides(DriveClause):
     def look(self, found: Drive) -> None:
         if not found.commands:
             return
-        path = _from_start(found)
-        near_enough = _near_enough(found)
+        path, near_enough = _path(found), _near_enough(found)
         after = 0
         for number, corner in enumerate(CORNERS[1:], start=1):
             near = [
@@ -176,7 +177,7 @@ class _Closes(DriveClause):
         look_at_time(found, SECONDS)
         if not found.commands or found.cut:
             return
-        end = _from_start(found)[-1]
+        end = _path(found)[-1]
         away = math.dist(end, CORNERS[-1])
         if away <= _near_enough(found) and _rounds(found) < 1.5:
             return
@@ -226,21 +227,38 @@ def _refuse_corner(found: Drive, path: Sequence[Point], number: int, corner: Poi
     )
 
 
-def _near_enough(found: Drive) -> float:
-    """Return how far it may be off, m.
+def _path(found: Drive) -> list[Point]:
+    """Return the path that counts, seen from the start.
 
-    In real time a busy computer holds commands up. Then what was commanded counts, and the drive
-    may be off twice as far.
+    In real time a busy computer holds commands up, and the robot drives and turns too far. Then
+    what was commanded counts, if the node means to send it ten times a second: a thread may sleep
+    longer than it was told to, and never shorter.
     """
+    gaps = sorted(found.gaps)
+    meant = gaps[len(gaps) // 10] if gaps else 0.0
+    if found.exact or abs(meant / STEP_SEC - 1.0) > SLEEP_TOLERANCE:
+        return _from_start(found)
+    commanded = _as_commanded(found, longest=STEP_SEC + found.margin)
+    return commanded if _is_square(commanded) else _from_start(found)
+
+
+def _near_enough(found: Drive) -> float:
+    """Return how far it may be off, m; in real time twice as far, see `_path`."""
     return NEAR if found.exact or not _is_square(_as_commanded(found)) else 2 * NEAR
 
 
-def _as_commanded(found: Drive) -> list[Point]:
-    """Return the path of a robot that obeys each command for 0.1 s, seen from the start."""
+def _as_commanded(found: Drive, longest: float = math.inf) -> list[Point]:
+    """Return the path of a robot that obeys each command for 0.1 s, seen from the start.
+
+    Args:
+        found: The drive.
+        longest: After which time a command was meant to be obeyed for longer, s.
+    """
     pose = Pose(0.0, 0.0, 0.0)
     path = [(pose.x, pose.y)]
-    for command in found.commands:
-        pose = Motion(pose, command.twist).pose_at(STEP_SEC)
+    for command, later in zip_longest(found.commands, found.commands[1:]):
+        gap = later.at - command.at if later is not None else 0.0
+        pose = Motion(pose, command.twist).pose_at(gap if gap > longest else STEP_SEC)
         path.append((pose.x, pose.y))
     return path
 
