@@ -80,7 +80,7 @@ def test_commands_that_a_busy_computer_holds_up_all_the_time_count_as_they_were_
 def test_a_thread_that_sleeps_too_long_fails_though_its_commands_are_those_of_a_square(
     usual: float,
 ) -> None:
-    with pytest.raises(Fail, match='corner|ends where it began'):
+    with pytest.raises(Fail, match=r'corner|ends where it began'):
         judge(driven(usual=usual))
 
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NoReturn
 
+from labkit.background.patience import busyness
 from labkit.exercises import Fail, Probe, expect
 from labkit.exercises.clauses import Clause, Evidence
 from labkit.exercises.clauses.base import naming
@@ -16,6 +17,7 @@ from labkit.lessons.turtlebot.robot import find_robot
 from labkit.lessons.turtlebot.trials import Trial, Trials
 
 __all__ = [
+    'SLEEP_TOLERANCE',
     'Begins',
     'DriveClause',
     'Hears',
@@ -33,6 +35,8 @@ BEGIN_REAL_SEC = 1.0
 # How far a rate may be off, as a part of it; where time is real, it depends on the machine, too.
 TOLERANCE = 0.02
 REAL_TOLERANCE = 0.2
+# How far the shortest sleeps of a thread may be off 0.1 s, as a part of it.
+SLEEP_TOLERANCE = 0.03
 # How far one gap between two commands may be off.
 GAP_TOLERANCE = 0.5
 # What no robot of this kind can do, m/s and rad/s; degrees for radians are beyond it.
@@ -265,6 +269,8 @@ class Rate(DriveClause):
                 todo='One command each time that the timer of 0.1 s calls.',
             )
         period = found.period
+        if not found.exact and busyness() > 1 and abs(found.meant / 0.1 - 1) < SLEEP_TOLERANCE:
+            period = found.meant
         tolerance = TOLERANCE if found.exact else REAL_TOLERANCE
         if found.exact and short:
             # A time that is known to a tick tells a rate less exactly when a drive is short.

@@ -170,6 +170,16 @@ class Drive:
         # Without pauses, as between the sides of a square.
         return statistics.mean(gap for gap in gaps if gap <= 1.5 * usual) if gaps else 0.0
 
+    @property
+    def meant(self) -> float:
+        """The time from one command to the next where nothing was held up, s; 0 if too few.
+
+        A thread may sleep longer than it was told to, on a busy machine much longer, and never
+        shorter.
+        """
+        gaps = sorted(self.gaps)
+        return gaps[len(gaps) // 10] if gaps else 0.0
+
     def way(self) -> float:
         """Return how far it drove, m."""
         return sum(math.dist(a[1][:2], b[1][:2]) for a, b in pairwise(self.poses))

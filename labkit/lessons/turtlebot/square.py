@@ -12,6 +12,7 @@ from typing import NoReturn
 from labkit.exercises import Exercise, Fail, Solution, Style, Wrong, changed
 from labkit.lessons._script import in_process
 from labkit.lessons.turtlebot.clauses import (
+    SLEEP_TOLERANCE,
     Begins,
     DriveClause,
     Rate,
@@ -34,8 +35,6 @@ SIDE = 0.4
 NEAR = 0.1
 # As long as that a command counts, s.
 STEP_SEC = 0.1
-# How far the shortest pauses of a thread may be off 0.1 s, as a part of it.
-SLEEP_TOLERANCE = 0.03
 # Seen from the start: x ahead, y to the left, m.
 CORNERS = ((0.0, 0.0), (SIDE, 0.0), (SIDE, SIDE), (0.0, SIDE), (0.0, 0.0))
 SECONDS = 22.0
@@ -231,12 +230,9 @@ def _path(found: Drive) -> list[Point]:
     """Return the path that counts, seen from the start.
 
     In real time a busy computer holds commands up, and the robot drives and turns too far. Then
-    what was commanded counts, if the node means to send it ten times a second: a thread may sleep
-    longer than it was told to, and never shorter.
+    what was commanded counts, if the node means to send it ten times a second.
     """
-    gaps = sorted(found.gaps)
-    meant = gaps[len(gaps) // 10] if gaps else 0.0
-    if found.exact or abs(meant / STEP_SEC - 1.0) > SLEEP_TOLERANCE:
+    if found.exact or abs(found.meant / STEP_SEC - 1.0) > SLEEP_TOLERANCE:
         return _from_start(found)
     commanded = _as_commanded(found, longest=STEP_SEC + found.margin)
     return commanded if _is_square(commanded) else _from_start(found)
