@@ -125,19 +125,24 @@ class Process:
         """Return the last lines that it has printed, oldest first."""
         return list(self._lines)
 
+    @property
+    def pids(self) -> set[int]:
+        """Return the ids of what runs in it, at most 65535 each as in a GUID."""
+        import psutil  # type: ignore[import-untyped]
+
+        try:
+            children = psutil.Process(self._supervisor.pid).children(recursive=True)
+        except psutil.NoSuchProcess:
+            return set()
+        return {child.pid & 0xFFFF for child in children}
+
     def owns(self, gid: bytes) -> bool:
         """Tell whether an endpoint is its own.
 
         Args:
             gid: The endpoint's GUID, as the graph gives it.
         """
-        import psutil  # type: ignore[import-untyped]
-
-        try:
-            children = psutil.Process(self._supervisor.pid).children(recursive=True)
-        except psutil.NoSuchProcess:
-            return False
-        return process_id(gid) in {child.pid & 0xFFFF for child in children}
+        return process_id(gid) in self.pids
 
     def show_output(self) -> None:
         """Show what it has printed, and from now on prints, under the cell that started it."""

@@ -36,14 +36,12 @@ _YOUNG_SEC = 5.0
 _STARTING_CPU_SEC = 4.0
 
 
-def starting_children(
-    gids: Collection[bytes], others: Collection[bytes] = ()
-) -> tuple[bool, bool]:
+def starting_children(gids: Collection[bytes], others: Collection[int] = ()) -> tuple[bool, bool]:
     """Tell whether this process has lately started others, whose nodes may be about to appear.
 
     Args:
         gids: Global ids of endpoints that are in the graph.
-        others: Those of processes that are not asked for.
+        others: Ids of processes that are known to have all that they make, see `Process.pids`.
 
     Returns:
         Whether one of them has nothing in the graph yet, and whether one has: what else it makes
@@ -52,7 +50,6 @@ def starting_children(
     import psutil  # type: ignore[import-untyped]
 
     appeared = {process_id(gid) for gid in gids}
-    ignored = {process_id(gid) for gid in others}
     oldest = time.time() - _YOUNG_SEC * busyness()
 
     def is_starting(child: psutil.Process) -> bool:
@@ -69,7 +66,7 @@ def starting_children(
     found = set()
     for child in psutil.Process().children(recursive=True):
         try:
-            if child.pid & 0xFFFF not in ignored and is_starting(child):
+            if child.pid & 0xFFFF not in others and is_starting(child):
                 found.add(child.pid & 0xFFFF in appeared)
         except psutil.NoSuchProcess:
             continue

@@ -41,6 +41,8 @@ POLL_SEC = 0.002
 # after so long, s: some node may publish on the topic in real time, without a pause.
 QUIET_SEC = 0.1
 LATE_SEC = 1.0
+# A test has the time at which it was sent, but for rounding, s.
+SAME_SEC = 1e-6
 # So many messages of another process may be on their way at once.
 ON_THE_WAY = 2
 
@@ -89,6 +91,7 @@ class Life:
         tick: How exactly times of these are known, s,
         fine_sec: for so long, s;
         rest: and how exactly at least afterwards, s.
+        ended: When it ended, in seconds of real time.
         error: What a callback of the learner's has raised, if one has: then time stopped there.
     """
 
@@ -102,11 +105,33 @@ class Life:
     tick: float = 0.0
     fine_sec: float = math.inf
     rest: float = 0.0
+    ended: float = math.inf
     error: LearnerError | None = None
 
     def on(self, topic: str) -> list[Sample]:
         """Return the messages of a topic."""
         return self.samples.get(topic, [])
+
+    def is_due(self, topic: str, sample: Sample, within: float) -> bool:
+        """Tell whether what is to be said upon a message must have come before the end.
+
+        A message of another process, whose time is real, may have been on its way to the node
+        when this ended, though it was published long before in virtual time.
+
+        Args:
+            topic: Its topic.
+            sample: The message.
+            within: How soon it is to be said, s of virtual time.
+        """
+        late = sample.stamp > self.ended - LATE_SEC and not self.is_known(topic, sample)
+        return not late and sample.at < self.seconds - within
+
+    def is_known(self, topic: str, sample: Sample) -> bool:
+        """Tell whether it is known exactly when a message came: not if a stranger has sent it."""
+        if not self.strangers.get(topic):
+            return True
+        tests = [sent.at for sent in self.sent if sent.topic == topic]
+        return any(abs(sample.at - at) < SAME_SEC for at in tests)
 
     def without_strangers(
         self, topic: str, extra: Sequence[tuple[float, Any]], known: Collection[Any]
@@ -203,7 +228,7 @@ def live(
                 course.wait_for_late_ones()
         except LearnerError as error:
             life.error = error
-        life.seconds = passing.seconds
+        life.seconds, life.ended = passing.seconds, time.time()
         life.flooded, life.hanging = passing.flooded, passing.hanging
     probe.note_output(life.seconds, said)
     starts = [real for real, _ in moments]

@@ -139,19 +139,18 @@ class Probe:
         return busyness() * (PROCESS_GRACE_SEC if new else ENDPOINT_GRACE_SEC if known else 0.0)
 
     def _starting(self) -> tuple[bool, bool]:
-        """Tell whether something was started lately that is not, or is, in the graph yet.
-
-        Processes of the lesson's own nodes are left out.
-        """
+        """Tell whether something was started lately that is not, or is, in the graph yet."""
         if os.environ.get('ROS_AUTOMATIC_DISCOVERY_RANGE') == 'OFF':
             return False, False
-        # Every node publishes there.
-        infos = self.node.get_publishers_info_by_topic('/parameter_events')
+        from labkit.background.child_processes import processes
         from labkit.background.children import starting_children
 
-        gids = {bytes(info.endpoint_gid): _full_name(info) for info in infos}
-        lessons = [gid for gid, name in gids.items() if is_given(name, self.scope)]
-        new, known = starting_children(gids.keys(), lessons)
+        # Every node publishes there.
+        infos = self.node.get_publishers_info_by_topic('/parameter_events')
+        # Those of the lesson say which nodes they have.
+        settled = [process.pids for process in processes() if process.announced is not None]
+        gids = {bytes(info.endpoint_gid) for info in infos}
+        new, known = starting_children(gids, set().union(*settled))
         return self._fresh or new or self._is_half_seen(), known
 
     def _is_half_seen(self) -> bool:
@@ -370,10 +369,6 @@ class Probe:
                 f'it runs {self.place(endpoint)}',
                 todo='End it there, start it here, and check again.',
             )
-
-
-def _full_name(info: Any) -> str:
-    return f'{info.node_namespace.rstrip("/")}/{info.node_name}'
 
 
 def _interrupt(gid: bytes) -> bool:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from labkit.exercises.life import ON_THE_WAY, Life, _Course
+from labkit.exercises.life import ON_THE_WAY, Life, Sent, _Course
+from labkit.exercises.watch import Sample
 
 
 class Endless:
@@ -52,3 +54,15 @@ def test_what_is_said_more_often_than_others_speak_counts() -> None:
     life = Life(strangers={'/range': 1, '/other': 9})
     extra = [(float(number), f'odd {number}') for number in range(ON_THE_WAY + 1)]
     assert life.without_strangers('/range', extra, set()) == extra
+
+
+def test_a_message_of_a_stranger_may_be_on_its_way_when_it_ends() -> None:
+    sent = Sent(2.0, '/range', {})
+    life = Life(seconds=30.0, ended=1000.0, sent=[sent], strangers={'/range': 1})
+    test, stranger = (Sample(None, 999.9, 0, at) for at in (2.0, 3.0))
+    assert life.is_due('/range', test, 1.0)
+    assert not life.is_due('/range', stranger, 1.0)
+    assert life.is_due('/range', replace(stranger, stamp=990.0), 1.0)
+    life.strangers = {}
+    assert life.is_due('/range', stranger, 1.0)
+    assert not life.is_due('/range', replace(stranger, at=29.5), 1.0)

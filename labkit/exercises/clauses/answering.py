@@ -96,16 +96,17 @@ class Answers(Clause):
         """Judge the answers."""
         life = evidence.life
         heard = [(s.at, _get(s, self.field)) for s in life.on(self.inner)]
+        due = [life.is_due(self.inner, s, WITHIN_SEC) for s in life.on(self.inner)]
         came = [(s.at, _get(s, self.field)) for s in life.on(self.outer)]
         left = list(came)
         missing, late = [], []
-        for at, value in heard:
+        for (at, value), is_due in zip(heard, due, strict=True):
             right = self.answer(value)
             found = next((i for i, (t, v) in enumerate(left) if t >= at and v == right), None)
             if found is not None:
                 late.append((left[found][0] - at, at, value))
                 del left[found]
-            elif at < life.seconds - WITHIN_SEC:
+            elif is_due:
                 missing.append((at, value))
         repeated = self._repeats(heard, left) >= MANY and len(missing) < len(heard) / 2
         if missing and not repeated:
@@ -266,9 +267,12 @@ class Logs(Clause):
         """Judge the lines."""
         source = evidence.subscription(self.topic)
         lines = _lines_of(source.node, evidence.life.on('/rosout'))
-        heard = [(s.at, str(_get(s, self.field))) for s in evidence.life.on(self.topic)]
+        life, samples = evidence.life, evidence.life.on(self.topic)
+        heard = [(s.at, str(_get(s, self.field))) for s in samples]
         last = ''
         for number, (at, text) in enumerate(heard):
+            if not life.is_known(self.topic, samples[number]):
+                continue
             later = [t for t, _ in heard[number + 1 :] if t > at]
             end = min([at + WITHIN_SEC, *later])
             here = [line for t, line in lines if at <= t < end]

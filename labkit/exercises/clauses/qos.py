@@ -13,6 +13,7 @@ from labkit.exercises.expect.values import show
 from labkit.exercises.verdict import Fail, NotAttempted
 
 if TYPE_CHECKING:
+    from labkit.exercises.probe import Probe
     from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['Latched', 'Matches']
@@ -57,15 +58,27 @@ class Matches(Clause):
         if not given:
             raise NotAttempted(f'There is no node {self.node} of the lesson. {self.start}')
         pair = (mine, given[0]) if self.subscribes else (given[0], mine)
-        self._refuse_apart(mine, *pair)
+        try:
+            self._refuse_apart(mine, *pair)
+        except Fail:
+            probe = evidence.probe
+            if not probe.in_this_process(mine):
+                # Nodes of a process of their own come into the graph one after the other.
+                probe.wait_to_appear(lambda: len(self._ends(probe)) > len(given))
+                self._given(evidence)
+            raise
+
+    def _ends(self, probe: Probe) -> list[Endpoint]:
+        """Return what the node, or nodes, of that name have on the topic."""
+        from labkit.rosgraph.endpoints import publishers, subscriptions
+
+        ask = subscriptions if self.subscribes else publishers
+        return [end for end in ask(probe.node, self.topic) if end.node == self.node]
 
     def _given(self, evidence: Evidence) -> list[Endpoint]:
         """Return the end of the given node, if it is as the lesson has made it."""
-        from labkit.rosgraph.endpoints import publishers, subscriptions
-
         probe = evidence.probe
-        ask = subscriptions if self.subscribes else publishers
-        ends = [end for end in ask(probe.node, self.topic) if end.node == self.node]
+        ends = self._ends(probe)
         for end in ends:
             if not is_given(end.node, probe.scope) or not self.is_as_given(end.qos):
                 raise Fail(

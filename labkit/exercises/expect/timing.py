@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from labkit.background.patience import answer_sec
 from labkit.exercises.expect.endpoints import alone
 from labkit.exercises.probe import Probe
 from labkit.exercises.verdict import Fail, NotAttempted
@@ -187,7 +188,7 @@ def ends_with_node(probe: Probe, source: Endpoint) -> Watch:
     def gone() -> bool:
         return source.gid not in {endpoint.gid for endpoint in probe.publishers(source.topic)}
 
-    if not probe.wait(gone, END_SEC):
+    if not probe.wait(gone, answer_sec(END_SEC)):
         raise Fail(
             f'no publisher on {source.topic} once {source.node} has ended',
             f'{source.node} still publishes there',
@@ -238,7 +239,6 @@ def runs(probe: Probe, name: str) -> bool:
     node = probe.node_object(name)
     if node is not None:
         return node.executor is not None
-    from labkit.background.patience import answer_sec
     from labkit.background.service_calls import wait_until_spun
 
     service, asker = f'{name}/list_parameters', probe.spun_node

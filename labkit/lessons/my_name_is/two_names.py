@@ -116,13 +116,14 @@ class _EachAnswers(Clause):
         if often and 2 * sum(answers[text + name] > 0 for text, name in pairs) > len(pairs):
             self._refuse_more(evidence, list(answers.elements()), often=True)
         left = list(came)
-        for at, text in heard:
+        due = [life.is_due(INNER, sample, WITHIN_SEC) for sample in life.on(INNER)]
+        for (at, text), is_due in zip(heard, due, strict=True):
             for name in names or ['']:
                 answer = text + name if names else None
                 found = next((i for i, (t, v) in enumerate(left) if t >= at and v == answer), None)
                 if found is not None:
                     del left[found]
-                elif at < life.seconds - WITHIN_SEC:
+                elif is_due:
                     here = [v for t, v in came if at <= t < at + WITHIN_SEC]
                     _refuse(text, here, nodes)
         # The lesson's first stage says how a sentence begins, in a process of its own.
