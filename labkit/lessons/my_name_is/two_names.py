@@ -125,7 +125,8 @@ class _EachAnswers(Clause):
                     del left[found]
                 elif is_due:
                     here = [v for t, v in came if at <= t < at + WITHIN_SEC]
-                    _refuse(text, here, nodes)
+                    others = {t + name for t in texts if t != text for name in names}
+                    _refuse(text, [v for v in here if v not in others] or here, nodes)
         # The lesson's first stage says how a sentence begins, in a process of its own.
         known = {text + name for text in texts if text != OPENING for name in ['', *names]}
         late = [(at, text) for at, text in left if at >= WITHIN_SEC]
@@ -172,14 +173,16 @@ def _nodes(evidence: Evidence) -> list[str]:
 
 
 def _names(evidence: Evidence) -> list[str]:
-    """Return what was appended to the first text that was sent; none if that is not known."""
+    """Return what was appended to a text that was sent; none if that is not known."""
     life = evidence.life
-    start = next((sent.at for sent in life.sent if sent.topic == INNER), None)
-    if start is None:
-        return []
-    answers = [s.message.data for s in life.on(OUTER) if start <= s.at < start + WITHIN_SEC]
-    right = [text for text in answers if not any(name_trouble(OPENING, text))]
-    return [text.removeprefix(OPENING) for text in right][: len(_nodes(evidence))]
+    sent = [(sent.fields['data'], sent.at) for sent in life.sent if sent.topic == INNER]
+    found = []
+    # The lesson's first stage opens sentences, too, and each one may be answered just then.
+    for text, at in [*[pair for pair in sent if pair[0] != OPENING][:1], *sent[:1]]:
+        answers = [s.message.data for s in life.on(OUTER) if at <= s.at < at + WITHIN_SEC]
+        right = [answer for answer in answers if not any(name_trouble(text, answer))]
+        found.append([answer.removeprefix(text) for answer in right][: len(_nodes(evidence))])
+    return max(found, key=len, default=[])
 
 
 def _refuse(text: str, came: Sequence[str], nodes: Sequence[str]) -> NoReturn:
