@@ -295,6 +295,14 @@ class Refuses(Clause):
             return False
         tried = f'{_show(values)}, while it has {_show(keeps)}'
         expect.that(
+            complaint != INVALID,
+            expected=f'a reason why {self.node} refuses {tried}',
+            seen=f'what rclpy says: {complaint}',
+            why='The callback has not given back a SetParametersResult. Without "return" a '
+            'function gives back None.',
+            todo="End it with: return SetParametersResult(successful=False, reason='...')",
+        )
+        expect.that(
             complaint,
             expected=f'a reason why {self.node} refuses {tried}',
             seen='no reason',

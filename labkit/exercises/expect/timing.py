@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from labkit.background.patience import answer_sec
 from labkit.exercises.expect.endpoints import alone
 from labkit.exercises.probe import Probe
 from labkit.exercises.verdict import Fail, NotAttempted
@@ -182,6 +181,8 @@ def ends_with_node(probe: Probe, source: Endpoint) -> Watch:
     Raises:
         Fail: The topic still has that publisher, or messages.
     """
+    from labkit.background.patience import answer_sec
+
     watch = messages(probe, source, count=1)
     probe.stop_node(source)
 
@@ -239,6 +240,7 @@ def runs(probe: Probe, name: str) -> bool:
     node = probe.node_object(name)
     if node is not None:
         return node.executor is not None
+    from labkit.background.patience import answer_sec
     from labkit.background.service_calls import wait_until_spun
 
     service, asker = f'{name}/list_parameters', probe.spun_node

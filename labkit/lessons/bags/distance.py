@@ -215,19 +215,20 @@ class _NoJumps(Clause):
 
 
 def _drive(middle: float) -> list[tuple[float, float]]:
-    """Return places of a drive with bends, in all directions, and of a short jump at its end.
+    """Return places of a drive with bends, in all directions, and of the shortest jump at its end.
 
     The sum of a step in x and in y is below the limit, too: who adds these is told so.
     """
     steps = [(random.uniform(0.05, 0.35), random.uniform(-math.pi, math.pi)) for _ in range(5)]
     almost = random.uniform(0.44, 0.47), random.choice((0.0, math.pi)) + random.uniform(0.01, 0.04)
     steps.insert(random.randint(1, len(steps)), almost)
-    steps.append((random.uniform(0.55, 0.6), random.uniform(-math.pi, math.pi)))
     places = [(middle + random.uniform(-1, 1), random.uniform(3, 9) * random.choice((-1, 1)))]
     for length, yaw in steps:
         x, y = places[-1]
         places.append((x + length * math.cos(yaw), y + length * math.sin(yaw)))
-    return places
+    # So that its length is exactly that of the limit.
+    x, y = (round(1024 * value) / 1024 for value in places[-1])
+    return [*places[:-1], (x, y), (x + random.choice((-JUMP, JUMP)), y)]
 
 
 def _ways(samples: Sequence[Sample]) -> list[_Way]:

@@ -266,6 +266,18 @@ pilot = Exercise(
             'Whoever has set the value knows now that it is wrong, and not why.',
         ),
         Wrong(
+            'refuses with nothing',
+            changed(
+                _PILOT,
+                (
+                    '        return SetParametersResult('
+                    "successful=False, reason='speed must be from 0.0 to limit')\n",
+                    '',
+                ),
+            ),
+            'The callback has not given back a SetParametersResult.',
+        ),
+        Wrong(
             'drives backwards',
             changed(_PILOT, ('if 0.0 <= values', 'if values')),
             'Some values are refused, and this one is not.',

@@ -97,7 +97,8 @@ def _message(wish: bool) -> str:
 
 
 def _draw() -> list[bool]:
-    return [True, False, *random.choices([True, False], k=6)]
+    # More than ten: some nodes have had enough then.
+    return [True, False, *random.choices([True, False], k=10)]
 
 
 @dataclass(frozen=True)
@@ -303,6 +304,19 @@ porter = Exercise(
             'await in one callback group',
             changed(_PORTER, (_CALLBACK, _AWAIT)),
             'So it waits for ever: a deadlock.',
+        ),
+        Wrong(
+            'has had enough after ten',
+            changed(
+                _PORTER,
+                (
+                    '    def on_wish(self, msg):\n',
+                    '    def on_wish(self, msg):\n'
+                    "        self.wishes = getattr(self, 'wishes', 0) + 1\n"
+                    '        if self.wishes > 10:\n            return\n',
+                ),
+            ),
+            'Some messages lead to a call, and others do not.',
         ),
         Wrong(
             'does not wait at all',

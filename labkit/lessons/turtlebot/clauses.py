@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NoReturn
 
-from labkit.background.patience import busyness
 from labkit.exercises import Fail, Probe, expect
 from labkit.exercises.clauses import Clause, Evidence
 from labkit.exercises.clauses.base import naming
@@ -268,6 +267,8 @@ class Rate(DriveClause):
                 'twice?',
                 todo='One command each time that the timer of 0.1 s calls.',
             )
+        from labkit.background.patience import busyness
+
         period = found.period
         if not found.exact and busyness() > 1 and abs(found.meant / 0.1 - 1) < SLEEP_TOLERANCE:
             period = found.meant
