@@ -243,13 +243,18 @@ class Playing(Session):
                     )
                 if limit is None or limit > 0:
                     self._changed.wait(limit)
-            self._tick()
-        self._tick()
+            self._tick(sec)
+        self._tick(sec)
         return None
 
-    def _tick(self) -> None:
+    def _tick(self, next_sec: float) -> None:
+        """Say the time, if it is time to: no later one than that of the next message.
+
+        Who was held up goes on from that message. Time would go back then.
+        """
         if self._clock is not None:
-            self._clock.publish(self.bag.start_ns + round(self.position_sec * 1e9))
+            sec = min(self.position_sec, next_sec)
+            self._clock.publish(self.bag.start_ns + round(sec * 1e9))
 
     def _publish(self, message: BagMessage) -> None:
         name, publisher = self._publishers[message.topic, message.msg_type]
