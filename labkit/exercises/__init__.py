@@ -104,7 +104,7 @@ still meanwhile. Rules of thumb:
   names nodes that these cells leave running, with the ids of the cells: they are never the
   learner's, and a node of that name that another cell has made is.
 - A second publisher on a topic in `publishes` is a FAIL, whenever it comes, unless the topic is
-  in `shared`, too.
+  in `shared`, too. A publisher with best effort is one on a topic in `reliable`.
 - For what is done once, before the check (`ros2 topic pub --once`), `records=['/odds']` records
   from the setup cell on: `probe.recorded['/odds']`. A recorder is a subscription, so it is counted
   by `ros2 topic info` and by publishers that wait.

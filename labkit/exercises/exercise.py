@@ -113,6 +113,8 @@ class Exercise:
         nodes: Full names of nodes that the task asks for.
         shared: Topics on which others may publish too. On all others in `publishes` a second
             publisher is a fault, whenever it comes.
+        reliable: Topics on which those who listen ask for reliable delivery, as the robot does:
+            they hear nothing of a publisher with best effort.
         hints: From a nudge to nearly the answer.
         answer: The solution that is shown.
         styles: The solution in other styles, for the tests.
@@ -139,6 +141,7 @@ class Exercise:
     serves: Mapping[str, str] = field(default_factory=dict)
     nodes: Sequence[str] = ()
     shared: Sequence[str] = ()
+    reliable: Sequence[str] = ()
     styles: Sequence[Style] = ()
     wrong: Sequence[Wrong] = ()
     given: Mapping[str, str] = field(default_factory=dict)
@@ -155,6 +158,7 @@ class Exercise:
             serves=self.serves,
             nodes=tuple(self.nodes),
             shared=frozenset(self.shared),
+            reliable=frozenset(self.reliable),
             given=self.given,
         )
         self.scope = replace(self.scope, known=frozenset(self.scope.topics))

@@ -29,6 +29,7 @@ class Scope:
         serves: Services that they offer, with their types.
         nodes: Full names of nodes that the task asks for.
         shared: Topics on which others may publish too.
+        reliable: Topics on which those who listen ask for reliable delivery, as the robot does.
         given: Full names of nodes that the lesson itself leaves running, and the ids of the cells
             that make them. A node of such a name that another cell has made is the learner's.
         known: All topics of the lesson. What the learner does on others has a wrong name.
@@ -41,6 +42,7 @@ class Scope:
     serves: Mapping[str, str] = field(default_factory=dict)
     nodes: tuple[str, ...] = ()
     shared: frozenset[str] = frozenset()
+    reliable: frozenset[str] = frozenset()
     given: Mapping[str, str] = field(default_factory=dict)
     known: frozenset[str] = frozenset()
     earlier: frozenset[Role] = frozenset()

@@ -23,16 +23,18 @@ from labkit.background.runtime import remove, runtime
 _before: weakref.WeakSet[Node] = weakref.WeakSet()
 _foreign_before: set[str] = set()
 _children_before: set[int] = set()
+_files_before: set[Path] = set()
 _names_before: dict[str, Any] = {}
 _scripts: list[subprocess.Popen[bytes]] = []
 
 
 def mark() -> None:
-    """Remember which nodes, processes and names belong to the lesson itself."""
+    """Remember which nodes, processes, files and names belong to the lesson itself."""
     gc.collect()  # a process that has ended is an attempt as long as there is an object of it
     _before.update(existing_nodes())
     _foreign_before.update(runtime.foreign_nodes())
     _children_before.update(child.pid for child in _children())
+    _files_before.update(_files())
     _names_before.clear()
     _names_before.update(_names())
 
@@ -50,7 +52,10 @@ def run_script(code: str) -> None:
 
 
 def clean() -> None:
-    """End the processes and nodes that an answer has left behind, and wait until they are gone."""
+    """End the processes and nodes that an answer has left behind, and wait until they are gone.
+
+    Files that it has written are removed, so that the next one has to write its own.
+    """
     processes = [child for child in _children() if child.pid not in _children_before]
     for process in processes:
         with contextlib.suppress(psutil.NoSuchProcess):
@@ -66,6 +71,8 @@ def clean() -> None:
         if node not in _before and node is not runtime.helper:
             remove(node)
     runtime.wait(_alone, 25.0)
+    for path in sorted(_files() - _files_before, reverse=True):
+        path.rmdir() if path.is_dir() else path.unlink()
 
 
 def forget_names() -> None:
@@ -98,6 +105,11 @@ def _names() -> dict[str, Any]:
     """Return what cells have defined; IPython's own names begin with `_`, or are its tools."""
     names = get_ipython().user_ns
     return {name: value for name, value in names.items() if name.isidentifier() and name[0] != '_'}
+
+
+def _files() -> set[Path]:
+    """Return the files and folders beside the notebook; the hidden ones are not an answer's."""
+    return {path for path in Path().rglob('[!.]*') if not path.parts[0].startswith('.')}
 
 
 def _alone() -> bool:

@@ -59,7 +59,7 @@ def test_verdict(
 ) -> None:
     found = findings_of(lesson)[state.exercise, state.name]
     assert found.outcome is state.outcome, found.text
-    assert ' '.join(state.says.split()) in found.text
+    assert ' '.join(state.says.split()) in found.text, found.text
     record_property('check_sec', found.seconds)
 
 

@@ -269,7 +269,7 @@ class Logs(Clause):
         lines = _lines_of(source.node, evidence.life.on('/rosout'))
         life, samples = evidence.life, evidence.life.on(self.topic)
         heard = [(s.at, str(_get(s, self.field))) for s in samples]
-        last = ''
+        known = [line for _, line in lines if any(text and text in line for _, text in heard)]
         for number, (at, text) in enumerate(heard):
             if not life.is_known(self.topic, samples[number]):
                 continue
@@ -279,7 +279,7 @@ class Logs(Clause):
             same = [t for t, other in heard if at <= t < end and other == text]
             holding = [line for line in here if text in line]
             if len(holding) < len(same):
-                self._refuse(evidence, text, here, bool(last))
+                self._refuse(evidence, text, here, bool(known))
             if len(holding) > len(same):
                 raise Fail(
                     f'one line of {source.node} for each message on {self.topic}',
@@ -287,11 +287,9 @@ class Logs(Clause):
                     why='The same message is logged more than once.',
                     todo='Call get_logger().info(...) once in the callback.',
                 )
-            last = holding[0]
         silent = [
             (t, line) for t, line in lines if not any(a <= t < a + WITHIN_SEC for a, _ in heard)
         ]
-        known = [line for _, line in lines if any(text in line for _, text in heard)]
         quiet = [line for _, line in evidence.life.without_strangers(self.topic, silent, known)]
         if quiet:
             raise Fail(
@@ -309,8 +307,8 @@ class Logs(Clause):
         why = 'The callback runs, but its line does not hold what the message says.'
         if not here:
             why = (
-                'The callback does not log. print() shows a text here; the logger also tells all '
-                'other nodes of it.'
+                'The callback does not log it. print() shows a text here; the logger also tells '
+                'all other nodes of it.'
             )
         if some and not here:
             why = 'Some messages are logged as they came, and this one is not.'

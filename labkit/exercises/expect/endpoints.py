@@ -185,6 +185,8 @@ def _find(
             _refuse_type(endpoint, kind, msg_type)
         if kind == SUBSCRIPTION:
             _refuse_qos(endpoint, deadline_sec)
+        elif topic in probe.scope.reliable:
+            _refuse_best_effort(endpoint)
     return matching()[0]
 
 
@@ -233,6 +235,21 @@ def _refuse_qos(subscription: Endpoint, deadline_sec: float) -> None:
             'nobody says so.',
             todo='Ask for less in the profile of the subscription. A number alone, the depth, '
             'asks for what is usual.',
+        )
+
+
+def _refuse_best_effort(publisher: Endpoint) -> None:
+    """Raise Fail if who asks for reliable delivery hears nothing of a publisher."""
+    from rclpy.qos import ReliabilityPolicy
+
+    if publisher.qos.reliability == ReliabilityPolicy.BEST_EFFORT:
+        raise Fail(
+            f'a publisher on {publisher.topic} that a usual subscription hears, as the robot has '
+            'one',
+            f'{publisher.node} offers best effort, and who listens there asks for reliable',
+            why='A publisher offers, and a subscription asks. Where it asks for more than is '
+            'offered, no message passes.',
+            todo='Offer reliable delivery. A number alone, the depth, offers it.',
         )
 
 

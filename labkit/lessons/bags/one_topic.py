@@ -193,7 +193,8 @@ shutil.rmtree('bags/temperature', ignore_errors=True)
         ),
         Wrong(
             'the folder is there already',
-            changed(_RECORD, (', overwrite=True', '')),
+            "\nlab.record('bags/temperature', '/temperature').stop()"
+            f'{changed(_RECORD, (", overwrite=True", ""))}',
             'overwrite=True',
             outcome=Outcome.ERROR,
         ),

@@ -183,6 +183,7 @@ drive = Exercise(
     clauses=[_WHERE, *_CLAUSES],
     publishes={TOPIC: TWIST},
     shared=[TOPIC],
+    reliable=[TOPIC],
     judge=_judge_drive,
     hints=[
         'interface show lists the fields of a Twist, and interface proto a message to copy.',

@@ -120,7 +120,7 @@ pilot = Exercise(
     'another one.',
     publishes={TOPIC: TWIST},
     nodes=[NODE],
-    shared=[],
+    reliable=[TOPIC],
     clauses=(
         Named(NODE),
         HasParameter(NODE, 'speed', float, 'its parameter `speed` is a double with a description'),
@@ -211,6 +211,18 @@ pilot = Exercise(
         Style('own process', in_process(_PILOT), process=True),
     ],
     wrong=[
+        Wrong(
+            'best effort',
+            changed(
+                _PILOT,
+                (
+                    'import Node\n',
+                    'import Node\nfrom rclpy.qos import qos_profile_sensor_data\n',
+                ),
+                ("'cmd_vel', 10", "'cmd_vel', qos_profile_sensor_data"),
+            ),
+            '/pilot offers best effort',
+        ),
         Wrong(
             'another node name',
             changed(_PILOT, ("__init__('pilot'", "__init__('pilo'")),

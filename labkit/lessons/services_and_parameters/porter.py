@@ -16,7 +16,8 @@ __all__ = ['porter']
 WISH, NEWS, SERVICE = '/wish', '/news', '/move_door'
 BOOL, STRING = 'std_msgs/msg/Bool', 'std_msgs/msg/String'
 NODE = '/porter'
-KEEPERS = ('Ada', 'Bo', 'Chidi', 'Dilek', 'Eva', 'Finn', 'Guo', 'Hana')
+# Not the one of the lesson: her name is in the text that stands in the notebook.
+KEEPERS = ('Bo', 'Chidi', 'Dilek', 'Eva', 'Finn', 'Guo', 'Hana')
 ANSWER_SEC = 2.5
 CELL = 'door = lab.spin(make_door())'
 
@@ -186,8 +187,7 @@ def _explain(wish: bool, came: Sequence[str]) -> tuple[str, str]:
             f'{SERVICE} was called, and nothing was published when its response came.',
             'future.add_done_callback(self.on_response), and publish in on_response.',
         )
-    other = ('opened', 'closed')[wish]
-    if all(other in text for text in came):
+    if all(text == _message(not wish) for text in came):
         return (
             'That is the response to another message.',
             'Take the message out of the future that belongs to this call.',

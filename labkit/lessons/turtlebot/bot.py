@@ -238,6 +238,7 @@ bot = Exercise(
     subscribes={'/odom': ODOMETRY, '/go_home': EMPTY},
     publishes={'/cmd_vel': TWIST},
     shared=['/cmd_vel'],
+    reliable=['/cmd_vel'],
     clauses=_CLAUSES,
     judge=driven((SIGN, EMPTY), _CLAUSES, _draw, _tell, seconds=SECONDS),
     hints=[

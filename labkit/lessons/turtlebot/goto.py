@@ -197,6 +197,7 @@ go_to = Exercise(
     subscribes={'/odom': ODOMETRY, '/goal': POSE2D},
     publishes={'/cmd_vel': TWIST},
     shared=['/cmd_vel'],
+    reliable=['/cmd_vel'],
     clauses=_CLAUSES,
     judge=driven((SIGN, POSE2D), _CLAUSES, _draw, _tell, seconds=SECONDS),
     hints=[

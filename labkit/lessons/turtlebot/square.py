@@ -380,6 +380,7 @@ square = Exercise(
     subscribes={'/go_square': EMPTY},
     publishes={'/cmd_vel': TWIST},
     shared=['/cmd_vel'],
+    reliable=['/cmd_vel'],
     clauses=_CLAUSES,
     judge=driven((SIGN, EMPTY), _CLAUSES, _draw, _tell, seconds=SECONDS),
     hints=[

@@ -5,11 +5,15 @@ from __future__ import annotations
 import signal
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from labkit.exercises import Exercise, Fail, Outcome, Solution, Style, Wrong, changed, expect
 from labkit.exercises.clauses import Clause, Evidence, Messages, Named, Publishes, Stream
 from labkit.lessons.turtlebot.drive import TWIST, command_of
 from labkit.lessons.turtlebot.mistakes import int_for_float
+
+if TYPE_CHECKING:
+    from labkit.exercises.watch import Watch
 
 __all__ = ['stop']
 
@@ -19,6 +23,8 @@ SPEED = 0.1
 SAME = 1e-6
 # How long the last command of another process may be on its way, s.
 LATE_SEC = 0.3
+# How long it is looked whether another node goes on, s: it sends ten commands a second.
+GOES_ON_SEC = 0.5
 
 _CRUISER = """
 from geometry_msgs.msg import Twist
@@ -125,6 +131,7 @@ class _SaysStop(Clause):
                 todo='rclpy.init(signal_handler_options=SignalHandlerOptions.NO), from '
                 'rclpy.signals; after the last publish(): publisher.wait_for_all_acked()',
             )
+        self._refuse_others(evidence, watch)
         if not last.stops:
             raise Fail(
                 'a last command with all numbers 0.0',
@@ -138,6 +145,27 @@ class _SaysStop(Clause):
                 'there, then call super().destroy_node().',
             )
         return 'The last command says stop.'
+
+    def _refuse_others(self, evidence: Evidence, watch: Watch) -> None:
+        """Raise Fail if another node of the learner's drives the robot on."""
+        from labkit.background.patience import answer_sec
+
+        probe = evidence.probe
+        others = sorted({end.node for end in probe.publishers('/cmd_vel')})
+        if not others:
+            return
+        count = len(watch)
+        if not probe.wait(
+            lambda: any(not command_of(sample).stops for sample in watch.samples[count:]),
+            answer_sec(GOES_ON_SEC),
+        ):
+            return
+        raise Fail(
+            f'no commands when {NODE} has ended',
+            f'more commands, and {", ".join(others)} publishes on /cmd_vel, too',
+            why='The robot does what the newest command says, whoever has sent it.',
+            todo=f'End what does not belong here: lab.remove({others[0]!r})',
+        )
 
 
 def _ends_ros_first(gid: bytes) -> bool:
@@ -163,6 +191,7 @@ stop = Exercise(
     task='A node `cruiser` drives at 0.1 m/s, and its last command says stop, whatever ends it.',
     publishes={'/cmd_vel': TWIST},
     shared=['/cmd_vel'],
+    reliable=['/cmd_vel'],
     nodes=['/cruiser'],
     clauses=(
         Named(NODE),
@@ -309,6 +338,28 @@ stop = Exercise(
             changed(_SCRIPT, ('node.create_timer(0.1, drive)', 'drive()')),
             'publish() was called too early',
             process=True,
+        ),
+        Wrong(
+            'best effort',
+            changed(
+                _CRUISER,
+                (
+                    'import Node\n',
+                    'import Node\nfrom rclpy.qos import qos_profile_sensor_data\n',
+                ),
+                ("'cmd_vel', 10", "'cmd_vel', qos_profile_sensor_data"),
+            ),
+            '/cruiser offers best effort',
+        ),
+        Wrong(
+            'a second one drives on',
+            changed(
+                _CRUISER,
+                ('(self):\n        super', "(self, name='cruiser'):\n        super"),
+                ("__init__('cruiser')", '__init__(name)'),
+                ('Cruiser())\n', "Cruiser())\nhelper = lab.spin(Cruiser('helper'))\n"),
+            ),
+            'The robot does what the newest command says',
         ),
         Wrong('does not move', changed(_CRUISER, ('= 0.1\n', '= 0.0\n')), 'need not be stopped'),
         Wrong(

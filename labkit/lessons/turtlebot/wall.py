@@ -313,6 +313,7 @@ wall = Exercise(
     subscribes={'/scan': SCAN, '/go_wall': EMPTY},
     publishes={'/cmd_vel': TWIST},
     shared=['/cmd_vel'],
+    reliable=['/cmd_vel'],
     clauses=_CLAUSES,
     judge=driven((SIGN, EMPTY), _CLAUSES, _draw, _tell, seconds=SECONDS),
     hints=[

@@ -121,7 +121,7 @@ lab.spin(node)
             changed(
                 GREETER, ("self.get_logger().info(f'I heard: {msg.data}')", 'print(msg.data)')
             ),
-            'The callback does not log',
+            'The callback does not log it',
         ),
         Wrong(
             'callback without a message',
