@@ -28,6 +28,11 @@ _TABLES = """
         data BLOB NOT NULL);
     CREATE INDEX timestamp_idx ON messages (timestamp ASC);
 """
+# With each statement the lock of Python goes to another thread and back, so one has many rows; one
+# with more than 999 values is refused by some versions of sqlite.
+_ROWS = 100
+_INSERT = 'INSERT INTO messages(topic_id, timestamp, data) VALUES'
+_INSERT_ROWS = _INSERT + ','.join(['(?,?,?)'] * _ROWS)
 # So much is written in one transaction at most, bytes.
 _TRANSACTION_BYTES = 8 << 20
 
@@ -78,11 +83,13 @@ class SqliteWriter:
 
     def write(self, messages: Sequence[tuple[int, int, int, bytes]]) -> None:
         """Write messages: number of the topic, times of receipt and of publishing, ns, bytes."""
+        rows = [(topic, stamp, data) for topic, stamp, _, data in messages]
+        whole = len(rows) - len(rows) % _ROWS
         try:
-            self._database.executemany(
-                'INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)',
-                ((topic, stamp, data) for topic, stamp, _, data in messages),
-            )
+            for start in range(0, whole, _ROWS):
+                values = [value for row in rows[start : start + _ROWS] for value in row]
+                self._database.execute(_INSERT_ROWS, values)
+            self._database.executemany(f'{_INSERT}(?,?,?)', rows[whole:])
         except sqlite3.Error as error:
             raise OSError(str(error)) from error
         written = sum(len(message[3]) for message in messages)
