@@ -17,6 +17,7 @@ from labkit.settings import prepare_environment
 if TYPE_CHECKING:
     # For editors and type checkers, which can't follow `__getattr__`.
     from labkit.background.child_processes import processes
+    from labkit.background.joining import join
     from labkit.background.runtime import remove, spin, start, stop
     from labkit.background.waiting import (
         listen,
@@ -47,6 +48,7 @@ __all__ = [
     'bag',
     'doctor',
     'graph',
+    'join',
     'lesson',
     'listen',
     'monitor',
@@ -72,6 +74,7 @@ _HOMES = {
     'bag': 'labkit.views.bag',
     'doctor': 'labkit.checkup.report',
     'graph': 'labkit.views.graph',
+    'join': 'labkit.background.joining',
     'lesson': 'labkit.exercises.lesson',
     'listen': 'labkit.background.waiting',
     'monitor': 'labkit.views.monitor',

@@ -23,6 +23,7 @@ __all__ = [
     'notebook_name',
     'prepare_environment',
     'read_domain_id',
+    'read_shared_domain_id',
     'state_dir',
 ]
 
@@ -132,13 +133,26 @@ def read_domain_id() -> int | None:
     Raises:
         LabError: It is set to something that is not a domain.
     """
-    text = os.environ.get('ROS_DOMAIN_ID', '')
+    return _read_domain('ROS_DOMAIN_ID', 'then each notebook takes a domain of its own.')
+
+
+def read_shared_domain_id() -> int | None:
+    """Return the domain that `LABKIT_SHARED_DOMAIN_ID` asks for, None if it is not set.
+
+    Raises:
+        LabError: It is set to something that is not a domain.
+    """
+    return _read_domain('LABKIT_SHARED_DOMAIN_ID', 'then lab.join() takes one that is free.')
+
+
+def _read_domain(variable: str, otherwise: str) -> int | None:
+    text = os.environ.get(variable, '')
     if not text:
         return None
     if not text.isdecimal() or int(text) > 232:
         raise LabError(
-            f'ROS_DOMAIN_ID must be a number from 0 to {LAST_DOMAIN_ID}, but it is {text!r}.',
-            todo='Set it to a number, or unset it: then each notebook takes a domain of its own.',
+            f'{variable} must be a number from 0 to {LAST_DOMAIN_ID}, but it is {text!r}.',
+            todo=f'Set it to a number, or unset it: {otherwise}',
         )
     return int(text)
 

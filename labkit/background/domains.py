@@ -31,20 +31,22 @@ class DomainClaim:
 
     Args:
         domain_id: The domain to claim.
+        listed: Whether terminals find it as the domain of this notebook.
 
     Raises:
         BlockingIOError: Another process has claimed it.
         OSError: The system refuses, for another reason.
     """
 
-    def __init__(self, domain_id: int) -> None:
+    def __init__(self, domain_id: int, *, listed: bool = True) -> None:
         self.domain_id = domain_id
         notebook = Path(notebook_name()).name or f'process {os.getpid()}'
         # The second one tells others which notebook it is.
         start = _NOTEBOOK.format(user_id=os.getuid(), domain_id=domain_id)
         self._sockets: list[socket.socket] = []
         try:
-            for name in (_CLAIM.format(domain_id=domain_id), start + _printable(notebook)):
+            names = (_CLAIM.format(domain_id=domain_id), start + _printable(notebook))
+            for name in names if listed else names[:1]:
                 self._sockets.append(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM))
                 self._sockets[-1].bind(_address(name))
         except OSError as error:
@@ -59,11 +61,14 @@ class DomainClaim:
             claim.close()
 
 
-def claim_domain() -> DomainClaim:
+def claim_domain(*, listed: bool = True) -> DomainClaim:
     """Claim a domain that no other notebook has.
 
     The search starts from a number made from the notebook's name, so that a notebook whose kernel
     is restarted mostly meets its own domain again.
+
+    Args:
+        listed: Whether terminals find it as the domain of this notebook.
 
     Raises:
         LabError: All domains are taken, or the system lets none be claimed.
@@ -73,7 +78,7 @@ def claim_domain() -> DomainClaim:
     first = zlib.crc32(name.encode(errors='replace'))
     for step in range(count):
         try:
-            return DomainClaim(FIRST_DOMAIN_ID + (first + step) % count)
+            return DomainClaim(FIRST_DOMAIN_ID + (first + step) % count, listed=listed)
         except BlockingIOError:
             continue
         except OSError as error:

@@ -249,9 +249,12 @@ class _NotebookSafe:
         if isinstance(node_name, str):
             # rcl looks at the name too, but then adds a warning about its own clean-up.
             validate_node_name(node_name)
-        if kwargs.get('context') is None:
+        context = kwargs.get('context')
+        if context is None:
             self._background.start()
-        self._background.make_room(full_node_name(node_name, kwargs.get('namespace') or ''))
+        if context in (None, get_default_context()):
+            # In a domain of its own a name is another one.
+            self._background.make_room(full_node_name(node_name, kwargs.get('namespace') or ''))
         made.add(node)
         ORIGINALS['make_node'](node, node_name, *args, **kwargs)
 

@@ -19,10 +19,10 @@ from rosgraph_msgs.msg import Clock
 from labkit.background.compat import RCLError
 from labkit.background.discovery import asking_node
 from labkit.background.runtime import runtime
+from labkit.background.session import Session, end_earlier
 from labkit.bags.listeners import wait_for_listeners
 from labkit.bags.offers import offered_profile
 from labkit.bags.reader import Bag, BagMessage, BagTopic, open_bag
-from labkit.bags.session import Session, end_earlier
 from labkit.errors import LabError, LabTimeout
 from labkit.rosgraph.interfaces import message_class
 from labkit.rosgraph.matching import other_type_here

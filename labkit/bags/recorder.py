@@ -22,10 +22,10 @@ from labkit.background.compat import RCLError
 from labkit.background.discovery import asking_node
 from labkit.background.nodes import node_exists
 from labkit.background.runtime import runtime
+from labkit.background.session import Session, end_earlier, going_on
 from labkit.bags.choice import TopicChoice, choose
 from labkit.bags.metadata import profiles_to_text
 from labkit.bags.schemas import ENCODING, full_definition
-from labkit.bags.session import Session, end_earlier, going_on
 from labkit.bags.writer import BagWriter, Message, check_storage
 from labkit.errors import LabError, LabTimeout
 from labkit.rosgraph.endpoints import publishers

@@ -14,8 +14,8 @@ from labkit.exercises.clauses.base import naming
 from labkit.exercises.learner_errors import last_cell
 
 if TYPE_CHECKING:
+    from labkit.background.session import Session
     from labkit.bags.reader import Bag, BagMessage
-    from labkit.bags.session import Session
 
 __all__ = ['Found', 'Is', 'IsThere', 'OnlyTopic', 'judge_bag']
 
@@ -210,8 +210,8 @@ def _opened(path: str) -> Bag:
 
 
 def _refuse_going_on(path: str) -> None:
+    from labkit.background.session import going_on
     from labkit.bags.recorder import Recording
-    from labkit.bags.session import going_on
 
     for session in going_on(Recording):
         if _path_of(session).resolve() == Path(path).resolve():

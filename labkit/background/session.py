@@ -1,4 +1,4 @@
-"""What a recording and a playing have in common: a node, a thread, a cell, and when they end."""
+"""What goes on in a thread, with a node and a cell: a recording, a playing, a shared topic."""
 
 from __future__ import annotations
 
