@@ -1,4 +1,4 @@
-"""Two hosts, each a network namespace with one end of a cable: who hears whom.
+"""Two hosts of a network: who hears whom.
 
 The default, LOCALHOST, keeps a class of thirty apart; SUBNET, or LOCALHOST with the other's
 address as a static peer, joins two computers on purpose.
@@ -6,14 +6,8 @@ address as a static peer, joins two computers on purpose.
 
 from __future__ import annotations
 
-import os
-import shutil
-import subprocess
-import sys
-import time
-from collections.abc import Callable, Iterator
-
 import pytest
+from network.hosts import Network
 
 SPEAKER = """
 import labkit as lab
@@ -39,80 +33,6 @@ except lab.LabTimeout as error:
 
 # Long enough for hosts that find each other to do so; a busy machine may need most of it.
 HEARD_SEC, SILENT_SEC = 60, 8
-
-Run = Callable[..., subprocess.Popen[str]]
-
-
-def ip(*words: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(['ip', *words], capture_output=True, text=True)
-
-
-def wait_for_cable(host: str) -> None:
-    """Wait until a host's end of the cable is up and its addresses are its own.
-
-    Fast DDS looks at the network when a node starts, and only then: it never uses a device that
-    came up later.
-    """
-    while True:
-        shown = ip('-n', host, 'address', 'show', 'dev', 'cable')
-        assert shown.returncode == 0, shown.stderr
-        if 'state UP' in shown.stdout and 'tentative' not in shown.stdout:
-            return
-        time.sleep(0.05)
-
-
-@pytest.fixture
-def hosts(lab_env: dict[str, str]) -> Iterator[Run]:
-    """Give a function that starts a script on host 0 or 1, at 10.77.0.1 and 10.77.0.2."""
-    if shutil.which('ip') is None:
-        pytest.skip('the command ip is missing (Debian: iproute2)')
-    names = [f'labkit-{os.getpid()}-{number}' for number in (0, 1)]
-    refused = ip('netns', 'add', names[0]).stderr
-    if refused:
-        pytest.skip(f'network namespaces are not allowed here: {refused.strip()}')
-    try:
-        ip('netns', 'add', names[1])
-        ip(
-            '-n',
-            names[0],
-            'link',
-            'add',
-            'cable',
-            'type',
-            'veth',
-            'peer',
-            'cable',
-            'netns',
-            names[1],
-        )
-        for number, name in enumerate(names):
-            ip('-n', name, 'address', 'add', f'10.77.0.{number + 1}/24', 'dev', 'cable')
-            for device in ('lo', 'cable'):
-                made = ip('-n', name, 'link', 'set', device, 'up', 'multicast', 'on')
-                assert made.returncode == 0, made.stderr
-        for name in names:
-            wait_for_cable(name)
-        processes: list[subprocess.Popen[str]] = []
-
-        def start(host: int, code: str, **env: str) -> subprocess.Popen[str]:
-            processes.append(
-                subprocess.Popen(
-                    ['ip', 'netns', 'exec', names[host], sys.executable, '-c', code],
-                    env={**lab_env, **env},
-                    stdin=subprocess.PIPE,
-                    stdout=subprocess.PIPE,
-                    text=True,
-                )
-            )
-            return processes[-1]
-
-        yield start
-        for process in processes:
-            if process.poll() is None:
-                process.communicate('\n')
-    finally:
-        for name in names:
-            ip('netns', 'del', name)
 
 
 @pytest.mark.parametrize(
@@ -140,18 +60,17 @@ def hosts(lab_env: dict[str, str]) -> Iterator[Run]:
     ],
 )
 def test_two_hosts(
-    hosts: Run,
-    lab_env: dict[str, str],
+    network: Network,
     speaker: dict[str, str],
     hearer: dict[str, str],
     heard: bool,
 ) -> None:
-    del lab_env['ROS_AUTOMATIC_DISCOVERY_RANGE']  # labkit's own default is under test
-    talking = hosts(0, SPEAKER, **speaker)
+    network.build(2)
+    talking = network.python(1, SPEAKER, **speaker)
     assert talking.stdout is not None
     assert talking.stdout.readline() == 'speaking\n'
     timeout_sec = HEARD_SEC if heard else SILENT_SEC
-    listening = hosts(1, HEARER.format(timeout_sec=timeout_sec), **hearer)
+    listening = network.python(2, HEARER.format(timeout_sec=timeout_sec), **hearer)
     said = listening.communicate(timeout=3 * HEARD_SEC)[0]
     if heard:
         assert said == 'hello\n'
@@ -160,11 +79,11 @@ def test_two_hosts(
 
 
 def test_two_processes_of_one_host_hear_each_other_by_default(
-    hosts: Run, lab_env: dict[str, str]
+    network: Network,
 ) -> None:
-    del lab_env['ROS_AUTOMATIC_DISCOVERY_RANGE']
-    talking = hosts(0, SPEAKER)
+    network.build(1)
+    talking = network.python(1, SPEAKER)
     assert talking.stdout is not None
     assert talking.stdout.readline() == 'speaking\n'
-    listening = hosts(0, HEARER.format(timeout_sec=HEARD_SEC))
+    listening = network.python(1, HEARER.format(timeout_sec=HEARD_SEC))
     assert listening.communicate(timeout=3 * HEARD_SEC)[0] == 'hello\n'
