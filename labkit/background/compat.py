@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 __all__ = [
     'RCLError',
     'add_task',
+    'answer_input',
     'call_in_kernel',
     'forget_executor',
     'handler_of',
@@ -173,6 +174,12 @@ def is_kernel_stream(stream: object) -> bool:
     from ipykernel.iostream import OutStream
 
     return isinstance(stream, OutStream)
+
+
+def answer_input(answer: Callable[[object], str]) -> None:
+    """Let a function of the prompt answer each `input()` of a cell from now on."""
+    # ipykernel puts this method in the place of `input` whenever it runs a cell.
+    _shell().kernel.raw_input = answer
 
 
 def call_in_kernel(function: Callable[[], None], *, delay_sec: float = 0.0) -> None:

@@ -21,6 +21,7 @@ from labkit import settings
 from labkit.background import domains
 from labkit.background.console import Cell, Console
 from labkit.background.executor import BackgroundExecutor
+from labkit.background.keyboard import press_enter_for_nobody
 from labkit.background.nodes import (
     NodeEntry,
     check_node,
@@ -132,6 +133,7 @@ class Runtime:
             self._add_helper(self._executor)
             if settings.in_kernel():
                 install(self)
+                press_enter_for_nobody()
             self._executor.start()
         for action in tuple(self.after_start):
             action()

@@ -20,6 +20,8 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary, WeakSet
 
 if TYPE_CHECKING:
+    from types import FrameType
+
     from rclpy.executors import Executor
     from rclpy.node import Node
     from rclpy.timer import Timer
@@ -34,10 +36,14 @@ CALM_SEC = 0.5
 # So many callbacks in one moment are a flood: a timer without a period, nodes that answer each
 # other for ever.
 FLOOD = 2000
-# How long a thread that sleeps in a rate may take for its work, s of real time; and how long one
-# that has ended, or waits for something else.
+# How long a thread that sleeps in a rate may take for its work, s of real time on a calm machine;
+# and how long one that has ended, or waits for something else. So often in a row it has to be seen
+# so: a busy machine may give this thread time, and the other one none.
 RATE_SEC = 3.0
 IDLE_SEC = 0.1
+IDLE_LOOKS = 50
+# What a thread does in the module threading while it waits for something.
+_WAITS = ('join', 'wait', 'wait_for', '_wait_for_tstate_lock')
 # How long an executor of the learner's own may take to go round, s of real time.
 ROUND_SEC = 2.0
 # So often in a row nothing may be done by the background before it counts as hanging, though no
@@ -262,17 +268,18 @@ def _wait_for_rate(timer: Timer, threads: set[int]) -> None:
         threads: Ids of the threads that slept there.
     """
     from labkit.background.compat import rate_is_awaited
+    from labkit.background.patience import answer_sec
 
     if rate_is_awaited(timer):
         _given_up.discard(timer)
-    start = at_work = time.monotonic()
+    start, looks = time.monotonic(), 0
     while not rate_is_awaited(timer) and timer not in _given_up:
-        now = time.monotonic()
-        if now - start > IDLE_SEC and _is_at_work(timer, threads):
-            at_work = now
-        if now - start > RATE_SEC or now - at_work > 2 * IDLE_SEC:
+        passed = time.monotonic() - start
+        if passed > IDLE_SEC:
+            looks = 0 if _is_at_work(timer, threads) else looks + 1
+        if passed > answer_sec(RATE_SEC) or looks > IDLE_LOOKS:
             _given_up.add(timer)
-        time.sleep(POLL_SEC)
+        time.sleep(POLL_SEC if passed < IDLE_SEC else 10 * POLL_SEC)
 
 
 def _is_at_work(timer: Timer, threads: set[int]) -> bool:
@@ -284,10 +291,13 @@ def _is_at_work(timer: Timer, threads: set[int]) -> bool:
 
     frames = sys._current_frames()
     inside = rate_sleepers(timer)
-    return any(
-        ident in inside or frames[ident].f_code.co_filename != threading.__file__
-        for ident in threads & frames.keys()
-    )
+    return any(ident in inside or not _waits(frames[ident]) for ident in threads & frames.keys())
+
+
+def _waits(frame: FrameType) -> bool:
+    """Tell whether a thread waits for another one, by its innermost frame."""
+    code = frame.f_code
+    return code.co_filename == threading.__file__ and code.co_name in _WAITS
 
 
 def _settle_other(executor: Executor) -> bool:

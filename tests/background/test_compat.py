@@ -206,3 +206,9 @@ def test_every_private_name_is_here():
     source = inspect.getsource(inspect.getmodule(test_every_private_name_is_here))
     for name in compat.__all__:
         assert f'compat.{name}' in source, f'{name} has no contract test'
+
+
+def test_input_is_answered_by_a_function(kernel):
+    kernel.run('from labkit.background import compat')
+    kernel.run('compat.answer_input(lambda prompt: prompt.upper())')
+    assert kernel.run('print(input("who? "))').text == 'WHO? \n'

@@ -46,7 +46,8 @@ class Answers(Clause):
         inner: Full name of the topic that it hears.
         outer: Full name of the topic that it publishes on.
         words: What is asked for, in words of the task.
-        answer: The value that an answer has, from the value that was heard.
+        answer: The value that an answer has, from the value that was heard; None if nothing is to
+            be said upon it.
         draw: Draws the values that are sent as tests.
         field: Name of the field of both messages.
         by: Full name of the node; any node if empty.
@@ -102,6 +103,8 @@ class Answers(Clause):
         missing, late = [], []
         for (at, value), is_due in zip(heard, due, strict=True):
             right = self.answer(value)
+            if right is None:
+                continue
             found = next((i for i, (t, v) in enumerate(left) if t >= at and v == right), None)
             if found is not None:
                 late.append((left[found][0] - at, at, value))
@@ -109,8 +112,9 @@ class Answers(Clause):
             elif is_due:
                 missing.append((at, value))
         repeated = self._repeats(heard, left) >= MANY and len(missing) < len(heard) / 2
+        due_count = sum(self.answer(value) is not None for _, value in heard)
         if missing and not repeated:
-            self._refuse_missing(evidence, missing, left, len(heard))
+            self._refuse_missing(evidence, missing, left, due_count)
         if not repeated:
             self._refuse_late(evidence, late)
         # At the beginning it may answer what came before: a node may keep what it hears.
@@ -122,11 +126,11 @@ class Answers(Clause):
         if extra:
             self._refuse_extra(evidence, heard, extra)
         if missing:
-            self._refuse_missing(evidence, missing, left, len(heard))
-        examples = [value for _, value in heard[:2]]
+            self._refuse_missing(evidence, missing, left, due_count)
+        examples = [value for _, value in heard if self.answer(value) is not None][:2]
         pairs = ', '.join(f'{show([v])} -> {show([self.answer(v)])}' for v in examples)
         hears = evidence.subscription(self.inner, self.by)
-        return f'{hears.node} has answered {len(heard)} messages, each once: {pairs}.'
+        return f'{hears.node} has answered {due_count} messages, each once: {pairs}.'
 
     def _refuse_missing(
         self,
@@ -206,11 +210,15 @@ class Answers(Clause):
         at, value = next(((t, v) for t, v in left if v not in rights), left[0])
         answered = [v for t, v in heard if self.answer(v) == value and t <= at]
         before = [v for t, v in heard if t <= at]
+        silent = [v for t, v in heard if t <= at < t + WITHIN_SEC and self.answer(v) is None]
         why, todo = '', f'Publish on {self.outer} only in the callback for {self.inner}, and once.'
         if other is not None:
             why = f'What comes on {others[other]} is answered, too. Nobody asked for that.'
         elif Counter(v for _, v in left) == Counter(self.answer(v) for _, v in heard):
             why = 'A message is answered more than once.'
+        elif silent:
+            why = f'Upon {show(silent[-1:])} nothing is to be said.'
+            todo = f'Look at what has come before you publish on {self.outer}.'
         elif self._repeats(heard, left) >= MANY:
             why = 'The answer is repeated, again and again: a timer or a loop publishes it.'
         elif answered:
@@ -238,12 +246,17 @@ class Logs(Clause):
         words: What is asked for, in words of the task.
         draw: Draws the texts that are sent as tests.
         field: Name of the field that holds the text.
+        line: What has to stand in the line, from the text; the text itself if None.
+        explain: Gets a text that was heard, and the lines that came upon it; returns the
+            misconception and the next step, or two empty texts.
     """
 
     topic: str
     words: str
     draw: Callable[[], Sequence[str]]
     field: str = 'data'
+    line: Callable[[str], str] | None = None
+    explain: Explain | None = None
 
     @property
     def text(self) -> str:
@@ -268,7 +281,9 @@ class Logs(Clause):
         source = evidence.subscription(self.topic)
         lines = _lines_of(source.node, evidence.life.on('/rosout'))
         life, samples = evidence.life, evidence.life.on(self.topic)
-        heard = [(s.at, str(_get(s, self.field))) for s in samples]
+        texts = [str(_get(s, self.field)) for s in samples]
+        wanted = texts if self.line is None else [self.line(text) for text in texts]
+        heard = [(sample.at, line) for sample, line in zip(samples, wanted, strict=True)]
         known = [line for _, line in lines if any(text and text in line for _, text in heard)]
         for number, (at, text) in enumerate(heard):
             if not life.is_known(self.topic, samples[number]):
@@ -279,7 +294,7 @@ class Logs(Clause):
             same = [t for t, other in heard if at <= t < end and other == text]
             holding = [line for line in here if text in line]
             if len(holding) < len(same):
-                self._refuse(evidence, text, here, bool(known))
+                self._refuse(evidence, texts[number], text, here, bool(known))
             if len(holding) > len(same):
                 raise Fail(
                     f'one line of {source.node} for each message on {self.topic}',
@@ -300,11 +315,16 @@ class Logs(Clause):
             )
         return f'{source.node} logged each of {len(heard)} texts in a line.'
 
-    def _refuse(self, evidence: Evidence, text: str, here: Sequence[str], some: bool) -> NoReturn:
+    def _refuse(
+        self, evidence: Evidence, heard: str, text: str, here: Sequence[str], some: bool
+    ) -> NoReturn:
         source = evidence.subscription(self.topic)
         if not here:
             hanging(evidence.probe)
         why = 'The callback runs, but its line does not hold what the message says.'
+        todo = "In the callback: self.get_logger().info(f'...{msg.data}')"
+        if self.explain is not None and here:
+            why, todo = self.explain(heard, here)
         if not here:
             why = (
                 'The callback does not log it. print() shows a text here; the logger also tells '
@@ -313,10 +333,11 @@ class Logs(Clause):
         if some and not here:
             why = 'Some messages are logged as they came, and this one is not.'
         raise Fail(
-            f'{source.node} logs a line with {show([text])} when that comes on {self.topic}',
+            f'{source.node} logs a line with {show([text])} when '
+            f'{"that" if text == heard else show([heard])} comes on {self.topic}',
             f'{source.node} logged {show(here)}' if here else f'{source.node} logged nothing',
             why=why,
-            todo="In the callback: self.get_logger().info(f'...{msg.data}')",
+            todo=todo,
         )
 
 

@@ -161,7 +161,7 @@ class Evidence:
                 why='A timer has no period, or a message sets off another one, which sets off the '
                 'next one, without an end.',
                 todo='Give the timer a period in seconds, and publish on a topic that the node '
-                'does not hear itself.',
+                'does not hear itself, or do not answer what the node has said itself.',
             )
 
     def has_ended_early(self) -> bool:

@@ -1,0 +1,28 @@
+"""The exercises and the quiz of `06_chat.ipynb`."""
+
+from __future__ import annotations
+
+from labkit.exercises import Lesson
+from labkit.lessons.chat.greeter import greeter
+from labkit.lessons.chat.hearer import hearer
+from labkit.lessons.chat.polite import polite
+from labkit.lessons.chat.quiz import QUIZ
+from labkit.lessons.chat.teller import teller
+
+__all__ = ['LESSON']
+
+LESSON = Lesson(
+    'chat',
+    '06_chat.ipynb',
+    exercises=[teller, hearer, greeter, polite],
+    quizzes=[QUIZ],
+    topics=['/shared_chatter', '/heard_next_door'],
+    given={
+        '/chat': 'chat',
+        '/domain_bridge': 'join',
+        '/neighbour': '',
+        '/one_shot': 'one-shot',
+        '/bo': 'repliers remedies',
+        '/chidi': 'repliers remedies',
+    },
+)
