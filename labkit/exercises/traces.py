@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 import linecache
+import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -176,9 +177,16 @@ def _may_mean(probe: Probe, program: str) -> bool:
     earlier = {topic for _, topic in probe.scope.earlier}
     new = any(topic not in earlier for topic in probe.scope.topics)
     return any(
-        topic.lstrip('/') in program and (topic not in earlier if new else f'_{kind}(' in program)
+        topic.lstrip('/') in program
+        and (topic not in earlier if new else _makes(program, kind, topic))
         for kind, topic in probe.scope.own
     )
+
+
+def _makes(program: str, kind: str, topic: str) -> bool:
+    """Tell whether a program makes such an end of a topic, by a call that names it."""
+    name = re.escape(topic.lstrip('/'))
+    return re.search(rf'_{kind}\([^()]*["\']/?{name}["\']', program) is not None
 
 
 def _program(command: Sequence[str]) -> str:

@@ -36,6 +36,8 @@ CALM_SEC = 0.5
 # So many callbacks in one moment are a flood: a timer without a period, nodes that answer each
 # other for ever.
 FLOOD = 2000
+# So few are one if they are slow, and have taken so long, s of real time.
+SLOW_FLOOD, SLOW_FLOOD_SEC = 200, 2.0
 # How long a thread that sleeps in a rate may take for its work, s of real time on a calm machine;
 # and how long one that has ended, or waits for something else. So often in a row it has to be seen
 # so: a busy machine may give this thread time, and the other one none.
@@ -236,11 +238,12 @@ class VirtualTime:
 
     def _settle_background(self) -> None:
         executor, before = self._runtime.executor, self._callbacks()
-        seen, idle = before, 0
+        began, seen, idle = time.monotonic(), before, 0
         while not executor.settle(CALM_SEC):
             count = self._callbacks()
             idle = idle + 1 if count == seen else 0
-            self.flooded = count - before > FLOOD
+            slow = time.monotonic() - began > SLOW_FLOOD_SEC
+            self.flooded = count - before > (SLOW_FLOOD if slow else FLOOD)
             runs = executor.running_callback() is not None
             self.hanging = idle > (0 if runs else IDLE_ROUNDS)
             if self.flooded or self.hanging or not executor.is_open:

@@ -83,6 +83,7 @@ class Replies(Clause):
         sent = [each for each in evidence.life.sent if each.topic == self.topic]
         texts = [str(each.fields['data']) for each in sent]
         left = [(sample.at, sample.message.data) for sample in own_messages(evidence, self.topic)]
+        replied: set[str] = set()
         for each, text, right in zip(sent, texts, self.replies(texts), strict=True):
             here = [pair for pair in left if each.at <= pair[0] < each.at + WITHIN_SEC]
             came = [value for _, value in here]
@@ -92,8 +93,9 @@ class Replies(Clause):
                 continue
             found = next((pair for pair in here if pair[1] == right), None)
             if found is None:
-                self._refuse(text, came, show([right]))
+                self._refuse(text, came, show([right]), again=text in replied)
             left.remove(found)
+            replied.add(text)
             if right in came[came.index(right) + 1 :]:
                 raise Fail(
                     f'one reply to {show([text])}',
@@ -113,8 +115,13 @@ class Replies(Clause):
         count = sum(right is not None for right in self.replies(texts))
         return f'{hears.node} has replied to {count} of {len(texts)} messages.'
 
-    def _refuse(self, text: str, came: Sequence[str], wanted: str) -> NoReturn:
+    def _refuse(
+        self, text: str, came: Sequence[str], wanted: str, *, again: bool = False
+    ) -> NoReturn:
         why, todo = self.explain(text, came)
+        if again and not came:
+            why = 'The same message had a reply before. Is something used up by the first one?'
+            todo = 'Do the same for each message that wants a reply, each time.'
         if not why and came and wanted != 'nothing':
             why = text_trouble(came[-1], wanted.strip("'"))
             todo = 'Compare the text that is wanted with the one seen.'

@@ -63,7 +63,7 @@ def _draw() -> list[str]:
     ]
     random.shuffle(texts)
     # More than ten: some nodes have had enough then.
-    return ['Bo: Hello', *texts, 'Bo: Hello', f'Guo: Hello {number}']
+    return ['Bo: Hello', 'Bo: Hello', *texts, f'Guo: Hello {number}']
 
 
 def _explain(text: str, came: Sequence[str]) -> tuple[str, str]:
@@ -264,12 +264,12 @@ lab.spin(node)
                     "        if 'Hello' in msg.data and self.calls == 1:\n",
                 ),
             ),
-            'nothing came',
+            'had a reply before',
         ),
         Wrong(
             'destroys it first',
             changed(_GREETER, (_GONE, ''), (_MADE, f'{_MADE}{_GONE}')),
-            'destroyed',
+            'destruction was requested',
             outcome=Outcome.ERROR,
         ),
     ],

@@ -209,6 +209,11 @@ lab.spin(node)
             changed(_HEARER, ('self.get_logger().info(', 'print(')),
             'The callback does not log it.',
         ),
+        Wrong(
+            'another topic',
+            changed(_HEARER, ("'hall'", "'hal'")),
+            'subscribes to /hal',
+        ),
         Wrong('logs twice', changed(_HEARER, (_LOG, 2 * _LOG)), 'logged more than once'),
         Wrong(
             'leaves out who has no name',

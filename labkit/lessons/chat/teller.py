@@ -52,7 +52,7 @@ def _draw() -> list[str]:
 
 def _explain(text: str, came: Sequence[str]) -> tuple[str, str]:
     said = came[-1] if came else ''
-    if text in came:
+    if text.strip() in came:
         return 'It does not say who says it.', f"String(data=f'{WHO}: {{text}}')"
     if said == f'{WHO}: {text}':
         return 'There are blanks at an end of what was typed.', 'text = msg.data.strip()'
