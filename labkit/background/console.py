@@ -28,6 +28,8 @@ from labkit.background.tracebacks import short_traceback
 __all__ = ['MAX_LINES', 'CallbackError', 'Cell', 'Console']
 
 MAX_LINES = 200
+# So much of a line is shown: a page that gets a megabyte in one line does not follow any more.
+MAX_CHARACTERS = 2000
 _SEVERITIES = {10: 'DEBUG', 20: 'INFO', 30: 'WARN', 40: 'ERROR', 50: 'FATAL'}
 
 
@@ -277,7 +279,7 @@ class Console:
             return
         lines = text.splitlines(keepends=True)[: MAX_LINES - cell.lines]
         cell.lines += sum(line.endswith('\n') for line in lines)
-        stream.write(''.join(lines))
+        stream.write(''.join(map(_shortened, lines)))
         if cell.lines >= MAX_LINES:
             stream.write(
                 f'{MAX_LINES} lines are shown; what follows is not. The node goes on. '
@@ -294,6 +296,14 @@ class Console:
     def _finish_cell(self, result: Any = None) -> None:
         if self._running is not None:
             self.after_cell(self._running, getattr(result, 'error_in_exec', None))
+
+
+def _shortened(line: str) -> str:
+    """Return as much of a line as is shown, and say how long it is."""
+    if len(line) <= MAX_CHARACTERS:
+        return line
+    end = '\n' * line.endswith('\n')
+    return f'{line[:MAX_CHARACTERS]} ... ({len(line) - len(end):,} characters){end}'
 
 
 def _show_log(severity: int, name: str, message: str) -> None:

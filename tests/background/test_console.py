@@ -75,3 +75,14 @@ def test_a_node_that_is_left_over_is_told_after_the_cell(kernel):
     ]
     # A cell that starts nothing, such as one that was emptied to look at something, is quiet.
     assert kernel.run('print("only looking")', cell_id='ears').text == 'only looking\n'
+
+
+def test_a_line_without_an_end_is_cut(kernel):
+    kernel.run(SETUP)
+    cell = kernel.run(
+        'class Long(Loud):\n    def on_timer(self):\n        self.count += 1\n'
+        "        print('x' * 1_000_000)\n\nlong = lab.spin(Long('long'))"
+    )
+    shown = kernel.wait_for_output(cell.msg_id, '(1,000,000 characters)')
+    first = shown.splitlines()[0]
+    assert first == f'{"x" * 2000} ... (1,000,000 characters)'

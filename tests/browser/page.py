@@ -41,6 +41,8 @@ _READY = """path => {
 }"""
 # After an error that is meant JupyterLab takes the marks from all further cells, but the kernel
 # goes on with them.
+# Where JupyterLab lets a line be typed for `input()`.
+_ASKED = 'input.jp-Stdin-input'
 _ALL_RAN = f"""() => {{
   const cells = {_CELLS}.map(cell => cell.model.toJSON()).filter(cell => cell.source.trim());
   const code = cells.filter(cell => cell.cell_type === 'code');
@@ -184,8 +186,18 @@ class Notebook:
         self.choose('Run', 'Run All Cells')
 
     def wait_for_all(self) -> None:
-        """Wait until all cells have ended, or those after an error have been dropped."""
-        self.page.wait_for_function(_ALL_RAN, polling=100, timeout=5 * TIMEOUT_SEC * 1000)
+        """Wait until all cells have ended, or those after an error have been dropped.
+
+        Where one asks for a line, with `input()`, Enter is pressed.
+        """
+        either = f'() => Boolean(document.querySelector({_ASKED!r})) || ({_ALL_RAN})()'
+        asked = self.page.locator(_ASKED)
+        while True:
+            self.page.wait_for_function(either, polling=100, timeout=5 * TIMEOUT_SEC * 1000)
+            if not asked.count():
+                return
+            asked.press('Enter')
+            expect(asked).to_have_count(0)
 
     def run_all(self) -> None:
         """Choose Run All Cells in the menu, and wait until all have ended."""
