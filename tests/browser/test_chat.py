@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from playwright.sync_api import expect
+from playwright.sync_api import Dialog, expect
 
 from tests.browser.page import Notebook
 
@@ -110,7 +110,12 @@ def test_hostile_text_is_only_text(open_cells: Callable[..., Notebook]) -> None:
     }
     notebook = open_cells(**cells)
     dialogs: list[str] = []
-    notebook.page.on('dialog', lambda dialog: (dialogs.append(dialog.message), dialog.dismiss()))
+
+    def refuse(dialog: Dialog) -> None:
+        dialogs.append(dialog.message)
+        dialog.dismiss()
+
+    notebook.page.on('dialog', refuse)
     for cell_id in cells:
         notebook.run_cell(cell_id)
     for cell_id in set(cells) - {'error'}:
