@@ -226,7 +226,7 @@ lab.spin(node)
         Wrong(
             'a misspelt field',
             changed(_HEARER, ('msg.data.partition', 'msg.text.partition')),
-            'text',
+            "no attribute 'text'",
             outcome=Outcome.ERROR,
         ),
     ],

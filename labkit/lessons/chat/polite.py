@@ -191,7 +191,7 @@ lab.spin(node)
         Wrong(
             'greets itself once',
             changed(_POLITE, ("{'Ada'}", 'set()')),
-            'herself',
+            'said by Ada herself',
         ),
         Wrong(
             'replies to everything',
@@ -243,7 +243,7 @@ lab.spin(node)
         Wrong(
             'a list that is not there',
             changed(_POLITE, ('self.greeted.add', 'self.known.add')),
-            'known',
+            "no attribute 'known'",
             outcome=Outcome.ERROR,
         ),
     ],

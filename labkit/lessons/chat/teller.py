@@ -58,6 +58,8 @@ def _explain(text: str, came: Sequence[str]) -> tuple[str, str]:
         return 'There are blanks at an end of what was typed.', 'text = msg.data.strip()'
     if said.removeprefix(f'{WHO}:').strip() == text.strip():
         return 'Between the name and the text stand a colon and one blank.', "f'Ada: {text}'"
+    if said and said.casefold() != f'{WHO}: {text.strip()}'.casefold():
+        return 'What is said is not what was typed.', 'Use the message that came: msg.data'
     return '', ''
 
 
@@ -184,7 +186,7 @@ lab.spin(node)
                     'msg.data.strip()\n        text = self.text\n',
                 ),
             ),
-            'Ada: ',
+            'What is said is not what was typed.',
         ),
         Wrong(
             'on another topic',
