@@ -191,7 +191,7 @@ lab.spin(node)
         Wrong(
             'greets itself once',
             changed(_POLITE, ("{'Ada'}", 'set()')),
-            'said by Ada herself',
+            'What it has said itself comes to it',
         ),
         Wrong(
             'replies to everything',

@@ -196,7 +196,7 @@ lab.spin(node)
         Wrong(
             'the text and not a message',
             changed(_TELLER, (f'String(data={_SAID})', _SAID)),
-            'String',
+            'it got one of type str',
             outcome=Outcome.ERROR,
         ),
         Wrong('not spun', changed(_TELLER, ('lab.spin(Teller())', 'Teller()')), 'takes them out'),
