@@ -61,7 +61,7 @@ class DomainClaim:
             claim.close()
 
 
-def claim_domain(*, listed: bool = True) -> DomainClaim:
+def claim_domain(*, listed: bool = True, other_than: int | None = None) -> DomainClaim:
     """Claim a domain that no other notebook has.
 
     The search starts from a number made from the notebook's name, so that a notebook whose kernel
@@ -69,6 +69,7 @@ def claim_domain(*, listed: bool = True) -> DomainClaim:
 
     Args:
         listed: Whether terminals find it as the domain of this notebook.
+        other_than: A domain that is not wanted, though nobody may have claimed it.
 
     Raises:
         LabError: All domains are taken, or the system lets none be claimed.
@@ -77,8 +78,11 @@ def claim_domain(*, listed: bool = True) -> DomainClaim:
     count = LAST_DOMAIN_ID - FIRST_DOMAIN_ID + 1
     first = zlib.crc32(name.encode(errors='replace'))
     for step in range(count):
+        domain_id = FIRST_DOMAIN_ID + (first + step) % count
+        if domain_id == other_than:
+            continue
         try:
-            return DomainClaim(FIRST_DOMAIN_ID + (first + step) % count, listed=listed)
+            return DomainClaim(domain_id, listed=listed)
         except BlockingIOError:
             continue
         except OSError as error:

@@ -311,7 +311,9 @@ def join(
     end_earlier(Joined)
     wanted = domain_id if domain_id is not None else read_shared_domain_id()
     _refuse_own_domain(wanted, topic)
-    claim = claim_domain(listed=False) if wanted is None else None
+    # A script is in a domain that nobody has claimed.
+    own = runtime.domain_id
+    claim = claim_domain(listed=False, other_than=own) if wanted is None else None
     shared = claim.domain_id if claim is not None else wanted
     assert shared is not None
     profile = QoSProfile(depth=qos_profile) if isinstance(qos_profile, int) else qos_profile  # type: ignore[no-untyped-call]

@@ -43,8 +43,9 @@ room = lab.join(
 
 @pytest.fixture
 def shared() -> Iterator[int]:
-    """Give a domain that nobody has."""
-    claim = claim_domain(listed=False)
+    """Give a domain that nobody has, nor this process, which has claimed none."""
+    own = int(os.environ.get('ROS_DOMAIN_ID') or 0)
+    claim = claim_domain(listed=False, other_than=own)
     yield claim.domain_id
     claim.close()
 
@@ -129,6 +130,17 @@ def test_a_domain_is_taken_and_given_back(started: None) -> None:
         DomainClaim(room.domain_id)
     room.leave()
     DomainClaim(room.domain_id).close()
+
+
+def test_the_own_domain_is_never_the_shared_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    free = claim_domain(listed=False)
+    free.close()
+    # A script of a domain that the search would come to first.
+    monkeypatch.setenv('ROS_DOMAIN_ID', str(free.domain_id))
+    labkit.start()
+    with join('a', String, discovery_range='OFF') as room:
+        assert room.domain_id != runtime.domain_id == free.domain_id
+    labkit.stop()
 
 
 def test_a_teacher_sets_the_domain(
