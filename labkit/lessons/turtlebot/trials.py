@@ -48,6 +48,8 @@ REAL_MARGIN_SEC = 0.25
 # have pauses of 1 s, which last longer on a busy machine.
 REAL_QUIET_SEC = 0.4
 REAL_TAIL_SEC = 1.6
+# From here on a machine is busy, see `busyness`.
+BUSY = 1.5
 # How long a drive may take longer than the task allows, until it is cut, s.
 LONGER_SEC = 1.0
 # After so much time no further drive is begun in real time, s.
@@ -143,14 +145,26 @@ class Trials:
                     raise
                 drives.pop()
                 self.real, self._began = True, began
-                self._note(again, drives)
-                judge(again)
+                self._judge_in_real_time(trial, again, judge, drives)
                 return
-        with self._others.counted():
-            real = self._in_real_time(trial)
-        assert real is not None
-        self._note(real, drives)
-        judge(real)
+        self._judge_in_real_time(trial, self._drive_in_real_time(trial), judge, drives)
+
+    def _judge_in_real_time(
+        self, trial: Trial, found: Drive, judge: Callable[[Drive], None], drives: list[Drive]
+    ) -> None:
+        """Judge a drive in real time; what is wrong on a busy machine is looked at once more."""
+        from labkit.background.patience import busyness
+
+        self._note(found, drives)
+        try:
+            judge(found)
+        except Fail:
+            if busyness() < BUSY:
+                raise
+            drives.pop()
+            again = self._drive_in_real_time(trial)
+            self._note(again, drives)
+            judge(again)
 
     def _note(self, found: Drive, drives: list[Drive]) -> None:
         found.number = len(drives)
@@ -271,9 +285,14 @@ class Trials:
         with self._others.counted():
             again = self._in_real_time(trial, unless=few)
         if again is None and self._goes_on_while_time_stands_still(trial):
-            with self._others.counted():
-                again = self._in_real_time(trial)
+            again = self._drive_in_real_time(trial)
         return again
+
+    def _drive_in_real_time(self, trial: Trial) -> Drive:
+        with self._others.counted():
+            found = self._in_real_time(trial)
+        assert found is not None
+        return found
 
     def _goes_on_while_time_stands_still(self, trial: Trial) -> bool:
         count = 0
@@ -350,8 +369,11 @@ class Trials:
             Fail: It goes on and on.
         """
         end = time.monotonic() + self.seconds + LONGER_SEC
+        from labkit.background.patience import busyness
+
         seen, last = 0, time.monotonic()
-        while time.monotonic() < last + REAL_QUIET_SEC:
+        # A busy machine may give a thread of the node no time meanwhile.
+        while time.monotonic() < last + REAL_QUIET_SEC * busyness():
             time.sleep(POLL_SEC)
             commands.pump()
             self.probe.look(0.0)
