@@ -270,12 +270,8 @@ class Rate(DriveClause):
         from labkit.background.patience import busyness
 
         period = found.period
-        if not found.exact and busyness() > 1 and gaps:
-            # On a machine that is very busy one gap in ten is held up less than the others, or the
-            # shortest one alone: a node that keeps a time of its own is never early.
-            held_up_least = (found.meant, min(gaps))
-            meant = [gap for gap in held_up_least if abs(gap / 0.1 - 1) < SLEEP_TOLERANCE]
-            period = meant[0] if meant else period
+        if not found.exact and busyness() > 1 and abs(found.meant / 0.1 - 1) < SLEEP_TOLERANCE:
+            period = found.meant
         tolerance = TOLERANCE if found.exact else REAL_TOLERANCE
         if found.exact and short:
             # A time that is known to a tick tells a rate less exactly when a drive is short.

@@ -48,8 +48,6 @@ REAL_MARGIN_SEC = 0.25
 # have pauses of 1 s, which last longer on a busy machine.
 REAL_QUIET_SEC = 0.4
 REAL_TAIL_SEC = 1.6
-# From here on a machine is busy, see `busyness`.
-BUSY = 1.5
 # How long a drive may take longer than the task allows, until it is cut, s.
 LONGER_SEC = 1.0
 # After so much time no further drive is begun in real time, s.
@@ -145,26 +143,12 @@ class Trials:
                     raise
                 drives.pop()
                 self.real, self._began = True, began
-                self._judge_in_real_time(trial, again, judge, drives)
+                self._note(again, drives)
+                judge(again)
                 return
-        self._judge_in_real_time(trial, self._drive_in_real_time(trial), judge, drives)
-
-    def _judge_in_real_time(
-        self, trial: Trial, found: Drive, judge: Callable[[Drive], None], drives: list[Drive]
-    ) -> None:
-        """Judge a drive in real time; what is wrong on a busy machine is looked at once more."""
-        from labkit.background.patience import busyness
-
-        self._note(found, drives)
-        try:
-            judge(found)
-        except Fail:
-            if busyness() < BUSY:
-                raise
-            drives.pop()
-            again = self._drive_in_real_time(trial)
-            self._note(again, drives)
-            judge(again)
+        real = self._drive_in_real_time(trial)
+        self._note(real, drives)
+        judge(real)
 
     def _note(self, found: Drive, drives: list[Drive]) -> None:
         found.number = len(drives)
@@ -368,9 +352,9 @@ class Trials:
         Raises:
             Fail: It goes on and on.
         """
-        end = time.monotonic() + self.seconds + LONGER_SEC
         from labkit.background.patience import busyness
 
+        end = time.monotonic() + self.seconds + LONGER_SEC
         seen, last = 0, time.monotonic()
         # A busy machine may give a thread of the node no time meanwhile.
         while time.monotonic() < last + REAL_QUIET_SEC * busyness():
