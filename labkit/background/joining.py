@@ -14,7 +14,6 @@ from __future__ import annotations
 import os
 import secrets
 import threading
-from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -46,8 +45,9 @@ __all__ = ['Joined', 'join']
 
 NODE_NAME = 'domain_bridge'
 RANGES = ('SUBNET', 'LOCALHOST', 'OFF', 'SYSTEM_DEFAULT')
-# How many messages may wait on either side.
-DEPTH = 100
+# Of so many own messages it is known that they are own, at least: one that was lost on its way
+# back is never asked for.
+KNOWN = 10_000
 SPIN_SEC = 0.1
 # Variables that ROS reads when it takes part in a domain.
 _RANGE, _PEERS = 'ROS_AUTOMATIC_DISCOVERY_RANGE', 'ROS_STATIC_PEERS'
@@ -85,12 +85,17 @@ class Joined(Session):
         self.topic = full_topic_name(topic, self._node)
         try:
             self._context, self._guest = _enter(domain_id, name, variables)
+        except BaseException:
+            self._end_node()
+            raise
+        try:
             self.name = self._guest.get_fully_qualified_name()
             here = _Side(self._node, self.topic, msg_type, qos_profile, self._to_others)
             there = _Side(self._guest, self.topic, msg_type, qos_profile, self._from_others)
             self._here, self._there = here, there
         except BaseException:
             self._end_node()
+            self._end_guest()
             raise
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._guest)
@@ -156,10 +161,13 @@ class Joined(Session):
                 self._executor.spin_once(timeout_sec=SPIN_SEC)
         finally:
             self._executor.shutdown()
-            destroy_node(self._guest)
-            ORIGINALS['try_shutdown'](context=self._context)
+            self._end_guest()
             if self._claim is not None:
                 self._claim.close()
+
+    def _end_guest(self) -> None:
+        destroy_node(self._guest)
+        ORIGINALS['try_shutdown'](context=self._context)
 
     # -- who is there ---------------------------------------------------------------------------
 
@@ -214,7 +222,9 @@ class _Side:
     ) -> None:
         self._came = came
         self._number = 0
-        self._own: deque[tuple[int, bytes]] = deque(maxlen=DEPTH)
+        # Number -> hash of its bytes, oldest first.
+        self._own: dict[int, int] = {}
+        self._known = KNOWN + 2 * qos_profile.depth
         self._publishing = threading.Lock()
         self.publisher = node.create_publisher(msg_type, topic, qos_profile)
         take: Callable[..., None] = self._take  # rclpy's own type knows of no second argument
@@ -231,14 +241,16 @@ class _Side:
         """Publish a message as it came."""
         with self._publishing:
             self._number += 1
-            self._own.append((self._number, data))
+            self._own[self._number] = hash(data)
+            if len(self._own) > self._known:
+                del self._own[next(iter(self._own))]
             self.publisher.publish(data)
 
     def _take(self, data: bytes, info: dict[str, int]) -> None:
-        key = (info['publication_sequence_number'], data)
+        number = info['publication_sequence_number']
         with self._publishing:
-            if key in self._own:
-                self._own.remove(key)
+            if self._own.get(number) == hash(data):
+                del self._own[number]
                 return
         self._came(data)
 

@@ -7,11 +7,13 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
+from rclpy.node import Node
 from std_msgs.msg import String
 
 import labkit
 from labkit.background.domains import DomainClaim, claim_domain
 from labkit.background.joining import join
+from labkit.background.nodes import existing_nodes
 from labkit.background.runtime import runtime
 from labkit.errors import LabError, LabTimeout
 from labkit.rosgraph.snapshot import node_names
@@ -20,6 +22,7 @@ Start = Callable[..., Any]
 
 SETUP = """
 import labkit as lab
+from rclpy.node import Node
 from rclpy.node import Node
 from std_msgs.msg import String
 
@@ -101,6 +104,39 @@ def test_running_the_cell_again_joins_once(start_kernel: Start, shared: int) -> 
     ada.run('lab.wait_until(lambda: len(heard) >= 2, timeout_sec=60)')
     assert ada.run('print(heard)').text == "['hello', 'and that is all']\n"
     ada.run('lab.wait_until(lambda: room._guest.get_node_names().count("bo") == 1)')
+
+
+def test_what_comes_back_is_known_however_much_it_is(started: None, shared: int) -> None:
+    node = labkit.spin(Node('chat'))
+    heard: list[str] = []
+    node.create_subscription(String, 'flood', lambda msg: heard.append(msg.data), 3000)
+    publisher = node.create_publisher(String, 'flood', 3000)
+    options: dict[str, Any] = {'discovery_range': 'OFF', 'qos_profile': 3000}
+    with join('flood', String, domain_id=shared, **options) as room:
+        for number in range(2000):
+            publisher.publish(String(data=str(number)))
+        labkit.wait_until(lambda: len(heard) >= 2000, timeout_sec=60)
+        labkit.wait_until(lambda: not room._there._own, timeout_sec=60)
+        publisher.publish(String(data='end'))
+        labkit.wait_until(lambda: 'end' in heard and not room._there._own, timeout_sec=60)
+        assert room.received == 0 and room.sent == 2001
+        assert heard == [*map(str, range(2000)), 'end']
+
+
+def test_what_can_not_be_made_leaves_nobody_behind(started: None, shared: int) -> None:
+    class NoType:
+        """Looks like the class of a message, and is none."""
+
+        @staticmethod
+        def get_fields_and_field_types() -> dict[str, str]:
+            return {}
+
+    assert runtime.helper is not None
+    before = node_names(runtime.helper)
+    with pytest.raises(Exception, match='_TYPE_SUPPORT'):
+        join('a', NoType, domain_id=shared, discovery_range='OFF', name='nobody')
+    assert node_names(runtime.helper) == before
+    assert 'nobody' not in {node.get_name() for node in existing_nodes()}
 
 
 def test_variables_are_as_before(started: None, shared: int) -> None:
