@@ -12,6 +12,7 @@ import time
 from bisect import bisect_right
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import reduce
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -112,6 +113,18 @@ class Life:
         """Return the messages of a topic."""
         return self.samples.get(topic, [])
 
+    def besides_tests(self, topic: str) -> list[Sample]:
+        """Return the messages of a topic without the tests that were sent on it."""
+        tests = [sent for sent in self.sent if sent.topic == topic]
+        besides = []
+        for sample in self.on(topic):
+            found = next((sent for sent in tests if _is_of(sample, sent)), None)
+            if found is None:
+                besides.append(sample)
+            else:
+                tests.remove(found)
+        return besides
+
     def is_due(self, topic: str, sample: Sample, within: float) -> bool:
         """Tell whether what is to be said upon a message must have come before the end.
 
@@ -151,6 +164,14 @@ class Life:
         if len(unknown) > ON_THE_WAY * self.strangers.get(topic, 0):
             return list(extra)
         return [pair for pair in extra if pair[1] in known]
+
+
+def _is_of(sample: Sample, sent: Sent) -> bool:
+    """Tell whether a message is a test that was sent."""
+    return abs(sample.at - sent.at) < SAME_SEC and all(
+        reduce(getattr, path.split('.'), sample.message) == value
+        for path, value in sent.fields.items()
+    )
 
 
 def live(
@@ -307,7 +328,8 @@ class _Course:
 
     def send(self, sender: Callable[..., float], stimulus: Stimulus, life: Life) -> None:
         """Send a test, and see what comes of it at once."""
-        before = self._count(stimulus.answers)
+        # A test on the topic of its answers is none of them.
+        before = self._count(stimulus.answers) + (stimulus.topic in stimulus.answers)
         sender(stimulus.fields)
         life.sent.append(Sent(self.passing.seconds, stimulus.topic, stimulus.fields))
         self.passing.settle()

@@ -39,10 +39,10 @@ _READY = """path => {
   return panel?.context?.isReady && panel.context.path.endsWith(path)
     && panel.sessionContext?.session?.kernel?.status === 'idle';
 }"""
-# After an error that is meant JupyterLab takes the marks from all further cells, but the kernel
-# goes on with them.
 # Where JupyterLab lets a line be typed for `input()`.
 _ASKED = 'input.jp-Stdin-input'
+# After an error that is meant JupyterLab takes the marks from all further cells, but the kernel
+# goes on with them.
 _ALL_RAN = f"""() => {{
   const cells = {_CELLS}.map(cell => cell.model.toJSON()).filter(cell => cell.source.trim());
   const code = cells.filter(cell => cell.cell_type === 'code');

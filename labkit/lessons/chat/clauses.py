@@ -4,22 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 from labkit.exercises import Fail, expect
 from labkit.exercises.clauses import Clause, Evidence, Test
 from labkit.exercises.expect.values import show, text_trouble
 
-if TYPE_CHECKING:
-    from labkit.exercises.watch import Sample
-
-__all__ = ['STRING', 'Replies', 'UsedOnce', 'own_messages', 'split']
+__all__ = ['STRING', 'Replies', 'UsedOnce', 'split']
 
 STRING = 'std_msgs/msg/String'
 # How soon a reply has to come, s.
 WITHIN_SEC = 1.0
-# A test has the time at which it was sent, but for rounding, s.
-SAME_SEC = 1e-6
 # How long a publisher may take to be gone from the graph, s.
 GONE_SEC = 2.0
 
@@ -28,20 +23,6 @@ def split(message: str) -> tuple[str, str]:
     """Return who says what: `'Bo: Hello'` is from Bo."""
     who, _, text = message.partition(': ')
     return who, text
-
-
-def own_messages(evidence: Evidence, topic: str) -> list[Sample]:
-    """Return what was published on a topic besides the tests."""
-    tests = [(sent.at, sent.fields['data']) for sent in evidence.life.sent if sent.topic == topic]
-    own = []
-    for sample in evidence.life.on(topic):
-        text = sample.message.data
-        found = next((t for t in tests if t[1] == text and abs(t[0] - sample.at) < SAME_SEC), None)
-        if found is None:
-            own.append(sample)
-        else:
-            tests.remove(found)
-    return own
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,18 +63,18 @@ class Replies(Clause):
         """Compare what was published with what is due."""
         sent = [each for each in evidence.life.sent if each.topic == self.topic]
         texts = [str(each.fields['data']) for each in sent]
-        left = [(sample.at, sample.message.data) for sample in own_messages(evidence, self.topic)]
+        left = [(s.at, s.message.data) for s in evidence.life.besides_tests(self.topic)]
         replied: set[str] = set()
         for each, text, right in zip(sent, texts, self.replies(texts), strict=True):
             here = [pair for pair in left if each.at <= pair[0] < each.at + WITHIN_SEC]
             came = [value for _, value in here]
             if right is None and came:
-                self._refuse(text, came, 'nothing')
+                self._refuse(text, came, None)
             if right is None:
                 continue
             found = next((pair for pair in here if pair[1] == right), None)
             if found is None:
-                self._refuse(text, came, show([right]), again=text in replied)
+                self._refuse(text, came, right, again=text in replied)
             left.remove(found)
             replied.add(text)
             if right in came[came.index(right) + 1 :]:
@@ -116,17 +97,17 @@ class Replies(Clause):
         return f'{hears.node} has replied to {count} of {len(texts)} messages.'
 
     def _refuse(
-        self, text: str, came: Sequence[str], wanted: str, *, again: bool = False
+        self, text: str, came: Sequence[str], right: str | None, *, again: bool = False
     ) -> NoReturn:
         why, todo = self.explain(text, came)
         if again and not came:
             why = 'The same message had a reply before. Is something used up by the first one?'
             todo = 'Do the same for each message that wants a reply, each time.'
-        if not why and came and wanted != 'nothing':
-            why = text_trouble(came[-1], wanted.strip("'"))
+        if not why and came and right is not None:
+            why = text_trouble(came[-1], right)
             todo = 'Compare the text that is wanted with the one seen.'
         raise Fail(
-            f'{wanted} on {self.topic} upon {show([text])}',
+            f'{show([right]) if right else "nothing"} on {self.topic} upon {show([text])}',
             show(came) if came else 'nothing',
             why=why,
             todo=todo,
@@ -156,11 +137,11 @@ class UsedOnce(Clause):
         """Look at the numbers of the messages, which each publisher counts from 1, and for it."""
         from labkit.background.patience import answer_sec
 
-        again = [sample for sample in own_messages(evidence, self.topic) if sample.number > 1]
+        again = [s for s in evidence.life.besides_tests(self.topic) if s.number > 1]
         if again:
             raise Fail(
                 'a publisher of its own for each reply',
-                f'one has published {max(sample.number for sample in again)} messages',
+                f'one has published {max(s.number for s in again)} messages',
                 why='A publisher that is kept is used again and again.',
                 todo='Call create_publisher() when a reply is due, and destroy_publisher() '
                 'afterwards.',

@@ -166,6 +166,24 @@ lab.spin(node)
             ),
         ),
         Style(
+            'a queue and a thread',
+            changed(
+                _POLITE,
+                ('\nfrom rclpy', '\nimport queue\nimport threading\n\nfrom rclpy'),
+                (
+                    'self.on_message, 10)\n',
+                    'self.heard.put, 10)\n'
+                    '        threading.Thread(target=self.work, daemon=True).start()\n\n'
+                    '    def work(self):\n        while True:\n'
+                    '            self.on_message(self.heard.get())\n',
+                ),
+                (
+                    "        self.greeted = {'Ada'}\n",
+                    "        self.greeted = {'Ada'}\n        self.heard = queue.Queue()\n",
+                ),
+            ),
+        ),
+        Style(
             'greets before it remembers',
             changed(
                 _POLITE,
