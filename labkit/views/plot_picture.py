@@ -68,6 +68,8 @@ def ticks(low: float, high: float, most: int = 5) -> list[float]:
 def thin(times: Floats, values: Floats, step: float) -> tuple[Floats, Floats]:
     """Return fewer samples that look the same: least and greatest of each step of time.
 
+    A gap, which is a value of NaN, stays one, however close to it values come.
+
     Args:
         times: When they came, s, ascending.
         values: What came.
@@ -79,11 +81,12 @@ def thin(times: Floats, values: Floats, step: float) -> tuple[Floats, Floats]:
         return times, values
     ends = np.append(starts[1:], len(values)) - 1
     least, greatest = np.fmin.reduceat(values, starts), np.fmax.reduceat(values, starts)
+    gap = np.logical_or.reduceat(np.isnan(values), starts) & ~np.isnan(least)
+    kept = np.stack([np.full_like(gap, True), gap, np.full_like(gap, True)], axis=1)
+    few_times = np.stack([times[starts], times[starts], times[ends]], axis=1)[kept]
+    few = np.stack([least, np.full_like(least, np.nan), greatest], axis=1)[kept]
     # The last one, too: it is what is shown as the latest value.
-    return (
-        np.append(np.stack([times[starts], times[ends]], axis=1).ravel(), times[-1]),
-        np.append(np.stack([least, greatest], axis=1).ravel(), values[-1]),
-    )
+    return np.append(few_times, times[-1]), np.append(few, values[-1])
 
 
 def to_svg(lines: Sequence[Line], text: str) -> str:
