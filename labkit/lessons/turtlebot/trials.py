@@ -21,6 +21,7 @@ from labkit.lessons.turtlebot.drive import (
     ODOMETRY,
     SCAN,
     TWIST,
+    Command,
     Drive,
     EndOfDrive,
     Point,
@@ -29,7 +30,7 @@ from labkit.lessons.turtlebot.robot import OtherDrivers, place, short_sighted, w
 
 if TYPE_CHECKING:
     from labkit.exercises.virtual_time import VirtualTime
-    from labkit.exercises.watch import Watch
+    from labkit.exercises.watch import Sample, Watch
     from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['Trial', 'Trials']
@@ -268,7 +269,7 @@ class Trials:
         few = sum(command.at < found.commands[0].at + FEW_SEC for command in found.commands)
         with self._others.counted():
             again = self._in_real_time(trial, unless=few)
-        if again is None and self._goes_on_while_time_stands_still(trial):
+        if again is None and self._looks_at_another_clock(trial, found):
             again = self._drive_in_real_time(trial)
         return again
 
@@ -278,25 +279,33 @@ class Trials:
         assert found is not None
         return found
 
-    def _goes_on_while_time_stands_still(self, trial: Trial) -> bool:
-        count = 0
+    def _looks_at_another_clock(self, trial: Trial, found: Drive) -> bool:
+        """Tell whether it matters to the node that the time of ROS stands still for a while.
+
+        It does if commands come meanwhile, or if they come at other times after it. A node that
+        follows the time of ROS notices nothing, and commands as it did before.
+        """
+        began, count = math.inf, 0
 
         def stand_still(now: float, watches: Mapping[str, Watch]) -> bool:
-            nonlocal count
+            nonlocal began, count
             commands = watches['/cmd_vel']
-            if now < SIGN_SEC or not len(commands):
-                return now > SIGN_SEC + 1.0
-            before, end = len(commands), time.monotonic() + STILL_SEC
-            while count < 2 and time.monotonic() < end:
-                time.sleep(POLL_SEC)
-                commands.pump()
-                count = len(commands) - before
-            return True
+            if now >= SIGN_SEC and len(commands) and began == math.inf:
+                began, before = commands.samples[0].at, len(commands)
+                end = time.monotonic() + STILL_SEC
+                while count < 2 and time.monotonic() < end:
+                    time.sleep(POLL_SEC)
+                    commands.pump()
+                    count = len(commands) - before
+            return count > 1 or now > min(began, SIGN_SEC + BEGIN_SEC) + FEW_SEC
 
         stimulus = Stimulus(SIGN_SEC, *self.sign, trial.fields)
+        limit = SIGN_SEC + BEGIN_SEC + FEW_SEC
         with self._others.counted():
-            self._live(SIGN_SEC + 2.0, (stimulus,), until=stand_still, start=trial.start)
-        return count >= 2
+            life = self._live(limit, (stimulus,), until=stand_still, start=trial.start)
+        if count > 1 or began == math.inf:
+            return count > 1
+        return not life.remote and _few_times(life.on('/cmd_vel')) != _few_times(found.commands)
 
     # -- real time ------------------------------------------------------------------------------
 
@@ -311,16 +320,23 @@ class Trials:
         Returns:
             What was seen; None if it was given up.
         """
+        from labkit.background.patience import answer_sec
+
         probe, topics = self.probe, {**self._topics, '/scan': SCAN}
         watches = {topic: probe.watch(topic, msg_type) for topic, msg_type in topics.items()}
         try:
             self._expect_quiet(watches['/cmd_vel'])
             send = probe.sender(*self.sign)
             place(self.robot, trial.start)
+            placed = time.time()
             for watch in watches.values():
                 watch.pump()
                 watch.clear()
-            probe.wait(lambda: len(watches['/odom']) > 1, 1.0)
+            # When the second one of the new place is here, the node has had the first one.
+            odometry = watches['/odom']
+            probe.wait(
+                lambda: len(odometry) > 1 and odometry.samples[-2].at > placed, answer_sec(1.0)
+            )
             sign = send(trial.fields)
             found = Drive(sign=sign, goals=trial.goals, exact=False, margin=REAL_MARGIN_SEC)
             ended, commands = EndOfDrive(sign, REAL_TAIL_SEC), watches['/cmd_vel']
@@ -380,3 +396,9 @@ class Trials:
                 why='A loop publishes without a pause.',
                 todo='Publish in a timer of 0.1 s, one command each time.',
             )
+
+
+def _few_times(commands: Sequence[Sample] | Sequence[Command]) -> list[int]:
+    """Return when the first few commands came, ms from the first one on."""
+    times = [round((each.at - commands[0].at) * 1e3) for each in commands]
+    return [ms for ms in times if ms < FEW_SEC * 1e3]
