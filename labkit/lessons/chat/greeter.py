@@ -57,13 +57,13 @@ def _draw() -> list[str]:
         f'Bo: hello {number}',
         f'Dilek: HELLO {number}',
         f'Eva: Hell o {number}',
-        f'Bo: Good morning {number}',
         f'Bo: Salut {number}',
         '',
     ]
     random.shuffle(texts)
-    # More than ten: some nodes have had enough then.
-    return ['Bo: Hello', 'Bo: Hello', *texts, f'Guo: Hello {number}']
+    # The plainest come first, for a reason that fits. More than ten: some nodes have had enough.
+    first = ['Bo: Hello', 'Bo: Hello', f'Bo: Good morning {number}']
+    return [*first, *texts, f'Guo: Hello {number}']
 
 
 def _explain(text: str, came: Sequence[str]) -> tuple[str, str]:

@@ -188,8 +188,19 @@ lab.spin(node)
                 _HEARER,
                 (
                     _PARTS,
-                    "who, *rest = msg.data.split(':')\n"
-                    "        colon, text = rest, ':'.join(rest).strip()",
+                    "who, *rest = msg.data.split(': ')\n"
+                    '        colon, text = rest, rest and rest[0]',
+                ),
+            ),
+            'A text may hold a colon, too.',
+        ),
+        Wrong(
+            'divides at a colon without a blank',
+            changed(
+                _HEARER,
+                (
+                    _PARTS,
+                    "who, colon, text = msg.data.partition(':')\n        text = text[1:]",
                 ),
             ),
             'nobody says who he is',
