@@ -58,8 +58,10 @@ POLL_SEC = 0.0002
 _latest: WeakKeyDictionary[Node, int] = WeakKeyDictionary()
 
 
-# Timers of rates in which no thread sleeps any more, across checks.
-_given_up: WeakSet[Timer] = WeakSet()
+# Timers of rates that are not waited for, across checks: the thread works for too long, or none
+# sleeps there any more. The latter are waited for again as soon as one is seen to sleep there.
+_slow: WeakSet[Timer] = WeakSet()
+_left: WeakSet[Timer] = WeakSet()
 
 
 class VirtualTime:
@@ -258,7 +260,9 @@ def _sleepers(timers: Iterable[Timer]) -> dict[Timer, set[int]]:
     """Return the timers of rates, each with the ids of the threads that sleep in its rate."""
     from labkit.background.compat import rate_is_awaited, rate_sleepers
 
-    return {timer: rate_sleepers(timer) for timer in timers if rate_is_awaited(timer) is not None}
+    rates = {timer: awaited for timer in timers if (awaited := rate_is_awaited(timer)) is not None}
+    _left.difference_update(timer for timer, awaited in rates.items() if awaited)
+    return {timer: rate_sleepers(timer) for timer in rates}
 
 
 def _wait_for_rate(timer: Timer, threads: set[int]) -> None:
@@ -274,14 +278,16 @@ def _wait_for_rate(timer: Timer, threads: set[int]) -> None:
     from labkit.background.patience import answer_sec
 
     if rate_is_awaited(timer):
-        _given_up.discard(timer)
+        _slow.discard(timer)
     start, looks = time.monotonic(), 0
-    while not rate_is_awaited(timer) and timer not in _given_up:
+    while not (rate_is_awaited(timer) or timer in _slow or timer in _left):
         passed = time.monotonic() - start
         if passed > IDLE_SEC:
             looks = 0 if _is_at_work(timer, threads) else looks + 1
-        if passed > answer_sec(RATE_SEC) or looks > IDLE_LOOKS:
-            _given_up.add(timer)
+        if passed > answer_sec(RATE_SEC):
+            _slow.add(timer)
+        if looks > IDLE_LOOKS:
+            _left.add(timer)
         time.sleep(POLL_SEC if passed < IDLE_SEC else 10 * POLL_SEC)
 
 

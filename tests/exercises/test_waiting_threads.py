@@ -10,12 +10,13 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
-from labkit.exercises.virtual_time import _waits
+from labkit.background.compat import rate_is_awaited
+from labkit.exercises.virtual_time import _sleepers, _wait_for_rate, _waits
 
 
 @contextmanager
 def thread_that(waits: Any, ends: Any) -> Iterator[Any]:
-    thread = threading.Thread(target=waits)
+    thread = threading.Thread(target=waits, daemon=True)
     thread.start()
     yield thread
     ends()
@@ -50,3 +51,32 @@ def test_one_that_clears_an_event_is_at_work() -> None:
 
 def test_one_that_computes_is_at_work() -> None:
     assert not _waits(sys._getframe())
+
+
+def test_a_rate_that_was_left_is_waited_for_again_as_soon_as_a_thread_sleeps_in_it() -> None:
+    class Ticks:
+        """A timer of a rate."""
+
+        callback = threading.Event().set
+
+    timer: Any = Ticks()
+    event = timer.callback.__self__
+    done: list[int] = []
+
+    def work() -> None:
+        while len(done) < 2:
+            event.wait()
+            time.sleep(0.3)
+            done.append(1)
+            event.clear()
+
+    # Nobody sleeps there.
+    _wait_for_rate(timer, set())
+    with thread_that(work, event.set) as thread:
+        while not rate_is_awaited(timer):
+            time.sleep(0.001)
+        sleepers = _sleepers([timer])
+        assert sleepers == {timer: {thread.ident}}
+        event.set()
+        _wait_for_rate(timer, sleepers[timer])
+        assert done == [1]

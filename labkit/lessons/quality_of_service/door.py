@@ -198,7 +198,7 @@ lab.spin(node)
                     '        self.publisher.publish(Int16(data=self.number))\n',
                 ),
             ),
-            'The first messages were right, the later ones are not.',
+            'data = 1 in each message on /door',
         ),
         Wrong(
             'zero',
