@@ -41,6 +41,8 @@ from labkit.settings import audience, check_domain_id, read_shared_domain_id
 if TYPE_CHECKING:
     from rclpy.node import Node
 
+    from labkit.background.child_processes import Process
+
 __all__ = ['Joined', 'join']
 
 NODE_NAME = 'domain_bridge'
@@ -65,6 +67,8 @@ class Joined(Session):
         name: Full name of the node that others see there.
         sent: How many messages were carried to the others.
         received: How many came from them.
+        programs: Programs of this notebook in the domain. They end with it: whoever claims the
+            domain afterwards is to find it empty.
     """
 
     def __init__(
@@ -82,6 +86,7 @@ class Joined(Session):
         self.domain_id, self._msg_type, self._claim = domain_id, msg_type, claim
         self._variables = variables
         self.sent = self.received = 0
+        self.programs: list[Process] = []
         self.topic = full_topic_name(topic, self._node)
         try:
             self._context, self._guest = _enter(domain_id, name, variables)
@@ -162,6 +167,8 @@ class Joined(Session):
         finally:
             self._executor.shutdown()
             self._end_guest()
+            for program in self.programs:
+                program.stop()
             if self._claim is not None:
                 self._claim.close()
 

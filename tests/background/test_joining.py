@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -13,6 +14,7 @@ from rclpy.serialization import serialize_message
 from std_msgs.msg import String
 
 import labkit
+from labkit.background.child_processes import start_process
 from labkit.background.domains import DomainClaim, claim_domain
 from labkit.background.joining import _Side, join
 from labkit.background.nodes import existing_nodes
@@ -161,6 +163,15 @@ def test_it_ends_with_its_block_with_stop_and_with_its_node(shared: int) -> None
     labkit.stop()
     assert third.done
     third.leave()  # without effect
+
+
+def test_programs_in_the_domain_end_before_it_is_free(started: None) -> None:
+    room = join('chatter', String, discovery_range='LOCALHOST')
+    command = [sys.executable, '-c', 'import time; time.sleep(1000)']
+    room.programs.append(start_process('guest', command, dict(os.environ)))
+    assert room.programs[0].running
+    room.leave()
+    assert not room.programs[0].running
 
 
 def test_a_domain_is_taken_and_given_back(started: None) -> None:

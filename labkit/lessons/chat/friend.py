@@ -27,7 +27,8 @@ _process: Process | None = None
 def start_friend(room: Joined) -> None:
     """Start the friend as a process in the domain of a room, and wait until you hear each other.
 
-    One that is there already is ended first. `lab.processes()` lists and stops it.
+    One that is there already is ended first. `lab.processes()` lists and stops it, and it ends
+    when the room is left.
 
     Args:
         room: What `lab.join` has returned.
@@ -49,6 +50,7 @@ def start_friend(room: Joined) -> None:
     }
     command = [sys.executable, '-c', f'from {__name__} import main; main()']
     _process = start_process('friend', command, variables)
+    room.programs.append(_process)
     room.wait_for_others(1, timeout_sec=MEET_SEC)
     print(f'{NAME} is there.')
 
