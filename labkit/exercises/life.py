@@ -35,7 +35,9 @@ MAX_MESSAGES = 3000
 # When this is over, time passes in large steps for nodes of other processes, s of real time.
 HURRY_SEC = 2.0
 LARGE_STEP_SEC = 2.0
-# How long an answer may take that comes from a thread or another process, s of real time.
+# How long a thread that keeps a rate may take to wake up upon a test, and how long an answer may
+# take that comes from any thread or another process, s of real time.
+THREAD_SEC = 0.3
 PATIENCE_SEC = 0.8
 POLL_SEC = 0.002
 # What is on its way from another process has come when it was quiet for so long, and in any case
@@ -334,6 +336,8 @@ class _Course:
         life.sent.append(Sent(self.passing.seconds, stimulus.topic, stimulus.fields))
         self.passing.settle()
         self._look()
+        if stimulus.answers and self.passing.rates:
+            self._wait_for_thread(stimulus, before)
         if not stimulus.answers or self._count(stimulus.answers) > before:
             return
         # A node that keeps what it hears for its timer answers soon in virtual time, one with a
@@ -346,6 +350,17 @@ class _Course:
                 time.sleep(POLL_SEC)
                 self._look()
             self.patience -= self._count(stimulus.answers) == before
+
+    def _wait_for_thread(self, stimulus: Stimulus, before: int) -> None:
+        """Let a thread that a test has woken do its work before time goes on."""
+        from labkit.background.patience import answer_sec
+
+        end = time.monotonic() + answer_sec(THREAD_SEC)
+        while self._count(stimulus.answers) == before and time.monotonic() < end:
+            time.sleep(POLL_SEC)
+            self._look()
+        self.passing.settle_rates()
+        self._look()
 
     def wait_for_late_ones(self) -> None:
         """Wait until nothing more comes of other processes."""

@@ -190,6 +190,16 @@ class VirtualTime:
             self._remote.settle()
             self._settle()
 
+    @property
+    def rates(self) -> bool:
+        """Tell whether there are threads that sleep in a `Rate`, or have done so."""
+        return bool(_sleepers(self._timers()))
+
+    def settle_rates(self) -> None:
+        """Wait until threads sleep in their rates that have left them, and may have come back."""
+        _left.difference_update(self._timers())
+        self.settle()
+
     def _next_tick(self) -> int:
         if self._remote is None or not self._remote.names:
             return self._now + NANOSECONDS * 3600
