@@ -23,6 +23,7 @@ FLOORS = {
     'labkit.rosgraph': 1,
     'labkit.background': 2,
     'labkit.bags': 3,
+    'labkit.packages': 3,
     'labkit.ros2': 4,
     'labkit.sim': 4,
     'labkit.checkup': 4,

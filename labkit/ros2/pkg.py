@@ -1,4 +1,4 @@
-"""`ros2 pkg`: which packages there are, where they are, what they have to run."""
+"""`ros2 pkg`: which packages there are, where, what they have to run; make a new one."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from argparse import Namespace
 
 from labkit.errors import LabError
 from labkit.ros2.parser import Command, Parser, Verb
+from labkit.ros2.pkg_create import CREATE
 from labkit.rosgraph.packages import DEMO, executables, package_names, prefix_of
 
 __all__ = ['COMMAND']
@@ -85,6 +86,7 @@ COMMAND = Command(
     'pkg',
     'Various package related sub-commands',
     (
+        CREATE,
         Verb(
             'executables',
             'Output a list of package specific executables',
