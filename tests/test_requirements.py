@@ -20,6 +20,12 @@ ROOT = Path(__file__).resolve().parent.parent
 ENVIRONMENT, TESTS = 'environment.txt', 'tests/requirements.txt'
 # Packages that need not be imported to be used, and what uses them.
 USED_BY_NAME = {
+    'colcon-bash': 'colcon writes install/setup.bash with it',
+    'colcon-core': '`colcon` runs it',
+    'colcon-output': '`colcon build` prints with it',
+    'colcon-package-selection': 'the option --packages-select of colcon',
+    'colcon-ros': 'colcon knows package.xml by it',
+    'colcon-test-result': '`colcon test-result` runs it',
     'coverage': '`labkit test --coverage` runs it',
     'flit-core': 'pyproject.toml names it: it builds labkit',
     'ipykernel': 'the kernelspec of the lessons starts it',
@@ -33,6 +39,7 @@ USED_BY_NAME = {
     'ros-jazzy-common-interfaces': 'a set: its packages are imported',
     'ros-jazzy-rclpy': 'a set: its packages are imported',
     'ruff': '`labkit test` runs it',
+    'setuptools': 'colcon runs the setup.py of each package with it',
     'types-pyyaml': 'mypy reads it',
     'uv': '`labkit lab` runs it where it is there',
 }

@@ -37,7 +37,8 @@ STARTUP_TIMEOUT_SEC = 120
 # Variables of whoever starts the run that would show in the outputs, or let others be heard.
 _FOREIGN = (
     *('CLICOLOR', 'FASTDDS_', 'FASTRTPS_', 'FORCE_COLOR', 'JPY_', 'LABKIT_', 'MPLBACKEND'),
-    *('NO_COLOR', 'PYTEST_', 'PYTHONWARNINGS', 'RCUTILS_', 'RMW_', 'ROS_'),
+    *('NO_COLOR', 'PYTEST_', 'PYTHONDONTWRITEBYTECODE', 'PYTHONWARNINGS', 'RCUTILS_', 'RMW_'),
+    *('ROS_', 'SETUPTOOLS_'),
 )
 _WIDGET_VIEW = 'application/vnd.jupyter.widget-view+json'
 
