@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from labkit.checkup.report import doctor
     from labkit.exercises.lesson import lesson
     from labkit.exercises.progress import progress
+    from labkit.packages.export import export
     from labkit.sim.turtlebot import Turtlebot
     from labkit.views.arena import arena
     from labkit.views.bag import bag
@@ -47,6 +48,7 @@ __all__ = [
     'arena',
     'bag',
     'doctor',
+    'export',
     'graph',
     'join',
     'lesson',
@@ -73,6 +75,7 @@ _HOMES = {
     'arena': 'labkit.views.arena',
     'bag': 'labkit.views.bag',
     'doctor': 'labkit.checkup.report',
+    'export': 'labkit.packages.export',
     'graph': 'labkit.views.graph',
     'join': 'labkit.background.joining',
     'lesson': 'labkit.exercises.lesson',

@@ -56,6 +56,12 @@ def prefix_of(package: str) -> Path:
             f"Package '{package}' not found",
             todo='It is not installed here; labkit has its talker and listener.',
         )
+    if Path('install', package, 'share', package).is_dir():
+        raise LabError(
+            f"Package '{package}' not found",
+            todo='It is built in this folder, but this terminal does not know it yet: '
+            'source install/setup.bash',
+        )
     near = nearest(package, [*packages, DEMO])
     raise LabError(
         f"Package '{package}' not found",

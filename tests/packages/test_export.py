@@ -1,0 +1,236 @@
+"""`lab.export`: what comes along into the package, and what is named because it can not."""
+
+from __future__ import annotations
+
+import ast
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+SETUP = 'import labkit as lab\n'
+TALKER = """\
+from rclpy.node import Node
+from std_msgs.msg import String
+
+
+class Talker(Node):
+    def __init__(self):
+        super().__init__('talker')
+        self.publisher = self.create_publisher(String, 'chatter', 10)
+        self.create_timer(0.1, self.on_timer)
+        self.count = 0
+
+    def on_timer(self):
+        self.publisher.publish(String(data=f'Hello World: {self.count}'))
+        self.count += 1
+"""
+MODULE = '''\
+"""The node Talker of the package talk."""
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from std_msgs.msg import String
+
+
+class Talker(Node):
+    def __init__(self):
+        super().__init__('talker')
+        self.publisher = self.create_publisher(String, 'chatter', 10)
+        self.create_timer(0.1, self.on_timer)
+        self.count = 0
+
+    def on_timer(self):
+        self.publisher.publish(String(data=f'Hello World: {self.count}'))
+        self.count += 1
+
+
+def main(args=None):
+    """Run the node until it is interrupted."""
+    rclpy.init(args=args)
+    node = Talker()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == '__main__':
+    main()
+'''
+EXPORT = (
+    "lab.export({}, package='talk', folder='src', maintainer_name='me', "
+    "maintainer_email='me@example.org', overwrite=True)"
+)
+
+
+@pytest.fixture
+def notebook(kernel):
+    """Give a function that runs cells; it returns the result of the last one."""
+    kernel.run(SETUP)
+
+    def run(*cells: str):
+        for cell in cells[:-1]:
+            result = kernel.run(dedent(cell))
+            assert not result.error, result.traceback
+        return kernel.run(dedent(cells[-1]))
+
+    return run
+
+
+@pytest.fixture
+def source(notebook, kernel) -> Callable[..., str]:
+    """Give a function that runs cells, exports `Talker`, and returns its module."""
+
+    def run(*cells: str) -> str:
+        result = notebook(*cells, EXPORT.format('Talker'))
+        assert not result.error, result.traceback
+        text = (kernel.folder / 'src/talk/talk/talker.py').read_text()
+        ast.parse(text)
+        return text
+
+    return run
+
+
+def test_a_class_becomes_a_package(source, kernel):
+    assert source(TALKER) == MODULE
+    src = kernel.folder / 'src/talk'
+    xml = (src / 'package.xml').read_text()
+    assert (
+        '  <depend>rclpy</depend>\n  <depend>std_msgs</depend>\n\n  <test_depend>python3-pyt'
+        in xml
+    )
+    assert "'talker = talk.talker:main'" in (src / 'setup.py').read_text()
+    assert "assert node.get_name() == 'talker'" in (src / 'test/test_talker.py').read_text()
+    assert (src / 'LICENSE').is_file()
+
+
+def test_what_it_shows(notebook):
+    assert notebook(TALKER, EXPORT.format('Talker')).text == dedent("""\
+        Package talk in src/talk
+          LICENSE
+          package.xml
+          resource/talk
+          setup.cfg
+          setup.py
+          talk/__init__.py
+          talk/talker.py
+          test/test_talker.py
+        It depends on: rclpy, std_msgs
+        When it is built and sourced:
+          ros2 run talk talker
+        """)
+
+
+def test_what_other_cells_have_made_comes_along(source):
+    """The cells are those of the kernel: the latest ones, a magic at the top of one included."""
+    text = source(
+        TALKER.replace('Hello', 'Old'),
+        'WORD = "old"',
+        '%%capture\ndef word():\n    return WORD',
+        'WORD = "new"',
+        TALKER.replace("f'Hello", "word() + f'"),
+        'WORD',
+    )
+    assert 'Old' not in text, text
+    assert 'WORD = "new"\n' in text and 'def word():' in text
+
+
+def test_what_can_not_come_along_is_named(notebook, kernel):
+    speed = 'speed = 3\n\n' + TALKER.replace('self.count += 1', 'self.count += sped')
+    said = notebook(speed, EXPORT.format('Talker')).error
+    assert said.startswith(
+        "LabError: Talker can not become a package: it uses 'sped'.\nCell In[2], line 16: "
+        'self.count += sped\nNo cell of this notebook has made it.\n'
+    )
+    shell = TALKER.replace('self.count += 1', '%ros2 node list')
+    said = notebook(shell, EXPORT.format('Talker')).error
+    assert "uses 'get_ipython'.\nCell In[4], line 14: get_ipython().run_line_magic" in said
+    said = notebook(TALKER, 'Talker = lab.spin(Talker())', EXPORT.format('Talker')).error
+    assert 'lab.export takes the class, and Talker() is one of its nodes.' in said
+    assert not (kernel.folder / 'src').exists()
+
+
+def test_a_folder_that_is_there(notebook, kernel):
+    plain = EXPORT.replace(', overwrite=True', '').format('Talker')
+    notebook(TALKER, plain)
+    assert 'src/talk is there already.' in notebook(plain).error
+    own = kernel.folder / 'src/talk'
+    (own / 'talk/old.py').write_text('')
+    assert not notebook(EXPORT.format('Talker')).error
+    assert not (own / 'talk/old.py').exists()
+    (own / 'package.xml').unlink()
+    said = notebook(EXPORT.format('Talker')).error
+    assert 'is no package of that name: it is not overwritten' in said
+    assert (own / 'setup.py').exists()
+
+
+def test_several_classes_and_other_packages(notebook, kernel):
+    listener = TALKER.replace('Talker', 'ListenerABTest').replace("'talker'", "'ear'")
+    result = notebook(TALKER, f'import yaml, rosbags\n{listener}', 'pass')
+    used = listener.replace('self.count += 1', 'yaml, rosbags')
+    result = notebook(used, EXPORT.format('Talker, ListenerABTest'))
+    assert '  talk/listener_ab_test.py\n' in result.text and '  talk/talker.py\n' in result.text
+    assert 'It depends on: rclpy, std_msgs, python3-yaml\n' in result.text
+    assert 'Add to package.xml what brings: rosbags\n' in result.text
+    setup = (kernel.folder / 'src/talk/setup.py').read_text()
+    assert (
+        "            'talker = talk.talker:main',\n"
+        "            'listener_ab_test = talk.listener_ab_test:main'\n"
+    ) in setup
+
+
+def test_bad_names_of_a_package(notebook):
+    assert 'Which class?' in notebook("lab.export(package='x')").error
+    assert 'robot_lab' in notebook("lab.export(package='robot-lab')").error
+
+
+def test_a_class_of_a_script_can_be_exported(script, tmp_path):
+    code = f"{SETUP}{TALKER}\n\nprint(lab.export(Talker, package='talk'))\n"
+    assert 'ros2 run talk talker' in script(code).stdout
+    assert (tmp_path / 'talk/talk/talker.py').read_text() == MODULE
+
+
+@pytest.mark.timeout(300)
+def test_it_is_built_tested_and_run_without_labkit(source, kernel, lab_env):
+    """The real colcon, in a workspace, as a learner does it; the talker is heard from outside."""
+    source(TALKER)
+    env = {**lab_env, 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'ROS_DOMAIN_ID': '97'}
+    env['PATH'] = os.pathsep.join([str(Path(sys.prefix, 'bin')), env['PATH']])
+    del env['PYTHONPATH']
+
+    def bash(words: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            ['bash', '-c', words],
+            cwd=kernel.folder,
+            env=env,
+            capture_output=True,
+            text=True,
+            timeout=200,
+        )
+
+    built = bash('colcon build')
+    assert built.returncode == 0 and '1 package finished' in built.stdout, built
+    tested = bash('colcon test --event-handlers console_direct+ && colcon test-result')
+    assert 'Summary: 1 test, 0 errors, 0 failures, 0 skipped' in tested.stdout, tested
+    unsourced = bash('ros2 run talk talker')
+    assert unsourced.stderr == (
+        "Package 'talk' not found\nIt is built in this folder, but this terminal does not know it "
+        'yet: source install/setup.bash\n'
+    )
+    heard = bash(
+        'source install/setup.bash; ros2 run talk talker & '
+        'ros2 topic echo --once --timeout 60 /chatter; kill -INT $!; wait $!'
+    )
+    assert heard.stdout.startswith('data: ') and 'Hello World: ' in heard.stdout, heard
+    assert (heard.returncode, 'Traceback' in heard.stderr) == (0, False), heard
+    assert bash('source install/setup.bash; ros2 pkg executables talk').stdout == 'talk talker\n'
+    assert 'install/talk\n' in bash('source install/setup.bash; ros2 pkg prefix talk').stdout
