@@ -233,7 +233,8 @@ def normalised(outputs: list[NotebookNode], folders: dict[str, str]) -> list[Not
     """Return outputs in the form in which they are stored and compared.
 
     Pieces of a stream are put together, folders that differ between machines are replaced, and
-    what is of no use later (the view of a live widget) is left out.
+    so are the times that colcon prints; what is of no use later (the view of a live widget) is
+    left out.
 
     Args:
         outputs: Outputs of one cell.
@@ -270,7 +271,7 @@ def _add_stream(result: list[NotebookNode], output: NotebookNode) -> None:
 
 
 def _without_folders(value: Any, folders: dict[str, str]) -> Any:
-    """Return a copy of an output, or of a part of it, without this machine's folders."""
+    """Return a copy of an output, or a part of it, without folders and times of this machine."""
     if isinstance(value, dict):
         return NotebookNode({k: _without_folders(v, folders) for k, v in value.items()})
     if isinstance(value, list):
@@ -281,6 +282,8 @@ def _without_folders(value: Any, folders: dict[str, str]) -> Any:
     # (Looked for first: the pattern is slow on long texts without spaces, such as pictures.)
     if '/ipykernel_' in value:
         value = re.sub(r'[^\s"\']*/ipykernel_\d+/\d+\.py', 'cell', value)
+    # How long colcon took: 'Finished <<< my_package [1.23s]'. The value is that of this run.
+    value = re.sub(r'\[(?:\d+(?:h|min) )*\d+(?:\.\d+)?s(?=[],])', '[... s', value)
     home = str(Path.home())
     for folder in sorted(folders, key=len, reverse=True):
         # IPython writes the home folder as `~` in tracebacks.

@@ -23,7 +23,8 @@ NOTEBOOKS = HERE.parent.parent / 'notebooks'
 # A check may ask to be pressed again when a process has just been started.
 PRESSES = 3
 # Cells of the kernel: before an answer is tried, and between two of them.
-MARK = 'import kernel_tools\nkernel_tools.mark()'
+# (A lesson may go to another folder, so the tools are looked for beside the notebook.)
+MARK = 'import sys\nsys.path.insert(0, {!r})\nimport kernel_tools\nkernel_tools.mark()'
 RESET = 'import kernel_tools\nkernel_tools.clean()\nlesson.{name}.forget()'
 
 
@@ -158,7 +159,7 @@ class Proof:
     ) -> int:
         """Put one exercise through its states; return the index of the cell after it."""
         cells = run.notebook.cells
-        insert(run, starter, MARK)
+        insert(run, starter, MARK.format(str(self._path.parent)))
         starter += 1
         check = [cell.id for cell in cells].index(exercise.check_id)
         for index in range(starter - 1, check):

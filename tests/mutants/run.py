@@ -156,7 +156,7 @@ class _Bench:
             if earlier is not None:
                 cell.source = earlier.answer.code
         ids = [cell.id for cell in cells]
-        insert(run, ids.index(self._exercise.starter_id), MARK)
+        insert(run, ids.index(self._exercise.starter_id), MARK.format(str(folder)))
         self._starter = ids.index(self._exercise.starter_id) + 1
         self._check = ids.index(self._exercise.check_id) + 1
         self._reset = self._check + 1

@@ -1,0 +1,20 @@
+"""The exercises and the quiz of `11_package.ipynb`."""
+
+from __future__ import annotations
+
+from labkit.exercises import Lesson
+from labkit.lessons.package.beacon import beacon
+from labkit.lessons.package.counter import counter
+from labkit.lessons.package.listener import listener
+from labkit.lessons.package.quiz import QUIZ
+from labkit.lessons.package.repair import repair
+
+__all__ = ['LESSON']
+
+LESSON = Lesson(
+    'package',
+    '11_package.ipynb',
+    exercises=[listener, repair, counter, beacon],
+    quizzes=[QUIZ],
+    topics=['/chatter', '/count', '/half', '/lit', '/news'],
+)
