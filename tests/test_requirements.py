@@ -12,6 +12,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from IPython.core.inputtransformer2 import TransformerManager
 from test_layers import imports
 
 from labkit.setup.requirements import applicable
@@ -83,13 +84,13 @@ def ros() -> frozenset[str]:
 
 
 def code_of(path: Path) -> Iterator[ast.Module]:
-    """Return the code of a module, or of each cell of a notebook without its magics."""
+    """Return the code of a module, or of each cell of a notebook with its magics as calls."""
     if path.suffix == '.py':
         yield ast.parse(path.read_text())
         return
     for cell in json.loads(path.read_text())['cells']:
         if cell['cell_type'] == 'code':
-            source = re.sub(r'(?m)^(\s*)[%!].*', r'\1pass', ''.join(cell['source']))
+            source = TransformerManager().transform_cell(''.join(cell['source']))
             yield ast.parse(source, str(path))
 
 
