@@ -40,6 +40,8 @@ _FOREIGN = (
     *('NO_COLOR', 'PYTEST_', 'PYTHONDONTWRITEBYTECODE', 'PYTHONWARNINGS', 'RCUTILS_', 'RMW_'),
     *('ROS_', 'SETUPTOOLS_'),
 )
+# How long colcon took: 'Finished <<< my_package [1.23s]', '1 package finished [1min 2s]'.
+_COLCON_TIME = r'(<<< \S+ |packages? finished )\[(?:\d+(?:h|min) )*\d+(?:\.\d+)?s(?=[],])'
 _WIDGET_VIEW = 'application/vnd.jupyter.widget-view+json'
 
 
@@ -282,8 +284,8 @@ def _without_folders(value: Any, folders: dict[str, str]) -> Any:
     # (Looked for first: the pattern is slow on long texts without spaces, such as pictures.)
     if '/ipykernel_' in value:
         value = re.sub(r'[^\s"\']*/ipykernel_\d+/\d+\.py', 'cell', value)
-    # How long colcon took: 'Finished <<< my_package [1.23s]'. The value is that of this run.
-    value = re.sub(r'\[(?:\d+(?:h|min) )*\d+(?:\.\d+)?s(?=[],])', '[... s', value)
+    if '<<< ' in value or ' finished [' in value:
+        value = re.sub(_COLCON_TIME, r'\1[... s', value)
     home = str(Path.home())
     for folder in sorted(folders, key=len, reverse=True):
         # IPython writes the home folder as `~` in tracebacks.

@@ -275,6 +275,23 @@ def test_folders_are_replaced(text: str, expected: str):
     assert normalised([error], folders)[0].traceback == [expected]
 
 
+@pytest.mark.parametrize(
+    ('text', 'expected'),
+    [
+        ('Finished <<< lab [1.23s]\n', 'Finished <<< lab [... s]\n'),
+        (
+            'Failed   <<< a [0.65s, exited with code 1]',
+            'Failed   <<< a [... s, exited with code 1]',
+        ),
+        ('Summary: 2 packages finished [1min 2s]', 'Summary: 2 packages finished [... s]'),
+        ('Summary: 1 package finished [0.9s]', 'Summary: 1 package finished [... s]'),
+        ('a list [1.5s] and [3]', 'a list [1.5s] and [3]'),
+    ],
+)
+def test_times_of_colcon_are_replaced(text: str, expected: str):
+    assert normalised([stream('stdout', text)], {})[0].text == expected
+
+
 def test_a_picture_keeps_its_pixels_and_nothing_else():
     def chunk(kind: bytes, data: bytes) -> bytes:
         check = zlib.crc32(kind + data)
