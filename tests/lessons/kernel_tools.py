@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import gc
+import shutil
 import signal
 import subprocess
 import sys
@@ -72,7 +73,10 @@ def clean() -> None:
             remove(node)
     runtime.wait(_alone, 25.0)
     for path in sorted(_files() - _files_before, reverse=True):
-        path.rmdir() if path.is_dir() else path.unlink()
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path)  # with its hidden files
+        else:
+            path.unlink()
 
 
 def forget_names() -> None:
