@@ -10,7 +10,6 @@ from labkit.lessons.package.content import Built, Does, Runs, Tested, Work, judg
 __all__ = ['beacon']
 
 PACKAGE, TOPIC, BOOL = 'beacon_lab', '/lit', 'std_msgs/msg/Bool'
-WAIT_SEC = 5.0
 
 _BEACON = """
 from rclpy.node import Node
@@ -56,7 +55,7 @@ def _is_heard_late(work: Work) -> None:
             todo='QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)',
         )
     watch = probe.watch(TOPIC, BOOL, latched=True)
-    if not probe.wait(lambda: len(watch) > 0, WAIT_SEC):
+    if not work.wait(lambda: len(watch) > 0):
         raise Fail(
             f'True on {TOPIC}, for who comes late',
             'nothing',
@@ -201,7 +200,7 @@ beacon = Exercise(
                 ('from rclpy.node', f'{_OWN}from rclpy.node'),
                 (_BUILD, f"{_TESTS}.write_text('assert 1 + 1 == 2\\n')\n{_BUILD}"),
             ),
-            'no result of a test since the last build',
+            'no test that has run',
         ),
     ],
 )

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 __all__ = ['Built', 'Does', 'Runs', 'Tested', 'Work', 'judge_package']
 
 APPEAR_SEC = 15.0
+# So long it is waited for messages that come several times a second, on a machine at rest.
+WAIT_SEC = 3.0
 # The packages of the lesson, some of which have names that are close to each other.
 PACKAGES = ('beacon_lab', 'broken_lab', 'counter_lab', 'ears_lab', 'odds_lab', 'robot_basics_lab')
 _SOURCES = ('.py', '.xml', '.cfg')
@@ -76,12 +78,20 @@ class Work:
         pairs = [each.partition('=') for each in os.fsdecode(said.stdout).split('\0')]
         return {name: value for name, _, value in pairs if name}
 
+    def wait(self, condition: Callable[[], object]) -> bool:
+        """Wait until something is true, longer where the machine is busy; tell whether it is."""
+        from labkit.background.patience import busyness
+
+        return self.probe.wait(condition, WAIT_SEC * busyness())
+
     def start(self, program: str) -> Process:
-        """Start one of its executables, as `ros2 run` does."""
+        """Start one of its executables, as `ros2 run` does, after the end of the one before."""
         from labkit.background.child_processes import start_process
         from labkit.rosgraph.snapshot import node_names
 
         path = self.folder / 'install' / self.package / 'lib' / self.package / program
+        for earlier in self.running.values():
+            earlier.stop()  # it may have a node of the same name
         before = node_names(self.probe.spun_node)
         process = start_process(f'{self.package} {program}', [str(path)], self.sourced())
         self.running[program] = process

@@ -12,7 +12,6 @@ __all__ = ['listener']
 
 PACKAGE, PROGRAM, TOPIC = 'ears_lab', 'listener', '/chatter'
 STRING = 'std_msgs/msg/String'
-HEAR_SEC = 5.0
 
 _LISTENER = '''
 import shutil
@@ -124,7 +123,7 @@ def _logs(work: Work) -> None:
     def is_logged() -> bool:
         return all(any(word in line for line in logged()) for word in words)
 
-    if not probe.wait(is_logged, HEAR_SEC):
+    if not work.wait(is_logged):
         raise Fail(
             f'a line of the log for each text, such as: I heard: {words[0]}',
             f'lines of the log: {logged()}',
