@@ -161,3 +161,13 @@ def test_no_package_is_in_both_files() -> None:
         lines = applicable((ROOT / file).read_text().splitlines(), tuple(sys.version_info[:3]))
         found.append({normal(re.split(r'[\[=]', line)[0]) for line in lines})
     assert found[0] & found[1] == set()
+
+
+def test_what_colcon_brings_for_pytest_stays_out_of_these_tests(
+    pytestconfig: pytest.Config,
+) -> None:
+    installed = importlib.metadata.entry_points(group='pytest11')
+    brought = {'pytest_cov', 'pytest_repeat', 'pytest_rerunfailures'}
+    names = {point.name for point in installed if point.value.partition('.')[0] in brought}
+    assert len(names) == 3, 'colcon brings other ones now'
+    assert [name for name in names if pytestconfig.pluginmanager.hasplugin(name)] == []

@@ -6,11 +6,13 @@ import ast
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from textwrap import dedent
 
 import pytest
+
+from labkit.background import domains
 
 SETUP = 'import labkit as lab\n'
 TALKER = """\
@@ -199,11 +201,19 @@ def test_a_class_of_a_script_can_be_exported(script, tmp_path):
     assert (tmp_path / 'talk/talk/talker.py').read_text() == MODULE
 
 
+@pytest.fixture
+def domain() -> Iterator[str]:
+    """Give the number of a domain in which no other test is."""
+    claim = domains.claim_domain()
+    yield str(claim.domain_id)
+    claim.close()
+
+
 @pytest.mark.timeout(300)
-def test_it_is_built_tested_and_run_without_labkit(source, kernel, lab_env):
+def test_it_is_built_tested_and_run_without_labkit(source, kernel, lab_env, domain):
     """The real colcon, in a workspace, as a learner does it; the talker is heard from outside."""
     source(TALKER)
-    env = {**lab_env, 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'ROS_DOMAIN_ID': '97'}
+    env = {**lab_env, 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'ROS_DOMAIN_ID': domain}
     env['PATH'] = os.pathsep.join([str(Path(sys.prefix, 'bin')), env['PATH']])
     del env['PYTHONPATH']
 
