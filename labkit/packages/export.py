@@ -7,7 +7,7 @@ import inspect
 import re
 import shutil
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -139,8 +139,7 @@ def export(
     """
     check_name(package)
     modules = _modules(node_classes)
-    gathered = {name: gather(made, Notebook.of(made)) for name, made in modules.items()}
-    sources = {name: _module_text(made, gathered[name], package) for name, made in modules.items()}
+    sources = {name: _module_text(made, package) for name, made in modules.items()}
     dependencies, unnamed = _dependencies(sources.values())
     maintainer = maintainer_name or own_name()
     names = ' and '.join(made.__name__ for made in node_classes)
@@ -154,18 +153,25 @@ def export(
         test_dependencies=['python3-pytest'],
         scripts=[(name, f'{package}.{name}:main') for name in modules],
     )
+    parts = _parts(skeleton, modules, sources)
+    target = Path(folder) / package
+    _make(parts, target, overwrite=overwrite)
+    files = sorted(part.path for part in parts if part.text is not None)
+    return Exported(package, target, files, list(modules), dependencies, unnamed)
+
+
+def _parts(
+    skeleton: Skeleton, modules: Mapping[str, type], sources: Mapping[str, str]
+) -> list[Part]:
+    """Return all files and folders of the package."""
+    package = skeleton.name
     parts = [
         *skeleton.parts(),
         *(Part(f'{package}/{name}.py', text) for name, text in sources.items()),
         *(_test(name, made, package) for name, made in modules.items()),
     ]
-    text = license_text(license)
-    if text is not None:
-        parts.append(Part('LICENSE', text))
-    target = Path(folder) / package
-    _make(parts, target, overwrite=overwrite)
-    files = sorted(part.path for part in parts if part.text is not None)
-    return Exported(package, target, files, list(modules), dependencies, unnamed)
+    text = license_text(skeleton.license)
+    return parts if text is None else [*parts, Part('LICENSE', text)]
 
 
 def _modules(node_classes: Sequence[type]) -> dict[str, type]:
@@ -225,7 +231,8 @@ def _refuse_arguments(made: type) -> None:
         )
 
 
-def _module_text(made: type, gathered: Gathered, package: str) -> str:
+def _module_text(made: type, package: str) -> str:
+    gathered = gather(made, Notebook.of(made))
     summary = (inspect.cleandoc(made.__doc__ or '').partition('\n')[0]) or (
         f'The node {made.__name__} of the package {package}.'
     )

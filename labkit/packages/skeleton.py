@@ -22,6 +22,7 @@ __all__ = [
     'DESCRIPTION',
     'LICENSE',
     'LICENSES',
+    'VERSION',
     'Part',
     'Skeleton',
     'check_name',

@@ -13,6 +13,7 @@ from labkit.packages.skeleton import (
     DESCRIPTION,
     LICENSE,
     LICENSES,
+    VERSION,
     Part,
     Skeleton,
     check_name,
@@ -25,7 +26,6 @@ from labkit.ros2.parser import Parser, Verb
 __all__ = ['CREATE']
 
 BUILD_TYPES = ('cmake', 'ament_cmake', 'ament_python')
-VERSION = '0.0.0'
 
 
 def create(args: Namespace) -> str | None:
