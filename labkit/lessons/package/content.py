@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ['Built', 'Does', 'Runs', 'Tested', 'Work', 'judge_package']
 
 APPEAR_SEC = 15.0
+ANSWER_SEC = 2.0
 # So long it is waited for messages that come several times a second, on a machine at rest.
 WAIT_SEC = 3.0
 # The packages of the lesson, some of which have names that are close to each other.
@@ -40,13 +41,15 @@ class Work:
         probe: The probe of the check.
         package: Its name.
         folder: The workspace.
-        running: What was started of it, by the name of the executable.
+        running: What was started of it last, and runs.
+        ran: The names of all executables that were started.
     """
 
     probe: Probe
     package: str
     folder: Path
-    running: dict[str, Process] = field(default_factory=dict)
+    running: Process | None = None
+    ran: list[str] = field(default_factory=list)
 
     @property
     def source(self) -> Path:
@@ -90,13 +93,18 @@ class Work:
         from labkit.rosgraph.snapshot import node_names
 
         path = self.folder / 'install' / self.package / 'lib' / self.package / program
-        for earlier in self.running.values():
-            earlier.stop()  # it may have a node of the same name
+        self.stop()  # it may have a node of the same name
         before = node_names(self.probe.spun_node)
         process = start_process(f'{self.package} {program}', [str(path)], self.sourced())
-        self.running[program] = process
+        self.running, self.ran = process, [*self.ran, program]
         process.wait_for_nodes(self.probe.spun_node, before, APPEAR_SEC)
         return process
+
+    def stop(self) -> None:
+        """End what is running of it."""
+        process, self.running = self.running, None
+        if process is not None:
+            process.stop()
 
 
 @dataclass(frozen=True)
@@ -151,6 +159,7 @@ class Runs(Clause):
 
     def look(self, work: Work) -> None:
         """Start it, and raise Fail unless its node comes."""
+        from labkit.background.service_calls import wait_until_spun
         from labkit.rosgraph.snapshot import node_names
 
         wanted = f'the node /{self.node}, after: ros2 run {self.package} {self.program}'
@@ -164,7 +173,11 @@ class Runs(Clause):
             )
         process = work.start(self.program)
         if f'/{self.node}' in process.nodes:
-            return
+            # One that does not answer may be about to end: nothing spins it.
+            if wait_until_spun(work.probe.spun_node, f'/{self.node}', ANSWER_SEC):
+                return
+            if not work.wait(lambda: not process.running):
+                return
         if not process.running:
             last = process.output[-1] if process.output else 'nothing'
             raise Fail(
@@ -266,8 +279,7 @@ def judge_package(
         for clause in clauses:
             with naming(clause):
                 clause.look(work)
-    programs = ' and '.join(work.running)
-    return f'{package} is built, and runs: {programs}.'
+    return f'{package} is built, and runs: {" and ".join(work.ran)}.'
 
 
 @contextmanager
@@ -275,8 +287,7 @@ def _ending(work: Work) -> Iterator[Work]:
     try:
         yield work
     finally:
-        for process in work.running.values():
-            process.stop()
+        work.stop()
 
 
 def _refuse_without_package(work: Work, clauses: Sequence[Clause]) -> None:
