@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         wait_for_subscribers,
         wait_until,
     )
+    from labkit.background.workspace import build, source
     from labkit.bags.player import play
     from labkit.bags.recorder import record
     from labkit.checkup.report import doctor
@@ -47,6 +48,7 @@ __all__ = [
     'Turtlebot',
     'arena',
     'bag',
+    'build',
     'doctor',
     'export',
     'graph',
@@ -60,6 +62,7 @@ __all__ = [
     'progress',
     'record',
     'remove',
+    'source',
     'spin',
     'start',
     'stop',
@@ -74,6 +77,7 @@ _HOMES = {
     'Turtlebot': 'labkit.sim.turtlebot',
     'arena': 'labkit.views.arena',
     'bag': 'labkit.views.bag',
+    'build': 'labkit.background.workspace',
     'doctor': 'labkit.checkup.report',
     'export': 'labkit.packages.export',
     'graph': 'labkit.views.graph',
@@ -87,6 +91,7 @@ _HOMES = {
     'progress': 'labkit.exercises.progress',
     'record': 'labkit.bags.recorder',
     'remove': 'labkit.background.runtime',
+    'source': 'labkit.background.workspace',
     'spin': 'labkit.background.runtime',
     'start': 'labkit.background.runtime',
     'stop': 'labkit.background.runtime',

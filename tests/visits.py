@@ -12,7 +12,7 @@ __all__ = ['NAMES', 'Visit', 'look', 'visit']
 
 NAMES = [
     *('Python', 'ROS 2 packages', 'Middleware', 'Network', 'Shared memory', 'Domain'),
-    *('Variables', 'Nodes', 'Topics', 'Callbacks', 'JupyterLab', 'Disk'),
+    *('Variables', 'Nodes', 'Topics', 'Callbacks', 'JupyterLab', 'Disk', 'Compiler'),
 ]
 TIMEOUT_SEC = 120
 

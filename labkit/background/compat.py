@@ -17,6 +17,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 if TYPE_CHECKING:
     from types import FrameType
 
+    from rclpy.action.server import ActionServer
     from rclpy.clock import ROSClock
     from rclpy.executors import Executor
     from rclpy.node import Node
@@ -34,6 +35,7 @@ __all__ = [
     'is_kernel_stream',
     'is_queued',
     'is_shut_down',
+    'node_of_action',
     'rate_is_awaited',
     'rate_sleepers',
     'ready_callbacks',
@@ -91,6 +93,12 @@ def forget_executor(node: Node) -> None:
     To set it in public asks the executor once more to remove the node.
     """
     node._Node__executor_weakref = None  # type: ignore[attr-defined]
+
+
+def node_of_action(server: ActionServer) -> Node:
+    """Return the node that an action server belongs to."""
+    node: Node = server._node
+    return node
 
 
 def set_ros_time_is_active(clock: ROSClock, active: bool) -> None:

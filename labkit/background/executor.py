@@ -16,7 +16,7 @@ import inspect
 import threading
 import time
 from collections.abc import Callable, Coroutine
-from contextlib import suppress
+from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -32,6 +32,7 @@ from rclpy.executors import (
 from rclpy.node import Node
 from rclpy.task import Task
 from rclpy.timer import Timer
+from rclpy.waitable import Waitable
 
 from labkit.background import compat
 from labkit.background.console import Console
@@ -253,6 +254,10 @@ class BackgroundExecutor(SingleThreadedExecutor):
             self._settling = None
         return quiet
 
+    def between_callbacks(self) -> AbstractContextManager[bool]:
+        """Return what keeps callbacks waiting for a `with` block, which must not wait itself."""
+        return self._callback_lock
+
     def in_callback(self) -> bool:
         """Tell whether the caller is the background thread itself, that is, a callback."""
         return threading.current_thread() is self._thread
@@ -332,7 +337,8 @@ class BackgroundExecutor(SingleThreadedExecutor):
                 return
         task, entity, node = self._ready.pop(0)
         entry = self._owners.get(task) if node is None else self._entries.get(node)
-        if entry is None:
+        if entry is None or (node is None and not entry.alive):
+            # Its node has ended: a goal under way, for one, goes on no more.
             _drop(task)
         else:
             self._run(task, entity, entry)
@@ -365,8 +371,9 @@ class BackgroundExecutor(SingleThreadedExecutor):
                 task.set_exception(let_through)
             self._running = None
             error = task.exception()
-            # Not when the node was removed meanwhile: then the error is that it was.
-            if error is not None and entry.node in self._entries:
+            # Not when the node was removed meanwhile, or an action: then the error is that it was.
+            ended = isinstance(error, InvalidHandle) and isinstance(entity, Waitable)
+            if error is not None and entry.node in self._entries and not ended:
                 self._console.show_error(entry.name, callback_name(what), error)
             entry.counts[entity] = entry.counts.get(entity, 0) + 1
             if entry.budget is not None:

@@ -6,10 +6,13 @@ import gc
 import threading
 import traceback
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 from weakref import WeakKeyDictionary, WeakSet
 
+from rclpy.action.client import ActionClient
+from rclpy.action.server import ActionServer
 from rclpy.context import Context
 from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
@@ -211,6 +214,7 @@ def destroy_node(node: Node) -> BaseException | None:
     except BaseException as raised:  # by code of a learner's, sys.exit() included
         error = raised if usable else None  # once ROS is shut down, nothing can be published
     finally:
+        _destroy_actions(node)
         _destroy_handle(node)
         for tell in tuple(after_destroy):
             tell()
@@ -224,6 +228,14 @@ def _is_destroyed(node: Node) -> bool:
             return False
     except (InvalidHandle, AttributeError):
         return True
+
+
+def _destroy_actions(node: Node) -> None:
+    """Destroy the action servers and clients of a node, which rclpy leaves alive."""
+    for waitable in list(getattr(node, 'waitables', ())):
+        if isinstance(waitable, (ActionServer, ActionClient)):
+            with suppress(InvalidHandle, ValueError):
+                waitable.destroy()  # type: ignore[no-untyped-call]
 
 
 def _destroy_handle(node: Node) -> None:

@@ -16,6 +16,8 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Protocol
 
 import rclpy
+import rclpy.action.client
+import rclpy.action.server
 import rclpy.client
 import rclpy.executors
 import rclpy.node
@@ -23,9 +25,11 @@ import rclpy.timer
 from rclpy.utilities import get_default_context
 from rclpy.validate_node_name import validate_node_name
 
+from labkit import settings
 from labkit.background import compat
+from labkit.background.action_callbacks import guarded
 from labkit.background.nodes import made
-from labkit.errors import LabError
+from labkit.errors import LabError, LabTimeout
 from labkit.rosgraph.matching import other_type_here
 from labkit.rosgraph.names import full_node_name, full_topic_name
 
@@ -36,6 +40,8 @@ if TYPE_CHECKING:
     from rclpy.signals import SignalHandlerOptions
     from rclpy.task import Future
 
+    from labkit.background.console import Console
+    from labkit.background.executor import BackgroundExecutor
     from labkit.background.nodes import NodeEntry
 
 __all__ = ['ORIGINALS', 'Background', 'install', 'uninstall']
@@ -54,6 +60,14 @@ REPLACED: tuple[tuple[Any, str, str], ...] = (
     (rclpy, 'spin_once', 'spin_once'),
     (rclpy, 'spin_until_future_complete', 'spin_until_future_complete'),
     (rclpy.client.Client, 'call', 'call'),
+    (rclpy.action.client.ActionClient, 'send_goal', 'send_goal'),
+    (rclpy.action.client.ActionClient, 'wait_for_server', 'wait_for_server'),
+    (rclpy.action.client.ActionClient, 'send_goal_async', 'send_goal_async'),
+    (rclpy.action.client.ClientGoalHandle, 'get_result_async', 'get_result_async'),
+    (rclpy.action.client.ClientGoalHandle, 'cancel_goal_async', 'cancel_goal_async'),
+    (rclpy.action.client.ClientGoalHandle, 'get_result', 'get_result'),
+    (rclpy.action.client.ClientGoalHandle, 'cancel_goal', 'cancel_goal'),
+    (rclpy.action.server.ActionServer, 'register_execute_callback', 'execute_with'),
     (rclpy.executors.Executor, 'spin', 'spin_executor'),
     (rclpy.timer.Rate, 'sleep', 'sleep'),
     (rclpy.node.Node, '__init__', 'make_node'),
@@ -70,6 +84,12 @@ class Background(Protocol):
     """What the functions here need of the runtime, which installs them."""
 
     helper: Node | None
+    console: Console
+
+    @property
+    def executor(self) -> BackgroundExecutor:
+        """Return the background executor."""
+
     foreign_threads: set[threading.Thread]
 
     @property
@@ -237,6 +257,62 @@ class _NotebookSafe:
         self._background.refuse_in_callback(f'Calling the service {client.srv_name!r} with call()')
         return ORIGINALS['call'](client, *args, **kwargs)
 
+    def send_goal(self, client: Any, *args: Any, **kwargs: Any) -> Any:
+        """Send a goal, and wait for its result."""
+        todo = 'Return from the callback. Use send_goal_async() and add_done_callback().'
+        self._background.refuse_in_callback('Sending a goal with send_goal()', todo)
+        future = client.send_goal_async(*args, **kwargs)
+        handle = self._finished(future, 'the server accepts or rejects the goal')
+        return self.get_result(handle)
+
+    # rclpy sends, and then notes that it has sent: in a program with one thread nothing comes in
+    # between. Here the answer may, and would be taken for one to a question that nobody asked.
+
+    def send_goal_async(self, client: Any, *args: Any, **kwargs: Any) -> Any:
+        with self._background.executor.between_callbacks():
+            return ORIGINALS['send_goal_async'](client, *args, **kwargs)
+
+    def get_result_async(self, handle: Any) -> Any:
+        with self._background.executor.between_callbacks():
+            return ORIGINALS['get_result_async'](handle)
+
+    def cancel_goal_async(self, handle: Any) -> Any:
+        with self._background.executor.between_callbacks():
+            return ORIGINALS['cancel_goal_async'](handle)
+
+    def get_result(self, handle: Any) -> Any:
+        todo = 'Return from the callback. Use get_result_async() and add_done_callback().'
+        self._background.refuse_in_callback('Waiting with get_result()', todo)
+        return self._finished(handle.get_result_async(), 'the result of the goal comes')
+
+    def cancel_goal(self, handle: Any) -> Any:
+        todo = 'Return from the callback. Use cancel_goal_async() and add_done_callback().'
+        self._background.refuse_in_callback('Cancelling with cancel_goal()', todo)
+        return self._finished(handle.cancel_goal_async(), 'the server answers')
+
+    def wait_for_server(self, client: Any, timeout_sec: float | None = None) -> bool:
+        if client.server_is_ready():
+            return True
+        todo = 'Wait in __init__ or in a cell, or look: client.server_is_ready().'
+        self._background.refuse_in_callback('Waiting with wait_for_server()', todo)
+        self._background.wait(client.server_is_ready, _patience(timeout_sec))
+        return bool(client.server_is_ready())
+
+    def execute_with(self, server: Any, execute_callback: Callable[..., Any]) -> None:
+        """Let an action server show what its callback raises, as all other callbacks do."""
+        if callable(execute_callback):
+            execute_callback = guarded(execute_callback, server, self._background.console)
+        ORIGINALS['execute_with'](server, execute_callback)
+
+    def _finished(self, future: Any, what: str) -> Any:
+        """Wait until a future is done, and return its result; the stop button is heard."""
+        if not self._background.wait(lambda: _is_over(future), _patience(None)):
+            raise LabTimeout(
+                f'Waited until {what}, but it did not.',
+                todo='Does a node serve the action, is it spun, and do its callbacks return?',
+            )
+        return future.result()
+
     def sleep(self, rate: Any) -> None:
         self._background.refuse_in_callback(
             'sleep() of a rate',
@@ -310,6 +386,11 @@ class _NotebookSafe:
             borrowed = entry or self._background.entry_of(node)
             if known is None and borrowed is not None:
                 self._background.release(borrowed)
+
+
+def _patience(timeout_sec: float | None) -> float | None:
+    """Return how long to wait: not for ever where nobody could press the stop button."""
+    return settings.audience().patience_sec if timeout_sec is None else timeout_sec
 
 
 def _is_over(future: Any) -> bool:

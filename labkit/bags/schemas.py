@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 
 from rosidl_adapter.parser import parse_message_string  # type: ignore[import-untyped]
 
@@ -30,8 +31,8 @@ def full_definition(msg_type: str) -> str:
     while waiting:
         name = waiting.pop(0)
         text = _text_of(name)
-        package, _, word = name.split('/')
-        found.append(f'{_LINE}\nMSG: {package}/{word}\n{text}')
+        # As rosbag2 has it, a message has no `msg` in its name; what it is a part of stays.
+        found.append(f'{_LINE}\nMSG: {name.replace("/msg/", "/")}\n{text}')
         more = [other for other in _within(name, text) if other not in known]
         known.update(more)
         waiting += more
@@ -39,13 +40,22 @@ def full_definition(msg_type: str) -> str:
 
 
 def _text_of(name: str) -> str:
-    return interfaces.path_of(name).read_text(encoding='utf-8')
+    if not interfaces.is_part_of_action(name):
+        return interfaces.path_of(name).read_text(encoding='utf-8')
+    action, _, part = name.rpartition('_')
+    if part == 'FeedbackMessage':
+        return f'unique_identifier_msgs/UUID goal_id\n{action}_Feedback feedback\n'
+    text = interfaces.path_of(action).read_text(encoding='utf-8')
+    goal, result, feedback = re.split(r'(?m)^---\s*$', text)
+    return {'Goal': goal, 'Result': result, 'Feedback': feedback}[part].lstrip('\n')
 
 
 def _within(name: str, text: str) -> list[str]:
     """Return the names of the types of a definition's fields."""
+    if name.endswith('_FeedbackMessage'):
+        return ['unique_identifier_msgs/msg/UUID', f'{name.removesuffix("Message")}']
     package, _, word = name.split('/')
-    fields = parse_message_string(package, word, text).fields
+    fields = parse_message_string(package, word.replace('_', ''), text).fields
     found = [
         f'{field.type.pkg_name}/msg/{field.type.type}' for field in fields if field.type.pkg_name
     ]

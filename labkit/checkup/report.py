@@ -32,6 +32,7 @@ _CHECKS: tuple[tuple[str, Callable[[], str]], ...] = (
     ('Callbacks', ros.callbacks),
     ('JupyterLab', packages.jupyter),
     ('Disk', system.disk),
+    ('Compiler', system.compiler),
 )
 _WIDTH = 98
 _SHORT = 'text-align:left;white-space:nowrap'

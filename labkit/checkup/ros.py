@@ -265,7 +265,7 @@ def _doubles(runtime: Runtime, entries: list[NodeEntry]) -> list[tuple[str, str]
 
 
 def topics() -> str:
-    """Look for pairs of a publisher and a subscription that can never exchange a message."""
+    """Look for ends of topics that can never exchange a message, and actions served twice."""
     runtime = _runtime()
     if runtime is None or runtime.helper is None:
         return 'none'
@@ -285,7 +285,19 @@ def topics() -> str:
             ),
             todo=' '.join(dict.fromkeys(pair.todo for pair in pairs)),
         )
-    return first_few([topic.name for topic in graph.topics]) if graph.topics else 'none'
+    twice = [action for action in graph.actions if len(action.servers) > 1]
+    if twice:
+        raise LabError(
+            ' '.join(
+                f'The action {action.name} is served by {len(action.servers)} nodes: '
+                f'{", ".join(action.servers)}. Each of them answers each goal.'
+                for action in twice
+            ),
+            todo='End the server that does not belong there.',
+        )
+    actions = [f'{action.name} (action)' for action in graph.actions]
+    names = [*(topic.name for topic in graph.topics), *actions]
+    return first_few(names) if names else 'none'
 
 
 def callbacks() -> str:

@@ -13,8 +13,9 @@ from pathlib import Path
 
 from labkit import settings
 from labkit.errors import LabError
+from labkit.setup.compiler import check_compiler
 
-__all__ = ['disk', 'network', 'shared_memory']
+__all__ = ['compiler', 'disk', 'network', 'shared_memory']
 
 SHARED_MEMORY = Path('/dev/shm')
 # Fast DDS takes 0.65 MB for each process.
@@ -152,3 +153,11 @@ def disk() -> str:
                 todo='Delete what is not needed: old bags, downloads, the trash.',
             )
     return f'{shutil.disk_usage(folder).free / 1e9:.1f} GB free'
+
+
+def compiler() -> str:
+    """Look for what builds interfaces. Only lesson 12 needs it, so it may be missing."""
+    try:
+        return check_compiler()
+    except LabError as error:
+        return f'{error.message} Only lesson 12 builds any; it is installed with: {error.todo}'

@@ -31,6 +31,7 @@ from labkit.errors import LabError
 __all__ = ['LessonError', 'LessonRun', 'normalised']
 
 # A cell of a lesson takes at most 5 s; the rest is for machines that are busy with other work.
+# One that builds says so in its metadata: "labkit": {"timeout_sec": 1200}.
 CELL_TIMEOUT_SEC = 60
 OUTPUT_TIMEOUT_SEC = 30
 STARTUP_TIMEOUT_SEC = 120
@@ -114,7 +115,7 @@ class LessonRun:
         return NotebookClient(
             self.notebook,
             km=kernels,
-            timeout=cell_timeout_sec,
+            timeout_func=lambda cell: _limit_of(cell, cell_timeout_sec),
             iopub_timeout=OUTPUT_TIMEOUT_SEC,
             raise_on_iopub_timeout=True,
             startup_timeout=STARTUP_TIMEOUT_SEC,
@@ -309,3 +310,8 @@ def _bare_png(text: str) -> str:
             kept.append(png[start:end])
         start = end
     return base64.b64encode(b''.join(kept)).decode()
+
+
+def _limit_of(cell: NotebookNode, usual_sec: int) -> int:
+    """Return how many seconds a cell may take."""
+    return int(cell.metadata.get('labkit', {}).get('timeout_sec', usual_sec))

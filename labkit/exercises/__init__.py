@@ -81,7 +81,8 @@ A task is a list of clauses, see `clauses`: what is published where and how ofte
 (`Publishes`), what every message says (`Says`, `Messages`), what is answered to what, once and
 nothing otherwise (`Answers`), what is logged (`Logs`), what a node is called (`Named`), which
 service it offers and what it answers there (`Serves`, `Responds`), which parameters it has,
-whether it follows them, and what it refuses (`HasParameter`, `Follows`, `Refuses`). A clause has
+whether it follows them, and what it refuses (`HasParameter`, `Follows`, `Refuses`), what becomes
+of the goals that are sent to its action (`Serves`, `Pursues`). A clause has
 its words, looks for what must be in the graph, says which tests are sent, and judges what was
 seen. A lesson says only what is special: its misconceptions. A clause of its own is a subclass of
 `Clause` in the lesson's package.
@@ -93,8 +94,8 @@ are drawn anew each time from all that the task allows (`draws`). Nodes of earli
 still meanwhile. Rules of thumb:
 
 - The exercise says what it asks for: `publishes` and `subscribes` (topics, with their types),
-  `serves` (services, with theirs) and `nodes` (full names). The matchers take the types from
-  there. Ask in any order.
+  `serves` (services and actions, with theirs) and `nodes` (full names). The matchers take
+  the types from there. Ask in any order.
 - Whether something missing is a FAIL or NOT ATTEMPTED is read off the graph, see `Scope`: an
   attempt is a node of the learner's that does what this exercise asks for and no earlier one
   does, or what may mean that, under another name. Where there is none, `traces` names what else

@@ -11,7 +11,15 @@ from labkit.ros2.asking import asking_node
 from labkit.rosgraph import interfaces, listings, snapshot
 from labkit.rosgraph.names import is_hidden
 
-__all__ = ['node_names', 'service_names', 'topic_names', 'types_of_service', 'types_of_topic']
+__all__ = [
+    'action_names',
+    'node_names',
+    'service_names',
+    'topic_names',
+    'types_of_action',
+    'types_of_service',
+    'types_of_topic',
+]
 
 
 def topic_names(args: Namespace) -> Iterable[str]:
@@ -42,6 +50,18 @@ def types_of_service(args: Namespace) -> Iterable[str]:
     name = getattr(args, 'service_name', '')
     found = listings.service_types(asking_node(args), name) if _may_ask() else []
     return found or interfaces.names('srv')
+
+
+def action_names(args: Namespace) -> Iterable[str]:
+    """Return the actions that there are."""
+    return [name for name, _ in listings.actions(asking_node(args))] if _may_ask() else ()
+
+
+def types_of_action(args: Namespace) -> Iterable[str]:
+    """Return the type of the action that stands before, or all types."""
+    name = getattr(args, 'action_name', '')
+    found = listings.action_types(asking_node(args), name) if _may_ask() else []
+    return found or interfaces.names('action')
 
 
 def _may_ask() -> bool:

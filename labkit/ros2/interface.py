@@ -56,6 +56,8 @@ def show_prototype(args: Namespace) -> None:
     name = interfaces.check_exists(args.type)
     if name.split('/')[1] == 'srv':
         text = to_yaml(interfaces.service_class(name).Request())
+    elif name in interfaces.names('action'):
+        text = to_yaml(interfaces.action_class(name).Goal())
     else:
         text = to_yaml(interfaces.message_class(name)())
     print(text if args.no_quotes else f'"{text}"')

@@ -19,6 +19,7 @@ __all__ = ['COMMANDS', 'Ran', 'command', 'execute', 'history', 'run_line', 'spli
 
 # Command -> the module that has it as `COMMAND`.
 COMMANDS = {
+    'action': 'labkit.ros2.action',
     'bag': 'labkit.ros2.bag',
     'doctor': 'labkit.ros2.doctor',
     'interface': 'labkit.ros2.interface',
@@ -31,7 +32,7 @@ COMMANDS = {
 }
 # What a full installation has too. Named, so that nobody takes them for a slip of the pen.
 _ELSEWHERE = (
-    *('action', 'component', 'control', 'daemon', 'launch', 'lifecycle', 'multicast', 'plugin'),
+    *('component', 'control', 'daemon', 'launch', 'lifecycle', 'multicast', 'plugin'),
     *('security', 'test', 'wtf'),
 )
 # At the end of a line it sends the command to the background, in a notebook too.

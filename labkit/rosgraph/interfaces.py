@@ -16,8 +16,10 @@ from labkit.rosgraph.refusals import Refusal, Refused
 
 __all__ = [
     'KINDS',
+    'action_class',
     'check_exists',
     'check_package',
+    'is_part_of_action',
     'message_class',
     'names',
     'names_in',
@@ -28,6 +30,8 @@ __all__ = [
 ]
 
 KINDS = {'msg': 'message', 'srv': 'service', 'action': 'action'}
+# The messages that an action consists of, by what follows its name.
+_PARTS = ('Goal', 'Result', 'Feedback', 'FeedbackMessage')
 
 
 def _know_environment() -> None:
@@ -86,7 +90,8 @@ def check_exists(name: str, kind: str = '') -> str:
 
     Args:
         name: `std_msgs/msg/String`, or `std_msgs/String` if `kind` is given.
-        kind: `'msg'` or `'srv'`; any of them if empty.
+        kind: `'msg'`, `'srv'` or `'action'`; any of them if empty. The parts of an action, such
+            as `test_msgs/action/Fibonacci_FeedbackMessage`, are messages.
 
     Raises:
         Refused: There is none of that name. It says which one is near.
@@ -96,6 +101,8 @@ def check_exists(name: str, kind: str = '') -> str:
         parts.insert(1, kind)
     full_name = '/'.join(parts)
     if len(parts) == 3 and full_name in names_in(parts[0], kind):
+        return full_name
+    if kind == 'msg' and is_part_of_action(full_name):
         return full_name
     known = names(kind)
     last = parts[-1].lower()
@@ -131,6 +138,23 @@ def service_class(name: str) -> Any:
     return _class(check_exists(name, 'srv'))
 
 
+def action_class(name: str) -> Any:
+    """Return the class of an action type, such as `test_msgs/action/Fibonacci`.
+
+    Raises:
+        Refused: There is none of that name.
+    """
+    return _class(check_exists(name, 'action'))
+
+
+def is_part_of_action(name: str) -> bool:
+    """Tell whether a name is that of a message which belongs to an action that is installed."""
+    package, kind, word, *_ = [*name.split('/'), '', '', '']
+    action, _, part = word.rpartition('_')
+    whole = f'{package}/action/{action}'
+    return kind == 'action' and part in _PARTS and whole in names_in(package, 'action')
+
+
 def type_name(msg_type: Any) -> str:
     """Return the ROS name of a message or service class, such as `std_msgs/msg/String`."""
     package, kind, *_ = msg_type.__module__.split('.')
@@ -146,7 +170,12 @@ def path_of(name: str) -> Path:
 
 def _class(full_name: str) -> Any:
     package, kind, word = full_name.split('/')
-    return getattr(importlib.import_module(f'{package}.{kind}'), word)
+    module = importlib.import_module(f'{package}.{kind}')
+    if not is_part_of_action(full_name):
+        return getattr(module, word)
+    action, _, part = word.rpartition('_')
+    whole = getattr(module, action)
+    return getattr(whole.Impl if part == 'FeedbackMessage' else whole, part)
 
 
 def _is_word(text: str) -> bool:

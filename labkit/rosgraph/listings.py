@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from rclpy.action.graph import (
     get_action_client_names_and_types_by_node,
+    get_action_names_and_types,
     get_action_server_names_and_types_by_node,
 )
 from rclpy.node import Node, NodeNameNonExistentError
@@ -15,6 +16,8 @@ from labkit.rosgraph.names import EVERY_NODE_HAS, is_hidden, split_node_name
 __all__ = [
     'NamesAndTypes',
     'NodeEnds',
+    'action_types',
+    'actions',
     'ends_of_node',
     'own_topics',
     'service_types',
@@ -71,6 +74,16 @@ def services(node: Node, *, include_hidden: bool = False) -> NamesAndTypes:
 def service_types(node: Node, service: str) -> list[str]:
     """Return the types of a service, given its full name; none if there is no such service."""
     return dict(node.get_service_names_and_types()).get(service, [])
+
+
+def actions(node: Node, *, include_hidden: bool = False) -> NamesAndTypes:
+    """Return the actions, sorted by name. Arguments as for `topics`."""
+    return _sorted(get_action_names_and_types(node), include_hidden)
+
+
+def action_types(node: Node, action: str) -> list[str]:
+    """Return the types of an action, given its full name; none if there is no such action."""
+    return dict(get_action_names_and_types(node)).get(action, [])
 
 
 def ends_of_node(node: Node, full_name: str, *, include_hidden: bool = False) -> NodeEnds:

@@ -1,9 +1,10 @@
-"""Services by the nodes that offer them, as the graph knows them."""
+"""Services and actions by the nodes that offer them, as the graph knows them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from rclpy.action.graph import get_action_server_names_and_types_by_node
 from rclpy.node import Node, NodeNameNonExistentError
 
 from labkit.rosgraph.names import is_hidden, split_node_name
@@ -26,23 +27,29 @@ _OF_EVERY_NODE = (
 
 @dataclass(frozen=True)
 class Server:
-    """A service that a node offers.
+    """A service or an action that a node offers.
 
     Attributes:
         node: Full name of the node.
-        service: Full name of the service.
-        srv_type: Name of its type, such as `std_srvs/srv/SetBool`.
+        service: Full name of the service or action.
+        srv_type: Name of its type, such as `std_srvs/srv/SetBool` or `test_msgs/action/Fibonacci`.
     """
 
     node: str
     service: str
     srv_type: str
 
+    @property
+    def is_action(self) -> bool:
+        """Tell whether it is an action."""
+        return '/action/' in self.srv_type
+
 
 def servers(node: Node) -> list[Server]:
-    """Return the services that nodes offer, without those that every node has, in order of names.
+    """Return the services and actions that nodes offer, in order of names.
 
-    A service comes into the graph after the name of its node.
+    Without the services that every node has. A service comes into the graph after the name of
+    its node.
 
     Args:
         node: The node to ask with.
@@ -51,12 +58,13 @@ def servers(node: Node) -> list[Server]:
     for name in sorted({*node_names(node)}):
         try:
             offered = node.get_service_names_and_types_by_node(*split_node_name(name))
+            actions = get_action_server_names_and_types_by_node(node, *split_node_name(name))
         except NodeNameNonExistentError:
             continue
         every = {f'{name}/{service}' for service in _OF_EVERY_NODE}
         found += [
             Server(name, service, types[0])
-            for service, types in sorted(offered)
+            for service, types in sorted([*offered, *actions])
             if service not in every and not is_hidden(service)
         ]
     return found

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from rclpy.node import Node
 
 from labkit.rosgraph.endpoints import Endpoint, publishers, subscriptions
-from labkit.rosgraph.listings import ends_of_node
+from labkit.rosgraph.listings import actions, ends_of_node
 from labkit.rosgraph.matching import how_to_match, why_apart
 from labkit.rosgraph.names import (
     EVERY_NODE_HAS,
@@ -25,6 +25,7 @@ from labkit.rosgraph.whose import foreign_nodes, has_ended, own_nodes
 
 __all__ = [
     'Graph',
+    'GraphAction',
     'GraphNode',
     'GraphService',
     'GraphTopic',
@@ -104,8 +105,20 @@ class GraphService:
 
 
 @dataclass(frozen=True)
+class GraphAction:
+    """An action, the nodes that serve it and those that send it goals."""
+
+    name: str
+    types: tuple[str, ...]
+    servers: tuple[str, ...]
+    clients: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Graph:
-    """Nodes, topics and services of a domain at one moment, each sorted by name.
+    """Nodes, topics, services and actions of a domain at one moment, each sorted by name.
+
+    The topics and services that an action consists of are hidden; it is shown as one thing.
 
     `str(graph)` tells it in words.
     """
@@ -113,6 +126,7 @@ class Graph:
     nodes: tuple[GraphNode, ...]
     topics: tuple[GraphTopic, ...]
     services: tuple[GraphService, ...] = ()
+    actions: tuple[GraphAction, ...] = ()
 
     @property
     def mismatches(self) -> tuple[Mismatch, ...]:
@@ -134,6 +148,12 @@ class Graph:
             lines += [f'  {service.name} [{", ".join(service.types)}]']
             lines += _line('offered by', service.servers)
             lines += _line('called by', service.clients)
+        if self.actions:
+            lines += ['Actions:']
+        for action in self.actions:
+            lines += [f'  {action.name} [{", ".join(action.types)}]']
+            lines += _line('served by', action.servers)
+            lines += _line('goals from', action.clients)
         return '\n'.join(lines)
 
 
@@ -166,7 +186,8 @@ def read_graph(
             if senders or hearers:
                 topics += [GraphTopic(topic, tuple(types), senders, hearers)]
     services = _services(node, names, include_hidden) if include_services else ()
-    return Graph(nodes, tuple(topics), services)
+    found = _actions(node, names, include_hidden)
+    return Graph(nodes, tuple(topics), services, found)
 
 
 def node_names(node: Node) -> list[str]:
@@ -225,6 +246,20 @@ def _services(node: Node, names: list[str], include_hidden: bool) -> tuple[Graph
         for service, types in sorted(node.get_service_names_and_types())
         if include_hidden or not (is_hidden(service) or types[0].startswith(_EVERY_NODE_OFFERS))
     )
+
+
+def _actions(node: Node, names: list[str], include_hidden: bool) -> tuple[GraphAction, ...]:
+    listed = actions(node, include_hidden=include_hidden)
+    if not listed:
+        return ()
+    ends = {name: ends_of_node(node, name, include_hidden=True) for name in sorted(set(names))}
+    found = []
+    for action, types in listed:
+        servers = [n for n, e in ends.items() if action in dict(e.action_servers)]
+        clients = [n for n, e in ends.items() if action in dict(e.action_clients)]
+        if servers or clients:
+            found += [GraphAction(action, tuple(types), tuple(servers), tuple(clients))]
+    return tuple(found)
 
 
 def _told(node: GraphNode) -> str:

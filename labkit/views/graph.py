@@ -16,7 +16,14 @@ from labkit.background.discovery import soon
 from labkit.errors import LabError
 from labkit.rosgraph.endpoints import Endpoint
 from labkit.rosgraph.matching import why_apart
-from labkit.rosgraph.snapshot import Graph, GraphNode, GraphTopic, is_whole, read_graph
+from labkit.rosgraph.snapshot import (
+    Graph,
+    GraphAction,
+    GraphNode,
+    GraphTopic,
+    is_whole,
+    read_graph,
+)
 from labkit.views.live import STOPPED, Live, helper
 
 if TYPE_CHECKING:
@@ -95,7 +102,8 @@ class GraphView(Live):
 def graph(*, services: bool = False, hidden: bool = False, live: bool = False) -> GraphView:
     """Show the computation graph: which nodes run, and which topics connect them.
 
-    Nodes are round, topics are boxes, an arrow is the way of the messages. Nodes of other
+    Nodes are round, topics are boxes, an arrow is the way of the messages. A thick arrow is an
+    action, from who sends goals to who serves it. Nodes of other
     processes have a dashed border. Where a subscription can't hear a publisher, a dashed line with
     a cross at its end leads to it, and says whom and why.
 
@@ -157,6 +165,8 @@ def to_mermaid(data: Graph) -> str:
         arrows.update(
             {f'  {box} --> {ids[name]}': None for name in service.servers if name in ids}
         )
+    for number, action in enumerate(data.actions):
+        arrows.update(dict.fromkeys(_of_action(action, f'a{number}', ids)))
     return '\n'.join(
         [
             *lines,
@@ -183,6 +193,17 @@ def _hearing(topic: GraphTopic, end: Endpoint, box: str, node: str) -> list[str]
     return arrows
 
 
+def _of_action(action: GraphAction, box: str, ids: dict[str, str]) -> list[str]:
+    """Return one thick arrow from each client to each server; a box stands for who is missing."""
+    label = _escape(action.name) + ''.join(f'<br>{_escape(name)}' for name in action.types)
+    clients = [ids[name] for name in action.clients if name in ids]
+    servers = [ids[name] for name in action.servers if name in ids]
+    if clients and servers:
+        return [f'  {one} == "{label}" ==> {other}' for one in clients for other in servers]
+    shown = f'{box}[["{label}"]]:::topic'
+    return [f'  {one} ==> {shown}' for one in clients] + [f'  {shown} ==> {n}' for n in servers]
+
+
 def _node_label(node: GraphNode) -> str:
     label = _escape(node.name)
     if not node.own:
@@ -200,7 +221,9 @@ def _summary(data: Graph) -> str:
         f'{_escape(pair.topic)}: {_escape(pair.reason)}.'
         for pair in data.mismatches
     )
-    return f'Nodes {nodes or "none"}. Topics {topics or "none"}.{apart}'
+    actions = ', '.join(_escape(action.name) for action in data.actions)
+    served = f' Actions {actions}.' if actions else ''
+    return f'Nodes {nodes or "none"}. Topics {topics or "none"}.{served}{apart}'
 
 
 def _escape(text: str) -> str:

@@ -212,3 +212,16 @@ def test_input_is_answered_by_a_function(kernel):
     kernel.run('from labkit.background import compat')
     kernel.run('compat.answer_input(lambda prompt: prompt.upper())')
     assert kernel.run('print(input("who? "))').text == 'WHO? \n'
+
+
+def test_an_action_server_knows_its_node(script):
+    result = script(
+        READY
+        + """
+from rclpy.action import ActionServer
+from test_msgs.action import Fibonacci
+server = ActionServer(node, Fibonacci, 'count', print)
+print(compat.node_of_action(server) is node)
+"""
+    )
+    assert result.stdout == 'True\n', result.stderr

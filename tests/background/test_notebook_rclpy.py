@@ -51,10 +51,10 @@ lab.start()
 print(replaced())
 """
     assert kernel.run(code).text.splitlines() == [
-        str([False] * 12),
-        str([True] * 12),
-        f'{[False] * 12} True',
-        str([True] * 12),
+        str([False] * len(REPLACED)),
+        str([True] * len(REPLACED)),
+        f'{[False] * len(REPLACED)} True',
+        str([True] * len(REPLACED)),
     ]
 
 

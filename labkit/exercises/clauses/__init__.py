@@ -6,6 +6,7 @@ A clause is data. Its `text` stands in the notebook; `find` looks for what has t
 
 from __future__ import annotations
 
+from labkit.exercises.clauses.acting import Goal, Pursues, Pursuit
 from labkit.exercises.clauses.answering import Answers, Logs, find_stage
 from labkit.exercises.clauses.base import Clause, Evidence, Stream, Test, judge
 from labkit.exercises.clauses.messages import HasText, Messages, Says
@@ -21,6 +22,7 @@ __all__ = [
     'Clause',
     'Evidence',
     'Follows',
+    'Goal',
     'HasParameter',
     'HasText',
     'Latched',
@@ -30,6 +32,8 @@ __all__ = [
     'Named',
     'NobodyElse',
     'Publishes',
+    'Pursues',
+    'Pursuit',
     'Refuses',
     'Responds',
     'Runs',

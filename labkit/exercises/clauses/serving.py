@@ -25,7 +25,7 @@ PATIENCE_SEC = 1.0
 
 @dataclass(frozen=True)
 class Serves(Clause):
-    """A node offers a service.
+    """A node offers a service or an action.
 
     Attributes:
         service: Full name of the service. Its type is in the `serves` of the exercise.
@@ -38,7 +38,8 @@ class Serves(Clause):
     @property
     def text(self) -> str:
         """What is asked for."""
-        return f'serve `{self.service}` (`{self.srv_type}`)'
+        what = 'serve the action' if '/action/' in self.srv_type else 'serve'
+        return f'{what} `{self.service}` (`{self.srv_type}`)'
 
     def find(self, evidence: Evidence) -> None:
         """Look for the server, and whether its node is spun."""

@@ -1,4 +1,4 @@
-"""Matchers for services: is it offered, of the right type, once, and by whom."""
+"""Matchers for services and actions: is it offered, of the right type, once, and by whom."""
 
 from __future__ import annotations
 
@@ -48,14 +48,14 @@ def server(probe: Probe, service: str) -> Server:
             f'{found.node} offers it with the type {found.srv_type}',
             why='The type says what a request and a response hold. A client of one type does not '
             'reach a server of another one.',
-            todo=f'Import {srv_type.rsplit("/", 1)[-1]} from {srv_type.split("/")[0]}.srv and '
-            'pass it to create_service().',
+            todo=_how_to_import(srv_type),
         )
-    if not probe.wait(lambda: probe.node.count_services(service) < 2, GONE_SEC):
+    counted = f'{service}/_action/send_goal' if found.is_action else service
+    if not probe.wait(lambda: probe.node.count_services(counted) < 2, GONE_SEC):
         names = [other.node for other in matching()]
         raise Fail(
             f'one server of {service}',
-            f'{probe.node.count_services(service)} servers: {", ".join(names)}',
+            f'{probe.node.count_services(counted)} servers: {", ".join(names)}',
             why='Each of them answers each request. Which response a client gets is a matter of '
             'luck.',
             todo='End the one that does not belong here: lab.remove(...), or stop the other '
@@ -93,6 +93,15 @@ def _explain_missing(probe: Probe, service: str, srv_type: str) -> NoReturn:
     raise Fail(
         expected,
         f'{", ".join(sorted(nodes))} without a service of this name',
-        why='create_service() for it has not been called, or not yet.',
+        why=f'{_maker(srv_type)} for it has not been called, or not yet.',
         todo=f'Call it in __init__ with {srv_type.rsplit("/", 1)[-1]} and {service!r}.',
     )
+
+
+def _maker(srv_type: str) -> str:
+    return 'ActionServer()' if '/action/' in srv_type else 'create_service()'
+
+
+def _how_to_import(srv_type: str) -> str:
+    package, kind, name = srv_type.split('/')
+    return f'Import {name} from {package}.{kind} and pass it to {_maker(srv_type)}.'

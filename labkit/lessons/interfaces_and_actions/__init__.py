@@ -1,0 +1,28 @@
+"""The exercises and the quiz of `12_interfaces_and_actions.ipynb`."""
+
+from __future__ import annotations
+
+from labkit.exercises import Lesson
+from labkit.lessons.interfaces_and_actions.asker import asker
+from labkit.lessons.interfaces_and_actions.countdown import countdown
+from labkit.lessons.interfaces_and_actions.quiz import QUIZ
+from labkit.lessons.interfaces_and_actions.squares import squares
+from labkit.lessons.interfaces_and_actions.stairs import stairs
+
+__all__ = ['LESSON']
+
+LESSON = Lesson(
+    'interfaces_and_actions',
+    '12_interfaces_and_actions.ipynb',
+    exercises=[squares, stairs, countdown, asker],
+    quizzes=[QUIZ],
+    topics=['/odom', '/scan', '/joint_states', '/imu', '/battery_state', '/cmd_vel'],
+    given={
+        '/turtlebot': '*',
+        '/fibonacci': 'server choosy',
+        '/watcher': 'client',
+        '/driver': 'drive',
+        '/rider': 'drive',
+        '/calculator': 'calculator',
+    },
+)

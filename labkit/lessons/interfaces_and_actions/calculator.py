@@ -1,0 +1,41 @@
+"""A calculator that serves an action: it adds numbers, and multiplies the sum by its factor."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+__all__ = ['is_calculator', 'make_calculator']
+
+
+def make_calculator() -> Node:
+    """Return a node that serves `/add_up` (`test_msgs/action/Fibonacci`).
+
+    The result of a goal are the sums of the numbers from 1 to `order`, each times `factor`.
+    """
+    from rclpy.action.server import ActionServer
+    from rclpy.node import Node
+    from test_msgs.action import Fibonacci
+
+    class Calculator(Node):
+        def __init__(self) -> None:
+            super().__init__('calculator')
+            self.factor = 1
+            self.orders: list[int] = []
+            ActionServer(self, Fibonacci, 'add_up', self.execute)  # type: ignore[no-untyped-call]
+
+        def execute(self, handle: Any) -> Any:
+            self.orders.append(handle.request.order)
+            sums = [self.factor * n * (n + 1) // 2 for n in range(1, handle.request.order + 1)]
+            handle.publish_feedback(Fibonacci.Feedback(sequence=sums[:1]))
+            handle.succeed()
+            return Fibonacci.Result(sequence=sums)
+
+    return Calculator()
+
+
+def is_calculator(node: object) -> bool:
+    """Tell whether a node is such a calculator."""
+    return hasattr(node, 'factor') and hasattr(node, 'orders')

@@ -1,0 +1,80 @@
+"""The quiz on interfaces and actions."""
+
+from __future__ import annotations
+
+from labkit.exercises import Choice, Number, Quiz, Several, Word, right, wrong
+
+__all__ = ['QUIZ']
+
+QUIZ = Quiz(
+    'interfaces_and_actions',
+    Choice(
+        'A robot is to drive to the kitchen, which takes two minutes. You want to know how far it '
+        'is, and to be able to call it back. What fits best?',
+        right('an action', 'It takes long, tells how far it is, and can be canceled.'),
+        wrong('a service', 'It has one answer, at the end, and nobody can cancel a request.'),
+        wrong('a topic', 'Whoever publishes a place learns neither that it is heard nor reached.'),
+        wrong('a parameter', 'A parameter is a setting. To drive somewhere is something to do.'),
+    ),
+    Number(
+        'A file of an action has three parts. How many lines of three hyphens stand between them?',
+        2,
+        'Goal, line, result, line, feedback.',
+        'Look at the output of ros2 interface show test_msgs/action/Fibonacci.',
+        wrong={1: 'One line is in a service, which has two parts.', 3: 'There are three parts.'},
+    ),
+    Choice(
+        'A client cancels a goal, and the cancel_callback of the server accepts that. Who stops '
+        'the work?',
+        right(
+            'execute_callback, when it looks at is_cancel_requested',
+            'To accept only says that it will stop. The loop has to look, and to end the goal.',
+        ),
+        wrong('ROS, at once', 'ROS can not stop code of Python half way, and does not try to.'),
+        wrong('the client', 'The client asks. What is done is done by the server.'),
+    ),
+    Choice(
+        'A server with one thread calls time.sleep() in execute_callback. Why can no goal of it '
+        'be canceled?',
+        right(
+            'While it sleeps, no other callback runs, so nobody takes the request',
+            'await a Future, or use an executor with several threads.',
+        ),
+        wrong('A goal that was accepted can never be canceled', 'It can, if the server lets it.'),
+        wrong('The request to cancel is lost', 'It waits in the queue until a callback can run.'),
+    ),
+    Several(
+        'Who can see the feedback of an action?',
+        right('the client that has sent the goal', 'It has a feedback_callback for it.'),
+        right(
+            'whoever subscribes to the hidden topic of the feedback',
+            'Feedback is an ordinary topic, whose name has a part that begins with _.',
+        ),
+        wrong('nobody before the result is there', 'Feedback is what comes before the result.'),
+    ),
+    Choice(
+        'execute_callback returns a result, and has called neither succeed() nor canceled(). How '
+        'does the goal end?',
+        right('aborted', 'A goal that nobody ends is taken for one that has failed.'),
+        wrong('succeeded', 'The server has to say so: goal_handle.succeed().'),
+        wrong('it goes on for ever', 'When the callback has returned, the goal is over.'),
+    ),
+    Choice(
+        'You add a field to a message, and build the package again. The notebook has imported the '
+        'package before. What now?',
+        right(
+            'Restart the kernel',
+            'A program loads the library of a type once. All programs with the type have to be '
+            'started anew.',
+        ),
+        wrong('Import it once more', 'Python gives back what it has imported before.'),
+        wrong('Nothing', 'The kernel has the old type, and would not understand the new one.'),
+    ),
+    Word(
+        'Which command builds all packages of a workspace? Its second word is build.',
+        'colcon',
+        'colcon build, in the folder of the workspace.',
+        'It begins with a c.',
+        wrong={'cmake': 'colcon calls cmake, for each package.', 'catkin': 'That was ROS 1.'},
+    ),
+)

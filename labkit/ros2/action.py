@@ -1,0 +1,223 @@
+"""`ros2 action`: which actions there are, who is at their ends, and sending a goal."""
+
+from __future__ import annotations
+
+import queue
+import sys
+from argparse import Namespace
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from action_msgs.msg import GoalStatus
+
+from labkit import settings
+from labkit.background.action_goals import ActionGoals, shown_id
+from labkit.background.discovery import alone, soon
+from labkit.errors import LabError
+from labkit.ros2.asking import add_discovery_options, asking_node, full_name, unknown
+from labkit.ros2.graph_words import action_names, types_of_action
+from labkit.ros2.parser import Command, Parser, Usage, Verb
+from labkit.ros2.streams import tell
+from labkit.rosgraph import interfaces
+from labkit.rosgraph.actions import action_ends
+from labkit.rosgraph.interfaces import type_name
+from labkit.rosgraph.listings import NamesAndTypes, action_types, actions
+from labkit.rosgraph.message_yaml import fill, prototype, read_yaml, to_yaml
+from labkit.rosgraph.refusals import Refusal, Refused
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+__all__ = ['COMMAND']
+
+# How long a server may take to end a goal that is canceled, s.
+CANCEL_SEC = 5.0
+_STATUS = {
+    GoalStatus.STATUS_ACCEPTED: 'ACCEPTED',
+    GoalStatus.STATUS_EXECUTING: 'EXECUTING',
+    GoalStatus.STATUS_CANCELING: 'CANCELING',
+    GoalStatus.STATUS_SUCCEEDED: 'SUCCEEDED',
+    GoalStatus.STATUS_CANCELED: 'CANCELED',
+    GoalStatus.STATUS_ABORTED: 'ABORTED',
+}
+
+
+def list_actions(args: Namespace) -> None:
+    """Print the names of the actions."""
+    found = actions(asking_node(args))
+    if args.count_actions:
+        print(len(found))
+        return
+    for name, types in found:
+        print(f'{name} [{", ".join(types)}]' if args.show_types else name)
+
+
+def show_info(args: Namespace) -> None:
+    """Print who is at the ends of an action."""
+    node = asking_node(args)
+    name = full_name(args.action_name, node)
+    _types_of(node, name)
+    ends = soon(lambda: action_ends(node, name))
+    print(f'Action: {args.action_name}')
+    _print_ends('clients', ends.clients, args)
+    _print_ends('servers', ends.servers, args)
+
+
+def _print_ends(what: str, found: NamesAndTypes, args: Namespace) -> None:
+    print(f'Action {what}: {len(found)}')
+    for name, types in [] if args.count else found:
+        print(f'    {name} [{", ".join(types)}]' if args.show_types else f'    {name}')
+
+
+def show_type(args: Namespace) -> None:
+    """Print the type of an action."""
+    node = asking_node(args)
+    print('\n'.join(_types_of(node, full_name(args.action_name, node))))
+
+
+def send_goal(args: Namespace) -> None:
+    """Send a goal, and print whether it was accepted, feedback and result."""
+    action_type = interfaces.action_class(args.action_type)
+    goal = action_type.Goal()
+    fill(goal, read_yaml(_values(args)))
+    node = asking_node(args)
+    name = full_name(args.action_name, node)
+    _check_type(node, name, type_name(action_type))
+    limit = settings.audience().patience_sec
+    with ActionGoals(node, action_type, name) as goals:
+        tell('Waiting for an action server to become available...')
+        if not goals.wait_until_ready(limit):
+            # This client has put the name into the graph, too.
+            names = [other for other, _ in actions(node) if other != name]
+            raise LabError(f'{name} has no server.', todo=unknown(name, names, 'action'))
+        tell(f'Sending goal:\n     {to_yaml(goal)}')
+        feedback: queue.SimpleQueue[Any] = queue.SimpleQueue()
+
+        def show_feedback() -> None:
+            while not feedback.empty():
+                tell(f'Feedback:\n    {to_yaml(feedback.get().feedback)}')
+
+        handle = goals.send(goal, limit, feedback=feedback.put if args.feedback else None)
+        if not handle.accepted:
+            print('Goal was rejected.')
+            return
+        tell(f'Goal accepted with ID: {shown_id(handle)}\n')
+        try:
+            result = goals.result(handle, limit, between=show_feedback)
+        except (KeyboardInterrupt, LabError):
+            _cancel(goals, handle)
+            raise
+        print(f'Result:\n    {to_yaml(result.result)}')
+        print(f'Goal finished with status: {_STATUS.get(result.status, "UNKNOWN")}')
+
+
+def _cancel(goals: ActionGoals, handle: Any) -> None:
+    if not goals.wait_until_ready(0.0):
+        return
+    tell('Canceling goal...')
+    try:
+        accepted = goals.cancel(handle, CANCEL_SEC)
+    except LabError as error:
+        print(error, file=sys.stderr)
+        return
+    if accepted:
+        print('Goal canceled.')
+    else:
+        print('Failed to cancel goal: the server goes on with it.', file=sys.stderr)
+
+
+def _check_type(node: Node, name: str, wanted: str) -> None:
+    """Raise a LabError if an action is there, but of another type: no goal would arrive."""
+    types = soon(lambda: action_types(node, name), 0.0 if alone() else 0.3)
+    if types and wanted not in types:
+        raise Refused(
+            f'{name} is a {", ".join(types)}, not a {wanted}.', reason=Refusal.OTHER_TYPE
+        )
+    if not types:
+        hint = unknown(name, [other for other, _ in actions(node)], 'action')
+        if hint.startswith('Did you mean'):
+            print(hint, file=sys.stderr, flush=True)
+
+
+def _types_of(node: Node, name: str) -> list[str]:
+    types = soon(lambda: action_types(node, name))
+    if not types:
+        names = [other for other, _ in actions(node)]
+        raise LabError(f"Unknown action '{name}'", todo=unknown(name, names, 'action'))
+    return types
+
+
+def _values(args: Namespace) -> str:
+    if not args.stdin:
+        return str(args.goal)
+    if settings.in_kernel():
+        raise Usage('ros2 action send_goal: --stdin works in a terminal only.')
+    return sys.stdin.read()
+
+
+def _prototype(args: Namespace) -> Iterable[str]:
+    action_type = interfaces.action_class(getattr(args, 'action_type', '') or '')
+    return [f'"{prototype(action_type.Goal)}"']
+
+
+def _name_argument(parser: Parser, text: str) -> None:
+    add_discovery_options(parser)
+    parser.add('action_name', help=text, complete=action_names)
+
+
+def _types_option(parser: Parser) -> None:
+    parser.add('-t', '--show-types', action='store_true', help='Additionally show the action type')
+
+
+def _list_arguments(parser: Parser) -> None:
+    add_discovery_options(parser)
+    _types_option(parser)
+    parser.add(
+        *('-c', '--count-actions'),
+        action='store_true',
+        help='Only display the number of actions discovered',
+    )
+
+
+def _info_arguments(parser: Parser) -> None:
+    _name_argument(parser, "Name of the ROS action to get info (e.g. '/fibonacci')")
+    _types_option(parser)
+    parser.add(
+        *('-c', '--count'),
+        action='store_true',
+        help='Only display the number of action clients and action servers',
+    )
+
+
+def _type_arguments(parser: Parser) -> None:
+    _name_argument(parser, "Name of the ROS action to get type (e.g. '/fibonacci')")
+
+
+def _goal_arguments(parser: Parser) -> None:
+    _name_argument(parser, "Name of the ROS action (e.g. '/fibonacci')")
+    parser.add(
+        'action_type',
+        help="Type of the ROS action (e.g. 'test_msgs/action/Fibonacci')",
+        complete=types_of_action,
+    )
+    parser.add(
+        'goal',
+        nargs='?',
+        default='{}',
+        help="Goal request values in YAML format (e.g. '{order: 10}')",
+        complete=_prototype,
+    )
+    parser.add('--stdin', action='store_true', help='Read goal from standard input')
+    parser.add('-f', '--feedback', action='store_true', help='Echo feedback messages for the goal')
+
+
+COMMAND = Command(
+    'action',
+    'Various action related sub-commands',
+    (
+        Verb('info', 'Print information about an action', show_info, _info_arguments),
+        Verb('list', 'Output a list of action names', list_actions, _list_arguments),
+        Verb('send_goal', 'Send an action goal', send_goal, _goal_arguments),
+        Verb('type', "Print an action's type", show_type, _type_arguments),
+    ),
+)

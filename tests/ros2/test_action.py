@@ -1,0 +1,196 @@
+"""`ros2 action` against a server in another process, in a cell, and its completion."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import labkit
+from labkit.ros2.completion import complete_line
+
+COUNTER = Path(__file__).with_name('counter.py')
+FIBONACCI = 'test_msgs/action/Fibonacci'
+
+
+@pytest.fixture
+def counter(domain, lab_env) -> Iterator[subprocess.Popen[str]]:
+    process = subprocess.Popen(
+        [sys.executable, str(COUNTER)],
+        env={**lab_env, **domain},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdin is not None and process.stdout is not None
+    assert process.stdout.readline() == 'ready\n'
+    yield process
+    process.stdin.close()
+    process.wait(60)
+    process.stdout.close()
+
+
+@pytest.mark.usefixtures('counter')
+def test_list_info_and_type(ros2):
+    shown, types, count, info, both, kind, wrong = ros2(
+        'action list',
+        'action list -t',
+        'action list -c',
+        'action info /count',
+        'action info count -t',
+        'action type /count',
+        'action info /cuont',
+    )
+    assert shown.lines == ['/count']
+    assert types.lines == [f'/count [{FIBONACCI}]']
+    assert count.out == '1\n'
+    assert info.lines == [
+        *('Action: /count', 'Action clients: 0', 'Action servers: 1', '    /counter')
+    ]
+    assert both.lines[-1] == f'    /counter [{FIBONACCI}]'
+    assert kind.out == f'{FIBONACCI}\n'
+    assert (wrong.code, wrong.err) == (1, "Unknown action '/cuont'\nDid you mean '/count'?\n")
+
+
+@pytest.mark.usefixtures('counter')
+def test_a_goal_with_feedback_and_one_that_is_refused(ros2):
+    sent, silent, refused = ros2(
+        f'action send_goal /count {FIBONACCI} "{{order: 2}}" --feedback',
+        f'action send_goal /count {FIBONACCI} "{{order: 2}}"',
+        f'action send_goal /count {FIBONACCI}',
+    )
+    assert sent.code == 0, sent.err
+    text = re.sub(r'ID: [0-9a-f]{32}', 'ID: *', sent.out)
+    assert text == (
+        'Waiting for an action server to become available...\n'
+        'Sending goal:\n     order: 2\n\n'
+        'Goal accepted with ID: *\n\n'
+        'Feedback:\n    sequence:\n- 1\n\n'
+        'Feedback:\n    sequence:\n- 1\n- 2\n\n'
+        'Result:\n    sequence:\n- 1\n- 2\n\n'
+        'Goal finished with status: SUCCEEDED\n'
+    )
+    assert 'Feedback' not in silent.out and 'SUCCEEDED' in silent.out
+    assert refused.lines[-1] == 'Goal was rejected.' and refused.code == 0
+
+
+@pytest.mark.usefixtures('counter')
+def test_what_is_wrong_with_a_goal_is_said_before_it_is_sent(ros2):
+    field, other, service, missing = ros2(
+        f'action send_goal /count {FIBONACCI} "{{orde: 2}}"',
+        'action send_goal /count test_msgs/action/NestedMessage',
+        'action send_goal /count std_srvs/srv/Trigger',
+        f'action send_goal /count {FIBONACCI} "{{order:2}}"',
+    )
+    assert "has no field 'orde'.\nDid you mean 'order'?" in field.err
+    assert other.err == f'/count is a {FIBONACCI}, not a test_msgs/action/NestedMessage.\n'
+    assert service.err.startswith('The passed action type is invalid')
+    assert 'space is missing after the colon' in missing.err
+    for answer in (field, other, service, missing):
+        assert (answer.code, answer.out) == (1, '')
+
+
+def test_the_stop_button_cancels_a_goal(start_kernel, counter, domain):
+    kernel = start_kernel(**domain)
+    kernel.run('import labkit as lab\n%load_ext labkit.ros2')
+    cell = kernel.start(f'%ros2 action send_goal /count {FIBONACCI} "{{order: 13}}" -f')
+    kernel.wait_for_output(cell, '- 3')
+    kernel.interrupt()
+    result = kernel.finish(cell)
+    assert result.text.endswith('Canceling goal...\nGoal canceled.\n')
+    assert counter.stdout.readline() == 'canceled 13\n'
+
+
+def test_an_action_without_a_server_in_a_lesson_that_a_program_runs(start_kernel, domain):
+    kernel = start_kernel(**domain, LABKIT_HEADLESS='1')
+    kernel.run('import labkit as lab\n%load_ext labkit.ros2')
+    result = kernel.run(f'%ros2 action send_goal /count {FIBONACCI}')
+    assert '/count has no server.\nThere is no action at all.\n' in result.text
+
+
+@pytest.mark.usefixtures('counter')
+def test_the_hidden_topics_of_an_action_can_be_looked_at(ros2):
+    listed, kind = ros2(
+        'topic list --include-hidden-topics -t',
+        'topic type /count/_action/feedback --include-hidden-topics',
+    )
+    assert f'/count/_action/feedback [{FIBONACCI}_FeedbackMessage]' in listed.lines
+    assert kind.out == f'{FIBONACCI}_FeedbackMessage\n'
+
+
+@pytest.mark.parametrize(
+    ('line', 'words'),
+    [
+        ('ac', ['action']),
+        ('action ', ['info', 'list', 'send_goal', 'type']),
+        ('action send_goal /count test_msgs/action/F', [FIBONACCI]),
+        (f'action send_goal /count {FIBONACCI} ', ['"{order: 0}"']),
+        (f'action send_goal /count {FIBONACCI} "{{order: 1}}" --f', ['--feedback']),
+    ],
+)
+def test_completion(line, words):
+    assert complete_line(line)[1] == words
+    labkit.stop()
+
+
+@pytest.mark.usefixtures('counter')
+def test_completion_of_names_on_the_live_graph(domain, lab_env):
+    def tab(line: str) -> list[str]:
+        done = subprocess.run(
+            [sys.executable, '-m', 'labkit.ros2', '--complete'],
+            env={**lab_env, **domain, 'COMP_LINE': line, 'COMP_POINT': str(len(line))},
+            capture_output=True,
+            text=True,
+            timeout=60,
+        )
+        assert done.returncode == 0, done.stderr
+        return done.stdout.split()
+
+    assert tab('ros2 action info /c') == ['/count']
+    assert tab('ros2 action send_goal /count ') == [FIBONACCI]
+
+
+def test_types_of_actions(ros2):
+    proto, show, part, listed = ros2(
+        f'interface proto {FIBONACCI}',
+        f'interface show {FIBONACCI}',
+        f'interface show {FIBONACCI}_Goal',
+        'interface list -a',
+    )
+    assert proto.out == '"order: 0\n"\n'
+    assert show.lines.count('---') == 2 and 'int32 order' in show.lines
+    assert part.code == 1 and 'Did you mean' in part.err
+    assert f'    {FIBONACCI}' in listed.lines
+
+
+GRAPH = """
+import json
+import labkit as lab
+lab.start()
+from rclpy.action import ActionClient, ActionServer
+from rclpy.node import Node
+from test_msgs.action import Fibonacci
+server, client = Node('counter'), Node('asker')
+ActionServer(server, Fibonacci, '/count', lambda handle: Fibonacci.Result())
+print(json.dumps([lab.graph()._repr_mimebundle_()['text/vnd.mermaid']]))
+ActionClient(client, Fibonacci, '/count')
+graph = lab.graph()
+print(json.dumps([str(graph), graph._repr_mimebundle_()['text/vnd.mermaid']]))
+"""
+
+
+def test_an_action_is_one_arrow_in_the_graph(script):
+    result = script(GRAPH)
+    assert result.exit_code == 0, result.stderr
+    ((alone,), (words, picture)) = (json.loads(line) for line in result.stdout.splitlines())
+    assert 'a0[["/count<br>test_msgs/action/Fibonacci"]]:::topic ==> n1' in alone
+    assert words.endswith(
+        f'Actions:\n  /count [{FIBONACCI}]\n    served by /counter\n    goals from /asker'
+    )
+    assert 'n0 == "/count<br>test_msgs/action/Fibonacci" ==> n1' in picture
+    assert '_action' not in picture
