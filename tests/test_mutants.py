@@ -15,7 +15,7 @@ from labkit.exercises.lesson import all_lessons
 sys.path.insert(0, str(Path(__file__).with_name('lessons')))
 
 from mutants.changes import plain_changes
-from mutants.generate import Mutant, equivalents, mutants_of
+from mutants.generate import Mutant, equivalents, mutants_of, parsed
 from mutants.ros_changes import ros_changes
 
 EXERCISES = {
@@ -59,7 +59,7 @@ def test_mutants_are_many_and_always_the_same(lesson: Lesson, exercise: Exercise
     assert len({mutant.diff for mutant in found}) == len(found)
     assert len(found) >= (15 if 'class ' in exercise.answer.code else 8)
     if not exercise.answer.code.lstrip().startswith('%'):
-        solution = ast.dump(ast.parse(exercise.answer.code))
+        solution = ast.dump(parsed(exercise.answer.code))
         assert all(ast.dump(ast.parse(mutant.code)) != solution for mutant in found)
 
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import nbformat
+from IPython.core.inputtransformer2 import TransformerManager
 from mutants.changes import Change, plain_changes, statement_changes
 from mutants.command_changes import command_changes
 from mutants.ros_changes import free_constants, ros_changes
@@ -18,7 +19,7 @@ from proof import notebook_of
 
 from labkit.exercises import Exercise, Lesson
 
-__all__ = ['Mutant', 'equivalents', 'mutants_of']
+__all__ = ['Mutant', 'equivalents', 'mutants_of', 'parsed']
 
 # A program in a string is one line.
 LINE = 240
@@ -54,7 +55,7 @@ def mutants_of(lesson: Lesson, exercise: Exercise) -> list[Mutant]:
     if code.lstrip().startswith('%'):
         solution, found = code.strip(), _of_commands(code.strip())
     else:
-        solution = ast.unparse(ast.parse(code))
+        solution = ast.unparse(parsed(code))
         found = _of_program(solution, _task(lesson, exercise))
     name, mutants, seen = f'{lesson.name}-{exercise.name}', [], {solution}
     numbers: Counter[str] = Counter()
@@ -64,6 +65,11 @@ def mutants_of(lesson: Lesson, exercise: Exercise) -> list[Mutant]:
             numbers[kind] += 1
             mutants.append(Mutant(f'{name}-{kind}-{numbers[kind]}', name, mutant, diff))
     return mutants
+
+
+def parsed(code: str) -> ast.Module:
+    """Return the tree of a cell; its magics and shell commands are calls there."""
+    return ast.parse(TransformerManager().transform_cell(code))
 
 
 def _task(lesson: Lesson, exercise: Exercise) -> str:
