@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from labkit.errors import nearest
 from labkit.exercises import Fail, NotAttempted, Probe
@@ -327,7 +327,7 @@ def _is_in_source(path: Path) -> bool:
     return not {'build', 'install', 'log'} & {*path.parts}
 
 
-def _refuse_program(program: str, work: Work) -> None:
+def _refuse_program(program: str, work: Work) -> NoReturn:
     """Say why an executable is not there."""
     wanted = f'the executable {program} in the package {work.package}'
     names = work.programs
