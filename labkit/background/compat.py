@@ -29,6 +29,7 @@ __all__ = [
     'add_task',
     'answer_input',
     'call_in_kernel',
+    'callback_of',
     'forget_executor',
     'handler_of',
     'has_tasks',
@@ -80,6 +81,14 @@ def is_queued(entity: Any) -> bool:
 def handler_of(task: Task) -> Any:
     """Return what a task runs, a function or a coroutine; None once it is done."""
     return task._handler
+
+
+def callback_of(task: Task) -> Any:
+    """Return what a task runs; of a goal of an action, the callback that does the work."""
+    handler = handler_of(task)
+    frame = getattr(handler, 'cr_frame', None)
+    of_a_goal = frame is not None and handler.__name__ == '_execute_goal'
+    return frame.f_locals['execute_callback'] if of_a_goal else handler
 
 
 def is_shut_down(executor: Executor) -> bool:

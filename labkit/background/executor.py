@@ -363,7 +363,9 @@ class BackgroundExecutor(SingleThreadedExecutor):
     def _run(self, task: Any, entity: Any, entry: NodeEntry) -> None:
         self._console.speak_for(entry.cell)
         with self._callback_lock:
-            what = entity or compat.handler_of(task)  # a task forgets its function when it is done
+            what = entity or compat.callback_of(
+                task
+            )  # a task forgets its function when it is done
             self._running = (entry, what)
             try:
                 task()

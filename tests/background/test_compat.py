@@ -214,6 +214,21 @@ def test_input_is_answered_by_a_function(kernel):
     assert kernel.run('print(input("who? "))').text == 'WHO? \n'
 
 
+def test_the_task_of_a_goal_knows_the_callback_that_does_the_work(script):
+    result = script(
+        READY
+        + """
+from rclpy.action import ActionServer
+from test_msgs.action import Fibonacci
+server = ActionServer(node, Fibonacci, 'count', print)
+task = Task(server._execute_goal, (print, None), executor=executor)
+print(compat.callback_of(task) is print, compat.callback_of(Task(len)) is len)
+task.cancel()
+"""
+    )
+    assert result.stdout == 'True True\n', result.stderr
+
+
 def test_an_action_server_knows_its_node(script):
     result = script(
         READY

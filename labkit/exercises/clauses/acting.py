@@ -23,7 +23,6 @@ ANSWER_SEC = 5.0
 PATIENCE_SEC = 1.0
 # A request to cancel is to be taken while the goal goes on.
 SOON_SEC = 0.3
-OVER_SEC = 0.05
 # What was published before the result has come so long after it at the latest, s.
 LATE_SEC = 0.5
 
@@ -51,7 +50,8 @@ class Pursuit:
         feedback: The feedback on it, in its order.
         result: The result; None if it was rejected.
         status: How it ended, as a number of `action_msgs/msg/GoalStatus`.
-        cancel_accepted: Whether the server has accepted to cancel it, None if nobody asked.
+        cancel_accepted: Whether the server has accepted to cancel it; None if nobody asked, or
+            the goal was over before.
     """
 
     goal: Goal
@@ -153,9 +153,8 @@ class _Asking:
     def _cancel(self, handle: Any, finished: Any) -> None:
         wanted = self._pursuit.goal.cancel_after
         self._probe.wait(lambda: len(self._feedback()) >= wanted or finished.done(), ANSWER_SEC)
-        # Of a goal that is over at once, the feedback comes first, and then the result.
-        if not self._probe.wait(finished.done, OVER_SEC):
-            answer = self._answer(handle.cancel_goal_async(), 'is canceled, or not', SOON_SEC)
+        answer = self._answer(handle.cancel_goal_async(), 'is canceled, or not', SOON_SEC)
+        if answer.return_code not in (answer.ERROR_GOAL_TERMINATED, answer.ERROR_UNKNOWN_GOAL_ID):
             self._pursuit.cancel_accepted = bool(answer.goals_canceling)
 
     def _feedback(self) -> list[Any]:

@@ -111,8 +111,9 @@ def _draw() -> list[Goal]:
 
 
 def _draw_canceled() -> list[Goal]:
-    # About a second and a half. A server that can't be stopped is not to go on for long.
-    order = random.randint(28, 32)
+    # Two seconds and a half. A server that can't be stopped is not to go on for long, and a busy
+    # machine has time to cancel.
+    order = random.randint(46, 52)
     return [Goal({'order': order}, cancel_after=random.randint(3, 5)), Goal({'order': 2})]
 
 

@@ -60,15 +60,14 @@ QUIZ = Quiz(
         wrong('it goes on for ever', 'When the callback has returned, the goal is over.'),
     ),
     Choice(
-        'You add a field to a message, and build the package again. The notebook has imported the '
-        'package before. What now?',
+        'A client has called send_goal_async(). What does its future hold when the server has '
+        'answered?',
         right(
-            'Restart the kernel',
-            'A program loads the library of a type once. All programs with the type have to be '
-            'started anew.',
+            'a goal handle',
+            'Its attribute accepted says yes or no. The result comes by a second future.',
         ),
-        wrong('Import it once more', 'Python gives back what it has imported before.'),
-        wrong('Nothing', 'The kernel has the old type, and would not understand the new one.'),
+        wrong('the result', 'That comes later: get_result_async() of the goal handle.'),
+        wrong('the first feedback', 'Feedback goes to the feedback_callback.'),
     ),
     Word(
         'Which command builds all packages of a workspace? Its second word is build.',
