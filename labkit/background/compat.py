@@ -87,8 +87,9 @@ def callback_of(task: Task) -> Any:
     """Return what a task runs; of a goal of an action, the callback that does the work."""
     handler = handler_of(task)
     frame = getattr(handler, 'cr_frame', None)
-    of_a_goal = frame is not None and handler.__name__ == '_execute_goal'
-    return frame.f_locals['execute_callback'] if of_a_goal else handler
+    if frame is None or handler.__name__ != '_execute_goal':
+        return handler
+    return frame.f_locals['execute_callback']
 
 
 def is_shut_down(executor: Executor) -> bool:

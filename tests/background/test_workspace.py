@@ -100,6 +100,27 @@ lab.play(folder + '/bag', ['/boxes']).wait()
 lab.wait_until(lambda: carrier.heard, timeout_sec=60)
 print('played', carrier.heard[0].name)
 print(lab.graph())
+
+
+class Filler(Node):
+    def __init__(self):
+        super().__init__('filler')
+        self.publisher = self.create_publisher(Box, 'filled', 10)
+        self.create_timer(0.05, self.fill)
+
+    def fill(self):
+        box = Box(name='green')
+        box.place.x = 2.25
+        self.publisher.publish(box)
+
+
+filler = lab.spin(Filler())
+print('monitor', lab.monitor('/filled', count=2))
+print('plot', lab.plot('/filled.place.x', count=3))
+assert run_line('topic echo --once /filled') == 0
+assert run_line('topic echo --once /filled --field place.x') == 0
+print('doctor', lab.doctor())
+lab.remove(filler)
 child = 'from box_interfaces.action import Carry; print(Carry.Goal().box.place.x)'
 print(subprocess.run([sys.executable, '-c', child], env=environment(), capture_output=True))
 from rosbags.highlevel import AnyReader
@@ -152,6 +173,12 @@ def test_types_of_ones_own_are_types_like_all_others(folder, tmp_path, lab_env):
     assert 'Feedback:\n    remaining: 0.5' in out and 'status: SUCCEEDED' in out
     assert '\n1.5\n' in out and '\nplayed blue\n' in out
     assert '  /carry [box_interfaces/action/Carry]\n    served by /carrier' in out
+    assert 'monitor /filled [box_interfaces/msg/Box]\npublished by /filler' in out
+    assert "name: 'green'\nplace:\n  x: 2.25\n" in out
+    assert 'plot /filled.place.x: 3 messages, first 2.25 m' in out
+    # The two echos.
+    assert 'name: green\nplace:\n  x: 2.25\n' in out and '---\n2.25\n---\ndoctor' in out
+    assert 'Topics          /boxes, /filled, /carry (action)' in out and 'All is well.' in out
     assert r"stdout=b'0.0\n', stderr=b''" in out
     assert "['box_interfaces__action__Carry_FeedbackMessage', 'box_interfaces__msg__Box']" in out
     assert 'box_interfaces was built anew, but this kernel has imported it' in out
