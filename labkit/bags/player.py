@@ -12,7 +12,6 @@ import time
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from rclpy.duration import Duration
 from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
 
@@ -20,7 +19,7 @@ from labkit.background.compat import RCLError
 from labkit.background.discovery import asking_node
 from labkit.background.runtime import runtime
 from labkit.background.session import Session, end_earlier
-from labkit.bags.listeners import wait_for_listeners
+from labkit.bags.listeners import wait_for_listeners, wait_until_heard
 from labkit.bags.offers import offered_profile
 from labkit.bags.reader import Bag, BagMessage, BagTopic, open_bag
 from labkit.errors import LabError, LabTimeout
@@ -263,9 +262,8 @@ class Playing(Session):
 
     def _wait_until_heard(self) -> None:
         """Wait until what was published has come to others, and was heard in this process."""
-        for _, publisher in self._publishers.values():
-            if not self._stopping.is_set():
-                publisher.wait_for_all_acked(Duration(seconds=HEARD_SEC))
+        published = [publisher for _, publisher in self._publishers.values()]
+        wait_until_heard(self._node, published, HEARD_SEC, self._stopping.is_set)
         if runtime.started and not self._stopping.is_set():
             runtime.executor.settle(HEARD_SEC)
 

@@ -291,19 +291,23 @@ import os, signal, sys, time
 import labkit as lab
 from labkit.background.discovery import asking_node
 
+pid = int(sys.argv[1])
 asking_node()
-if '{held_up}':
-    os.kill(int(sys.argv[1]), signal.SIGSTOP)
+if '{held_up}' == 'at first':
+    os.kill(pid, signal.SIGSTOP)
 playing = lab.play('drive', rate=10)
+if '{held_up}' == 'at last':
+    lab.wait_until(lambda: playing.counts['/chatter'] > 70, timeout_sec=60)
+    os.kill(pid, signal.SIGSTOP)
 if '{held_up}':
     time.sleep(0.5)
-    os.kill(int(sys.argv[1]), signal.SIGCONT)
+    os.kill(pid, signal.SIGCONT)
 playing.wait(60)
 """
 
 
-@pytest.mark.parametrize('held_up', ['', 'held up'])
-def test_another_process_hears_the_first_message(
+@pytest.mark.parametrize('held_up', ['', 'at first', 'at last'])
+def test_another_process_hears_the_first_message_and_the_last(
     tmp_path: Path, messages: list[Stored], lab_env: dict[str, str], held_up: str
 ) -> None:
     made.make_mcap(tmp_path / 'drive', messages)
