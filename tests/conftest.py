@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -275,7 +276,9 @@ class Kernel:
     def shutdown(self, timeout: float = TIMEOUT_SEC) -> int:
         """Ask the kernel to end as JupyterLab does; return its exit code."""
         self._client.shutdown()
-        return self.process.wait(timeout)
+        exit_code = self.process.wait(timeout)
+        assert exit_code >= 0, f'Ended by {signal.Signals(-exit_code).name}:\n{self.log}'
+        return exit_code
 
     def close(self) -> None:
         """End the kernel for certain."""
