@@ -101,7 +101,8 @@ def _answer(order: int) -> int:
 
 
 def _draw() -> list[int]:
-    return [3, 3, *random.sample(range(1, 60), k=6)]
+    # More than ten, of which two are the same.
+    return [3, 3, *random.sample(range(1, 60), k=10)]
 
 
 @dataclass(frozen=True)
