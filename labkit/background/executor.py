@@ -43,6 +43,8 @@ __all__ = ['BackgroundExecutor', 'callback_name']
 
 # While nothing happens in ROS, a condition that depends on something else is looked at this often.
 POLL_SEC = 0.05
+# How long a thread may take to end that runs no callback, s: only a fault would make it longer.
+END_SEC = 30.0
 # How long to wait for a callback that keeps a removed node from being let go.
 RELEASE_SEC = 1.0
 
@@ -93,13 +95,24 @@ class BackgroundExecutor(SingleThreadedExecutor):
     def close(self, timeout_sec: float) -> bool:
         """End the background thread, and wait for a callback that is still running.
 
+        A thread that runs none ends by itself, however late a busy machine lets it: the end of
+        the interpreter would abort the process before.
+
+        Args:
+            timeout_sec: How long to wait for a callback, s.
+
         Returns:
             Whether the thread has ended in time.
         """
         self._closing = True
         self.wake()
-        if self._thread.is_alive() and not self.in_callback():
-            self._thread.join(timeout_sec)
+        left = timeout_sec
+        while self._thread.is_alive() and not self.in_callback():
+            is_busy = self._running is not None or self._looking is not None
+            if left <= (0 if is_busy else -END_SEC):
+                break
+            self._thread.join(POLL_SEC)
+            left -= POLL_SEC  # no clock: the whole machine may have stood still meanwhile
         for task, _, _ in self._ready:
             task.cancel()  # else Python complains of coroutines that were never awaited
         self._ready.clear()
