@@ -60,7 +60,7 @@ def mutants_of(lesson: Lesson, exercise: Exercise) -> list[Mutant]:
     name, mutants, seen = f'{lesson.name}-{exercise.name}', [], {solution}
     numbers: Counter[str] = Counter()
     for kind, mutant, diff in found:
-        if mutant not in seen:
+        if diff and mutant not in seen:  # blank lines of a program in a string are no change
             seen.add(mutant)
             numbers[kind] += 1
             mutants.append(Mutant(f'{name}-{kind}-{numbers[kind]}', name, mutant, diff))

@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any
+from statistics import median
+from typing import TYPE_CHECKING
 
 from labkit.exercises import Exercise, Fail, Outcome, Probe, Solution, Style, Wrong, changed
 from labkit.lessons.package.content import Built, Does, Runs, Work, judge_package
+
+if TYPE_CHECKING:
+    from labkit.exercises.watch import Watch
 
 __all__ = ['counter']
 
 PACKAGE = 'counter_lab'
 TYPES = {'/count': 'std_msgs/msg/Int16', '/half': 'std_msgs/msg/Float64'}
-ENOUGH = 4
+ENOUGH = 6
+# Shortest period of the task, s, and what is left of it where a tick comes late.
+SHORTEST_SEC = 0.05
+SHARE = 0.8
 
 _COUNTER = """
 from rclpy.node import Node
@@ -43,7 +50,7 @@ _HALF = '        self.half_publisher.publish(Float64(data=self.count / 2))\n'
 _SELF = 'self.count / 2'
 
 
-def _heard(work: Work, topic: str) -> list[Any]:
+def _heard(work: Work, topic: str) -> Watch:
     """Return what the node says on a topic."""
     probe, msg_type = work.probe, TYPES[topic]
     ends = [end for end in probe.publishers(topic) if end.node == '/counter']
@@ -72,11 +79,20 @@ def _heard(work: Work, topic: str) -> list[Any]:
             why='No timer calls publish() again and again, or its period is in seconds.',
             todo='self.create_timer(0.2, self.on_timer)',
         )
-    return watch.values('data')
+    return watch
 
 
 def _counts(work: Work) -> None:
-    values = _heard(work, '/count')
+    watch = _heard(work, '/count')
+    gaps = [later.stamp - before.stamp for before, later in pairwise(watch.samples)]
+    if median(gaps) < SHARE * SHORTEST_SEC:
+        raise Fail(
+            'at most 20 numbers a second on /count',
+            f'{1 / max(median(gaps), 1e-6):.0f} a second',
+            why='The node hardly rests. Who listens can not keep up with it.',
+            todo='self.create_timer(0.2, self.on_timer)',
+        )
+    values = watch.values('data')
     if any(later - before != 1 for before, later in pairwise(values)):
         raise Fail(
             'numbers on /count of which each is one more than the one before',
@@ -87,7 +103,7 @@ def _counts(work: Work) -> None:
 
 
 def _halves(work: Work) -> None:
-    values = _heard(work, '/half')
+    values = _heard(work, '/half').values('data')
     if any(later - before != 0.5 for before, later in pairwise(values)) or values[0] % 0.5:
         raise Fail(
             'numbers on /half of which each is 0.5 more than the one before',
@@ -103,7 +119,7 @@ CLAUSES: Sequence[Built | Runs | Does] = [
     Built(PACKAGE),
     Runs('counter', 'counter', PACKAGE),
     Does(
-        'the node publishes whole numbers on `/count` (`std_msgs/msg/Int16`), several a second, '
+        'the node publishes whole numbers on `/count` (`std_msgs/msg/Int16`), 2 to 20 a second, '
         'each one more than the one before',
         _counts,
     ),
@@ -231,6 +247,11 @@ counter = Exercise(
             'cut off',
             changed(_COUNTER, (_SELF, 'float(self.count // 2)')),
             '// cuts off what stands behind the point',
+        ),
+        Wrong(
+            'without a rest',
+            changed(_COUNTER, ('create_timer(0.2', 'create_timer(0.001')),
+            'Who listens can not keep up with it.',
         ),
         Wrong(
             'ms for s',

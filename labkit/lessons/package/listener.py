@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
+from functools import partial
 
 from labkit.exercises import Exercise, Fail, Outcome, Probe, Solution, Style, Wrong, changed
 from labkit.lessons.package.content import Built, Does, Runs, Work, judge_package
@@ -112,24 +113,33 @@ def _logs(work: Work) -> None:
             why='A topic carries one type: it would hear nobody who sends texts.',
             todo='Subscribe with String.',
         )
-    words = [f'{random.choice(("red", "green", "blue"))} {random.randrange(10**6)}' for _ in '12']
+    numbers = random.sample(range(100_000, 1_000_000), k=12)
+    words = [f'{random.choice(("red", "green", "blue"))} {number}' for number in numbers]
     send = probe.sender(TOPIC, STRING)
+
+    def lines(word: str) -> int:
+        return sum(word in log.msg for log in probe.logs if log.name == 'listener')
+
     for word in words:
         send({'data': word})
-
-    def logged() -> list[str]:
-        return [log.msg for log in probe.logs if log.name == 'listener']
-
-    def is_logged() -> bool:
-        return all(any(word in line for line in logged()) for word in words)
-
-    if not work.wait(is_logged):
+        # One after the other: a queue of any depth is enough.
+        if not work.wait(partial(lines, word)):
+            raise Fail(
+                f'a line of the log for each text, such as: I heard: {word}',
+                f'lines of the log: {[log.msg for log in probe.logs if log.name == "listener"]}',
+                why='The callback does not log, or it logs something else. What print() writes is '
+                'not in the log.',
+                todo="self.get_logger().info(f'I heard: {msg.data}')",
+            )
+    # A second line of the last one may be on its way.
+    often = {word: lines(word) for word in words[:-1]}
+    twice = [word for word, count in often.items() if count > 1]
+    if twice:
         raise Fail(
-            f'a line of the log for each text, such as: I heard: {words[0]}',
-            f'lines of the log: {logged()}',
-            why='The callback does not log, or it logs something else. What print() writes is '
-            'not in the log.',
-            todo="self.get_logger().info(f'I heard: {msg.data}')",
+            'one line of the log for each text',
+            f'{often[twice[0]]} lines with {twice[0]}',
+            why='Somebody who counts the lines would count that text more than once.',
+            todo='One subscription, and one call of info() in its callback.',
         )
 
 
@@ -137,7 +147,7 @@ CLAUSES: Sequence[Built | Runs | Does] = [
     Built(PACKAGE),
     Does('its package.xml names `rclpy` and `std_msgs` as dependencies', _needs),
     Runs(PROGRAM, 'listener', PACKAGE),
-    Does('the node logs each text that comes on `/chatter` (`std_msgs/msg/String`)', _logs),
+    Does('the node logs each text that comes on `/chatter` (`std_msgs/msg/String`), once', _logs),
 ]
 
 
@@ -236,6 +246,31 @@ listener = Exercise(
                 _LISTENER, ("self.get_logger().info(f'I heard: {msg.data}')", 'print(msg.data)')
             ),
             'What print() writes is not in the log.',
+        ),
+        Wrong(
+            'logs twice',
+            changed(
+                _LISTENER,
+                (
+                    "        self.get_logger().info(f'I heard: {msg.data}')\n",
+                    "        self.get_logger().info(f'I heard: {msg.data}')\n"
+                    '        self.get_logger().info(msg.data)\n',
+                ),
+            ),
+            'would count that text more than once',
+        ),
+        Wrong(
+            'stops after ten',
+            changed(
+                _LISTENER,
+                (
+                    "        self.get_logger().info(f'I heard: {msg.data}')\n",
+                    '        self.count = getattr(self, "count", 0) + 1\n'
+                    '        if self.count <= 10:\n'
+                    "            self.get_logger().info(f'I heard: {msg.data}')\n",
+                ),
+            ),
+            'does not log, or it logs something else',
         ),
         Wrong(
             'raises',
