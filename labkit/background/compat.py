@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from rclpy._rclpy_pybind11 import RCLError
@@ -23,59 +23,65 @@ if TYPE_CHECKING:
     from rclpy.node import Node
     from rclpy.task import Task
     from rclpy.timer import Timer
+    from rclpy.waitable import NumberOfEntities
 
 __all__ = [
     'RCLError',
-    'add_task',
     'answer_input',
     'call_in_kernel',
     'callback_of',
     'forget_executor',
     'handler_of',
-    'has_tasks',
     'is_kernel_stream',
-    'is_queued',
     'is_shut_down',
+    'new_wait_set',
     'node_of_action',
+    'own_guards',
     'rate_is_awaited',
     'rate_sleepers',
-    'ready_callbacks',
     'running_request',
     'set_ros_time_is_active',
     'set_thread_request',
     'take_logs',
+    'takers',
 ]
 
 # --- rclpy ---------------------------------------------------------------------------------------
 
 
-def ready_callbacks(
-    executor: Executor, timeout_sec: float | None, stop: Callable[[], bool]
-) -> Iterator[tuple[Any, Any, Any]]:
-    """Wait, and yield task, entity and node of what is ready. See `Executor.spin_once`.
+def takers(executor: Executor) -> dict[str, Callable[[Any], Any]]:
+    """Return what takes from an entity that is ready, for each kind of entity.
 
-    Args:
-        executor: The executor, which asks its `get_nodes` at the start of each round.
-        timeout_sec: Seconds to wait, None for no end.
-        stop: Looked at whenever the executor was woken.
+    Each is called with the entity, and returns a function that makes the coroutine which runs the
+    callback; None if there is nothing to take, because the entity was destroyed meanwhile or a
+    message has gone. A guard condition is taken by the wait itself.
     """
-    yield from executor._wait_for_ready_callbacks(timeout_sec, None, stop)
+    return {
+        'subscription': executor._take_subscription,
+        'timer': executor._take_timer,
+        'client': executor._take_client,
+        'service': executor._take_service,
+        'guard_condition': executor._take_guard_condition,
+        'waitable': executor._take_waitable,
+    }
 
 
-def has_tasks(executor: Executor) -> bool:
-    """Tell whether a callback is under way or waits its turn, such as a coroutine."""
-    return bool(executor._tasks)
+def own_guards(executor: Executor) -> list[Any]:
+    """Return the guard conditions that wake an executor: `wake()`, and Ctrl-C."""
+    return [guard for guard in (executor._guard, executor._sigint_gc) if guard is not None]
 
 
-def add_task(executor: Executor, task: Task) -> None:
-    """Let an executor run a task that belongs to no entity."""
-    with executor._tasks_lock:
-        executor._tasks.append((task, None, None))
-
-
-def is_queued(entity: Any) -> bool:
-    """Tell whether a callback of a timer, subscription and so on waits its turn already."""
-    return bool(entity._executor_event)
+def new_wait_set(context_handle: Any, count: NumberOfEntities) -> Any:
+    """Make a wait set for so many entities."""
+    return rclpy_implementation.WaitSet(
+        count.num_subscriptions,
+        count.num_guard_conditions,
+        count.num_timers,
+        count.num_clients,
+        count.num_services,
+        count.num_events,
+        context_handle,
+    )
 
 
 def handler_of(task: Task) -> Any:

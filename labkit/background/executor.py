@@ -6,37 +6,33 @@ What was measured of rclpy in a kernel, and decides the shape of this module:
   waits, waits for the background thread.
 - A `SingleThreadedExecutor` bears nodes that come and go while it spins; a multi-threaded one
   fails now and then, and costs more a message.
+- rclpy makes a wait set, a task and a coroutine of its own for each message. A message takes a
+  third of the time when the wait set is kept (see `wait_set`) and the callback run directly.
 - An exception ends `Executor.spin()` silently, so each callback is run on its own.
 - A spinning thread at the end of the interpreter aborts the process, so it is joined at exit.
 """
 
 from __future__ import annotations
 
-import inspect
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Coroutine
 from contextlib import AbstractContextManager, suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
-from weakref import WeakKeyDictionary
 
 from rclpy.exceptions import InvalidHandle
-from rclpy.executors import (
-    ConditionReachedException,
-    ExternalShutdownException,
-    ShutdownException,
-    SingleThreadedExecutor,
-    TimeoutException,
-)
+from rclpy.executors import Executor
+from rclpy.guard_condition import GuardCondition
 from rclpy.node import Node
 from rclpy.task import Task
-from rclpy.timer import Timer
 from rclpy.waitable import Waitable
 
 from labkit.background import compat
 from labkit.background.console import Console
 from labkit.background.nodes import NodeEntry
+from labkit.background.wait_set import KeptWaitSet, Ready
 from labkit.errors import LabError
 
 __all__ = ['BackgroundExecutor', 'callback_name']
@@ -49,7 +45,24 @@ END_SEC = 30.0
 RELEASE_SEC = 1.0
 
 
-class BackgroundExecutor(SingleThreadedExecutor):
+@dataclass(eq=False)
+class _UnderWay:
+    """A coroutine that awaits something, or a function that belongs to no entity.
+
+    Attributes:
+        task: Gone on with after each callback, until it is done.
+        entry: The node that it is a part of.
+        what: The entity or the function, whose name is shown with an error.
+        entity: Keeps others of its callback group waiting; None for a function without entity.
+    """
+
+    task: Any
+    entry: NodeEntry
+    what: Any
+    entity: Any = None
+
+
+class BackgroundExecutor(Executor):
     """Runs the callbacks of all nodes in one background thread, in a fixed order.
 
     Nodes come in the order in which they were added, and messages before timers: what a timer has
@@ -69,18 +82,17 @@ class BackgroundExecutor(SingleThreadedExecutor):
         self._rounds = 0
         self._round_awaited = 0
         self._running: tuple[NodeEntry, Any] | None = None
-        self._owners: WeakKeyDictionary[Task, NodeEntry] = WeakKeyDictionary()
         self._conditions: list[Callable[[], None]] = []
         self._closing = False
         self._settling: threading.Event | None = None
         self._settle_lock = threading.Lock()
-        self._gathering = False
         # The thread that is looking at a condition of `wait` just now.
         self._looking: int | None = None
-        self._ready: list[tuple[Any, Any, Any]] = []
-        # What was ready in the round before, and how many rounds in a row held nothing else.
-        self._before: set[Task] = set()
-        self._idle_rounds = 0
+        self._wait_set = KeptWaitSet(self)
+        self._ready: deque[Ready | _UnderWay] = deque()
+        self._under_way: list[_UnderWay] = []
+        # Whether something has happened since what is under way was gone on with.
+        self._stirred = False
         self._thread = threading.Thread(target=self._spin, name='labkit', daemon=True)
 
     def start(self) -> None:
@@ -91,6 +103,11 @@ class BackgroundExecutor(SingleThreadedExecutor):
     def is_open(self) -> bool:
         """Tell whether the background thread was started, and not ended since."""
         return self._thread.is_alive() and not self._closing
+
+    @property
+    def awaiting(self) -> int:
+        """Return how many coroutines and tasks have begun, or are to, and have not ended."""
+        return len(self._under_way)
 
     def close(self, timeout_sec: float) -> bool:
         """End the background thread, and wait for a callback that is still running.
@@ -113,9 +130,10 @@ class BackgroundExecutor(SingleThreadedExecutor):
                 break
             self._thread.join(POLL_SEC)
             left -= POLL_SEC  # no clock: the whole machine may have stood still meanwhile
-        for task, _, _ in self._ready:
-            task.cancel()  # else Python complains of coroutines that were never awaited
-        self._ready.clear()
+        for work in self._under_way:
+            work.task.cancel()  # else Python complains of coroutines that were never awaited
+        self._under_way.clear()
+        self._wait_set.give_up()
         return not self._thread.is_alive()
 
     # -- nodes ----------------------------------------------------------------------------------
@@ -124,6 +142,13 @@ class BackgroundExecutor(SingleThreadedExecutor):
         """Run the callbacks of a node from now on."""
         self._entries[entry.node] = entry
         self.add_node(entry.node)
+        self.wake()
+
+    def wake(self) -> None:
+        """Look anew at what there is. rclpy calls it when an entity was made or destroyed."""
+        self._stirred = True
+        self._wait_set.give_up()
+        super().wake()
 
     def remove_node(self, node: Node) -> None:
         """Run the callbacks of a node no more, and let go of its timers and subscriptions.
@@ -136,6 +161,7 @@ class BackgroundExecutor(SingleThreadedExecutor):
             compat.forget_executor(node)
         seen = self._rounds
         super().remove_node(node)
+        self.wake()
         # Who looks at a condition keeps the thread from its next round.
         waits_in_vain = self.in_callback() or self._looking == threading.get_ident()
         if self.is_open and not waits_in_vain:
@@ -152,21 +178,7 @@ class BackgroundExecutor(SingleThreadedExecutor):
 
     def get_nodes(self) -> list[Node]:
         """Return the nodes on this executor, in the order in which they were added."""
-        if self._gathering and self.in_callback():  # at the start of each round
-            self._rounds += 1
-            if self._round_awaited:
-                with self._round_begun:
-                    self._round_begun.notify_all()
         return list(self._entries)
-
-    def can_execute(self, entity: Any) -> bool:
-        """Tell whether a callback can be run now."""
-        # Asked for every entity in every round. rclpy looks into the callback group each time,
-        # which costs a tenth of a message's way; but between rounds no callback is under way,
-        # unless it is a coroutine.
-        if not compat.has_tasks(self):
-            return not compat.is_queued(entity)
-        return bool(super().can_execute(entity))
 
     def create_task(
         self, callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any, **kwargs: Any
@@ -182,10 +194,37 @@ class BackgroundExecutor(SingleThreadedExecutor):
             first = next(iter(self._entries.values()))
             owner = replace(first, cell=self._console.current_cell(), counts={}, budget=None)
         task = Task(callback, args, kwargs, executor=self)  # type: ignore[no-untyped-call]
-        self._owners[task] = owner
-        compat.add_task(self, task)
-        self.wake()
+        self._under_way.append(_UnderWay(task, owner, compat.callback_of(task)))
+        self._stirred = True
+        super().wake()
         return task
+
+    def spin(self) -> None:
+        """Refuse to spin: see `spin_once`."""
+        self._refuse_spin('spin')
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        """Refuse to spin: the background does, and two at once would take from each other.
+
+        Raises:
+            LabError: Always.
+        """
+        self._refuse_spin('spin_once')
+
+    def spin_once_until_future_complete(self, future: Any, timeout_sec: Any = None) -> None:
+        """Refuse to spin: see `spin_once`."""
+        self._refuse_spin('spin_once_until_future_complete')
+
+    def spin_until_future_complete(self, future: Any, timeout_sec: float | None = None) -> None:
+        """Refuse to spin: see `spin_once`."""
+        self._refuse_spin('spin_until_future_complete')
+
+    def _refuse_spin(self, method: str) -> None:
+        raise LabError(
+            f'{method}() of this executor: it is the one that spins in the background already.',
+            todo='Wait for what you expect: lab.wait_until(lambda: future.done()), or '
+            'lab.wait_for_message(...).',
+        )
 
     # -- waiting --------------------------------------------------------------------------------
 
@@ -316,99 +355,132 @@ class BackgroundExecutor(SingleThreadedExecutor):
         # A callback may have shut down this executor, or ROS past labkit: `is_open` tells.
         while not (self._closing or compat.is_shut_down(self)):
             try:
-                self.spin_once()
-            except ExternalShutdownException:
-                return
+                self._step()
             except InvalidHandle:
-                # A node was destroyed between waiting and taking: there is nothing to run.
-                continue
-            except BaseException as error:  # a fault of labkit's own must not silence every node
-                if not self.context.ok():
-                    return
-                self._console.show_error('labkit itself', 'spin_once', error)
-
-    def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait for one callback and run it. Called by the background thread only."""
-        if not self._ready:
-            settling = self._settling
-            stop = self._closed if settling is not None else self._asked
-            self._gathering = True
-            try:
-                # When woken without work it goes on waiting, unless it is asked for something.
-                self._ready.extend(
-                    compat.ready_callbacks(self, timeout_sec if settling is None else 0, stop)
-                )
-            except (TimeoutException, ShutdownException, ConditionReachedException):
+                # Something was destroyed between waiting and taking: there is nothing to run.
                 pass
-            finally:
-                self._gathering = False
-            self._ready.sort(key=_is_timer)
-            if settling is not None and (not self._ready or self._only_awaits()):
-                settling.set()
-                self._settling = None
-            if not self._ready:
+            except BaseException as error:  # a fault of labkit's own must not silence every node
+                if self.context.ok():
+                    self._console.show_error('labkit itself', 'the background', error)
+            if not self.context.ok():
                 return
-        task, entity, node = self._ready.pop(0)
-        entry = self._owners.get(task) if node is None else self._entries.get(node)
-        if entry is None or (node is None and not entry.alive):
-            # Its node has ended: a goal under way, for one, goes on no more.
-            _drop(task)
-        else:
-            self._run(task, entity, entry)
 
-    def _only_awaits(self) -> bool:
-        """Tell whether nothing is left but coroutines that await what does not come.
+    def _step(self) -> None:
+        """Run one callback, or wait until there is one to run."""
+        self._rounds += 1
+        if self._round_awaited:
+            with self._round_begun:
+                self._round_begun.notify_all()
+        if self._ready:
+            self._run(self._ready.popleft())
+            return
+        if self._under_way and self._stirred:
+            # Before the next wait: what they await may have come with the last callback.
+            self._stirred = False
+            self._ready.extend(self._under_way)
+            return
+        settling = self._settling
+        ready = self._wait_set.wait(
+            self._entries,
+            may_run=self.can_execute if self._under_way else None,
+            block=settling is None,
+        )
+        self._ready.extend(ready)
+        if settling is not None and not ready:
+            settling.set()
+            self._settling = None
 
-        One that awaits is ready in each round. What it awaits may have come in the round before,
-        so there have to be two rounds without anything new.
-        """
-        tasks = {task for task, _, _ in self._ready}
-        self._idle_rounds = self._idle_rounds + 1 if tasks <= self._before else 0
-        self._before = tasks
-        return self._idle_rounds > 1
-
-    def _closed(self) -> bool:
-        return self._closing
-
-    def _asked(self) -> bool:
-        return self._closing or self._settling is not None
-
-    def _run(self, task: Any, entity: Any, entry: NodeEntry) -> None:
+    def _run(self, work: Ready | _UnderWay) -> None:
+        """Run a callback, or go on with what is under way, and look what has come of it."""
+        entry = self._entry_to_run(work)
+        if entry is None:
+            return
+        what = work.what if isinstance(work, _UnderWay) else work.entity
         self._console.speak_for(entry.cell)
         with self._callback_lock:
-            what = entity or compat.callback_of(
-                task
-            )  # a task forgets its function when it is done
             self._running = (entry, what)
-            try:
-                task()
-            except BaseException as let_through:  # by rclpy, such as that of sys.exit()
-                task.set_exception(let_through)
+            error = self._go_on(work) if isinstance(work, _UnderWay) else self._begin(work, entry)
             self._running = None
-            error = task.exception()
             # Not when the node was removed meanwhile, or an action: then the error is that it was.
-            ended = isinstance(error, InvalidHandle) and isinstance(entity, Waitable)
+            ended = isinstance(error, InvalidHandle) and isinstance(what, Waitable)
             if error is not None and entry.node in self._entries and not ended:
                 self._console.show_error(entry.name, callback_name(what), error)
-            entry.counts[entity] = entry.counts.get(entity, 0) + 1
-            if entry.budget is not None:
-                entry.budget -= 1
-                if entry.budget <= 0:
-                    self.remove_node(entry.node)
+            if entry.budget is not None and entry.budget <= 0:
+                self.remove_node(entry.node)
             for look in tuple(self._conditions):
                 look()
 
+    def _entry_to_run(self, work: Ready | _UnderWay) -> NodeEntry | None:
+        """Return the node whose callback is to be run now, None if none is."""
+        if isinstance(work, _UnderWay):
+            if not work.entry.alive:
+                work.task.cancel()  # a goal, for one, goes on no more when its node has ended
+            if work.task.done() or work.task.cancelled():
+                self._end(work)
+                return None
+            # Spun with `rclpy.spin_once()`, it goes on when its node is spun again.
+            at_rest = work.entity is not None and work.entry.node not in self._entries
+            return None if at_rest else work.entry
+        entry = self._entries.get(work.node)
+        if entry is not None and self._under_way and not self.can_execute(work.entity):
+            # One of its group is under way. It stays ready, but for what a wait itself takes.
+            if isinstance(work.entity, GuardCondition):
+                work.entity.trigger()  # type: ignore[no-untyped-call]
+            return None
+        return entry
 
-def _drop(task: Any) -> None:
-    """Give up a callback that is not to be run; Python warns of a coroutine that is forgotten."""
-    handler = compat.handler_of(task)
-    task.cancel()
-    if inspect.iscoroutine(handler):
-        handler.close()
+    def _begin(self, work: Ready, entry: NodeEntry) -> BaseException | None:
+        """Run the callback of an entity; return what it raises."""
+        try:
+            execute = work.take(work.entity)
+        except BaseException as error:
+            return error
+        if execute is None:
+            self._wait_set.give_up()  # it was destroyed, perhaps past its node
+            return None
+        self._stirred = True
+        self._count(entry, work.entity)
+        coroutine = execute()
+        try:
+            coroutine.send(None)
+        except StopIteration:
+            return None
+        except BaseException as error:
+            return error
+        task = Task(coroutine)  # type: ignore[no-untyped-call]
+        self._under_way.append(_UnderWay(task, entry, work.entity, work.entity))
+        work.entity.callback_group.beginning_execution(work.entity)
+        self._wait_set.give_up()
+        return None
 
+    def _go_on(self, work: _UnderWay) -> BaseException | None:
+        """Go on with what is under way; return what it raises."""
+        task = work.task
+        try:
+            task()
+        except BaseException as let_through:  # by rclpy, such as that of sys.exit()
+            task.set_exception(let_through)
+        if not task.done():
+            return None
+        self._end(work)
+        self._stirred = True
+        if work.entity is None:
+            self._count(work.entry, None)
+        error: BaseException | None = task.exception()
+        return error
 
-def _is_timer(work: tuple[Any, Any, Any]) -> bool:
-    return isinstance(work[1], Timer)
+    def _end(self, work: _UnderWay) -> None:
+        """Let others of its group run again."""
+        with suppress(ValueError):
+            self._under_way.remove(work)
+            if work.entity is not None:
+                work.entity.callback_group.ending_execution(work.entity)
+                self._wait_set.give_up()
+
+    def _count(self, entry: NodeEntry, entity: Any) -> None:
+        entry.counts[entity] = entry.counts.get(entity, 0) + 1
+        if entry.budget is not None:
+            entry.budget -= 1
 
 
 def callback_name(what: Any) -> str:

@@ -7,6 +7,8 @@ look into the table only, and never while somebody waits.
 from __future__ import annotations
 
 import threading
+import time
+from collections.abc import Callable, Set
 
 from rclpy.node import Node
 
@@ -22,16 +24,23 @@ from labkit.background.nodes import (
 
 __all__ = ['Registry']
 
+# How long an executor of the learner's own may take to let go of a node that was destroyed, s. It
+# does so at once, unless a callback keeps it.
+GONE_SEC = 1.0
+POLL_SEC = 0.001
+
 
 class Registry:
     """The nodes that run in the background, each name once.
 
     Args:
         console: Knows the cell that is running.
+        own_names: Returns the full names of this process's nodes that are in the graph.
     """
 
-    def __init__(self, console: Console) -> None:
+    def __init__(self, console: Console, own_names: Callable[[], Set[str]]) -> None:
         self._console = console
+        self._own_names = own_names
         self._lock = threading.Lock()
         self._entries: dict[str, NodeEntry] = {}
 
@@ -81,9 +90,20 @@ class Registry:
         if executor is not None:
             executor.remove_node(node)
         error = destroy_node(node)
+        if executor is not None:
+            self._wait_until_gone(name)
         if error is not None:
             self._console.show_error(name, 'destroy_node', error)
         return error
+
+    def _wait_until_gone(self, name: str) -> None:
+        """Wait until an executor of the learner's own lets go of what it waits for.
+
+        Were a node of the same name made before, it would have no name in the graph.
+        """
+        end = time.monotonic() + GONE_SEC
+        while name in self._own_names() and time.monotonic() < end:
+            time.sleep(POLL_SEC)
 
     def release(self, executor: BackgroundExecutor | None, entry: NodeEntry) -> None:
         """Take a node from its executor and leave it alive."""

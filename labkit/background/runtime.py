@@ -34,7 +34,7 @@ from labkit.background.nodes import (
 from labkit.background.notebook_rclpy import ORIGINALS, install
 from labkit.background.registry import Registry
 from labkit.errors import LabError, nearest
-from labkit.rosgraph.whose import foreign_nodes
+from labkit.rosgraph.whose import foreign_nodes, own_nodes
 
 __all__ = [
     'Runtime',
@@ -76,7 +76,7 @@ class Runtime:
         # Held for as long as a start takes. No callback asks for it, see `start`.
         self._starting = threading.RLock()
         self._ending = threading.Lock()
-        self._registry = Registry(self.console)
+        self._registry = Registry(self.console, self._own_names)
         self._reported: set[str] = set()
         self._executor: BackgroundExecutor | None = None
         self._claim: domains.DomainClaim | None = None
@@ -241,6 +241,9 @@ class Runtime:
         """Destroy the node of a name before another one of that name is made."""
         self.ended.pop(name, None)
         self._registry.make_room(self._executor, name)
+
+    def _own_names(self) -> set[str]:
+        return own_nodes(self.helper) if self.helper is not None else set()
 
     def foreign_nodes(self) -> set[str]:
         """Return the full names of the nodes that other processes have in this domain."""

@@ -105,7 +105,7 @@ lab.wait_until(lambda: asker.feedback, timeout_sec=60)
 lab.remove(counter)
 from labkit.background import compat
 from labkit.background.runtime import runtime
-print(lab.wait_until(lambda: not compat.has_tasks(runtime.executor), timeout_sec=60) is not False)
+print(lab.wait_until(lambda: runtime.executor.awaiting == 0, timeout_sec=60) is not False)
 print(asker.client.server_is_ready())
 """)
     assert result.text == 'True\nFalse\n', result.traceback

@@ -35,48 +35,97 @@ except compat.RCLError as error:
     assert result.stdout == 'True True\n', result.stderr
 
 
-def test_ready_callbacks_ask_for_nodes_once_a_round_and_stop_when_told(script):
+def test_an_entity_is_taken_from_and_its_callback_run(script):
     result = script(
         READY
         + """
-asked = []
-class Asking(SingleThreadedExecutor):
-    def get_nodes(self):
-        asked.append(1)
-        return super().get_nodes()
-asking = Asking()
-asking.add_node(node)
-timer = node.create_timer(0.01, lambda: print('tick'))
-(task, entity, owner), = compat.ready_callbacks(asking, None, lambda: False)
-print(entity is timer, owner is node, len(asked) >= 1, compat.is_queued(timer))
-task()
-print(compat.is_queued(timer), compat.handler_of(task), task.done())
-try:
-    list(compat.ready_callbacks(asking, None, lambda: True))
-except Exception as error:
-    print(type(error).__name__)
+from rclpy.waitable import NumberOfEntities
+from std_msgs.msg import String
+heard = []
+subscription = node.create_subscription(String, '/topic', lambda msg: heard.append(msg.data), 10)
+guard = node.create_guard_condition(lambda: heard.append('guard'))
+timer = node.create_timer(0.001, lambda: heard.append('timer'))
+publisher = node.create_publisher(String, '/topic', 10)
+publisher.publish(String(data='hello'))
+guard.trigger()
+take = compat.takers(executor)
+print(sorted(take))
+
+count = NumberOfEntities(1, 3, 1)
+wait_set = compat.new_wait_set(executor.context.handle, count)
+own = compat.own_guards(executor)
+executor.wake()
+ready = {}
+while len(ready) < 4:
+    wait_set.clear_entities()
+    wait_set.add_subscription(subscription.handle)
+    wait_set.add_timer(timer.handle)
+    for each in (guard, *own):
+        wait_set.add_guard_condition(each.handle)
+    wait_set.wait(10**9)
+    for kind in ('subscription', 'timer', 'guard_condition'):
+        for pointer in wait_set.get_ready_entities(kind):
+            ready[pointer] = kind
+print(own[0].handle.pointer in ready, own[1].handle.pointer in ready)
+for entity, kind in ((subscription, 'subscription'), (timer, 'timer'), (guard, 'guard_condition')):
+    try:
+        take[kind](entity)().send(None)
+    except StopIteration:
+        pass
+print(heard, take['subscription'](subscription))
+subscription.destroy()
+print(take['subscription'](subscription))
+executor.shutdown()
+print(compat.own_guards(executor))
 """
     )
     assert result.stdout == (
-        'True True True True\ntick\nFalse None True\nConditionReachedException\n'
+        "['client', 'guard_condition', 'service', 'subscription', 'timer', 'waitable']\n"
+        "True False\n['hello', 'timer', 'guard'] None\nNone\n[]\n"
     ), result.stderr
 
 
-def test_tasks_of_an_executor(script):
+def test_requests_and_responses_are_taken(script):
     result = script(
         READY
         + """
-print(compat.has_tasks(executor))
-task = Task(lambda: print('done'), executor=executor)
-compat.add_task(executor, task)
-print(compat.has_tasks(executor), callable(compat.handler_of(task)))
+from std_srvs.srv import Trigger
+def serve(request, response):
+    response.message = 'served'
+    return response
+service = node.create_service(Trigger, 'ask', serve)
+client = node.create_client(Trigger, 'ask')
+while not client.service_is_ready():
+    pass
+future = client.call_async(Trigger.Request())
+take = compat.takers(executor)
+def run(kind, entity):
+    try:
+        take[kind](entity)().send(None)
+    except StopIteration:
+        pass
+while not future.done():
+    run('service', service)
+    run('client', client)
+print(future.result().message)
+"""
+    )
+    assert result.stdout == 'served\n', result.stderr
+
+
+def test_a_task_knows_what_it_runs(script):
+    result = script(
+        READY
+        + """
+task = executor.create_task(print, 'done')
+print(compat.handler_of(task) is print)
 executor.spin_once(timeout_sec=0)
-print(task.done(), compat.is_shut_down(executor))
+print(compat.handler_of(task), compat.is_shut_down(executor))
 executor.shutdown()
 print(compat.is_shut_down(executor))
 """
     )
-    assert result.stdout == 'False\nTrue True\ndone\nTrue False\nTrue\n', result.stderr
+    assert result.stdout == 'True\ndone\nNone False\nTrue\n', result.stderr
 
 
 def test_a_node_forgets_its_executor(script):

@@ -66,26 +66,6 @@ def test_a_thread_that_has_ended_is_made_up_for_by_the_next_start(kernel):
     assert not kernel.run(again).error
 
 
-def test_only_the_thread_itself_begins_a_round(script):
-    result = script(
-        SETUP
-        + """
-lab.start()
-executor = runtime.executor
-faked = []
-def ask(node):
-    before = executor._rounds
-    for _ in range(100):
-        node.executor.get_nodes()
-    faked.append(executor._rounds - before)
-ticker = lab.spin(Ticker(ask))
-lab.wait_until(lambda: ticker.count >= 5)
-print(set(faked), executor._rounds > 0)
-"""
-    )
-    assert result.stdout == '{0} True\n', result.stderr
-
-
 # A callback that makes a node when a cell is about to replace its own node, or to move ROS.
 MAKES_A_NODE = (
     SETUP

@@ -1,0 +1,223 @@
+"""What the background waits for: one wait set, kept from wait to wait.
+
+rclpy makes a new wait set for every callback, enters the handle of every entity of every node,
+and leaves it again: the more nodes there are, the longer each message takes. Here the entities
+are gathered once and only put in again before each wait, until `give_up` is called. rclpy wakes
+an executor whenever something is created or destroyed; that is when.
+
+Why nothing is used after it was destroyed: an entity is entered when it is gathered, and what is
+entered is destroyed only when it is left. `give_up` leaves all of them: at once while nobody
+waits; during a wait, when that has returned, for which the caller triggers the executor's guard
+condition. A guard condition stays triggered, so it does not matter whether the wait has begun
+already. What was ready by then may be destroyed before its turn: taking from it enters it once
+more, and rclpy answers that there is nothing to take.
+
+rclpy's own fast executor, `rclpy.experimental.EventsExecutor`, runs callbacks in the order in
+which their events come. Here the order is fixed, and each callback is looked after.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rclpy.exceptions import InvalidHandle
+from rclpy.waitable import NumberOfEntities
+
+from labkit.background import compat
+
+if TYPE_CHECKING:
+    from rclpy.executors import Executor
+    from rclpy.node import Node
+
+__all__ = ['KeptWaitSet', 'Ready']
+
+# Who destroys an entity past its node tells nobody. So all are let go this often, s.
+RENEW_SEC = 1.0
+
+FOREVER = -1
+
+# Kind of entity, the node's name for them; in the order in which those of a node have their turn.
+_KINDS = (
+    ('subscription', 'subscriptions'),
+    ('guard_condition', 'guards'),
+    ('client', 'clients'),
+    ('service', 'services'),
+)
+_TIMERS = ('timer', 'timers')
+_COUNTED = {
+    'subscription': 'num_subscriptions',
+    'guard_condition': 'num_guard_conditions',
+    'timer': 'num_timers',
+    'client': 'num_clients',
+    'service': 'num_services',
+}
+
+
+@dataclass(frozen=True)
+class Ready:
+    """Something of a node that can be waited for.
+
+    Attributes:
+        entity: The subscription, timer, client, service, guard condition or waitable.
+        node: Its node.
+        take: Takes what is there. Returns a function that makes the coroutine which runs the
+            callback, or None if there is nothing.
+        turn: Those with a lower number have their turn before.
+    """
+
+    entity: Any
+    node: Node
+    take: Callable[[Any], Any]
+    turn: int
+
+
+class KeptWaitSet:
+    """The entities of all nodes of an executor, to wait for.
+
+    Args:
+        executor: The executor. Only one thread may wait; any thread may call `give_up`.
+    """
+
+    def __init__(self, executor: Executor) -> None:
+        self._executor = executor
+        # Reentrant: anything here may set off the garbage collector, and that a destructor.
+        self._lock = threading.RLock()
+        self._takers = {**compat.takers(executor), 'timer': self._take_timer}
+        self._call_timer = compat.takers(executor)['timer']
+        self._wait_set: Any = None
+        self._entered: list[Any] = []
+        self._handles: dict[str, list[Any]] = {}
+        self._waitables: list[Ready] = []
+        self._by_pointer: dict[int, Ready] = {}
+        self._waiting = False
+        self._stale = True
+        self._renew_at = 0.0
+
+    def give_up(self) -> None:
+        """Let go of everything, and gather anew before the next wait. Any thread may call it."""
+        with self._lock:
+            self._stale = True
+            if not self._waiting:
+                self._leave()
+
+    def wait(
+        self, nodes: Iterable[Node], *, may_run: Callable[[Any], bool] | None, block: bool
+    ) -> list[Ready]:
+        """Wait until something is ready, or the executor was woken.
+
+        Args:
+            nodes: The nodes, in the order of their turns.
+            may_run: Tells whether an entity's callback may run now, None if all may. Looked at
+                when the entities are gathered: call `give_up` when an answer changes.
+            block: Whether to wait at all.
+
+        Returns:
+            What is ready, in the order in which to take it: messages before timers.
+        """
+        with self._lock:
+            try:
+                if self._stale or time.monotonic() >= self._renew_at:
+                    self._leave()
+                    self._gather(nodes, may_run)
+                wait_set = self._fill()
+            except BaseException:
+                self._leave()  # a waitable of somebody's own, which has grown: count again
+                raise
+            self._waiting = True
+        try:
+            wait_set.wait(FOREVER if block else 0)
+            return self._ready(wait_set)
+        finally:
+            with self._lock:
+                self._waiting = False
+                if self._stale:
+                    self._leave()
+
+    def _gather(self, nodes: Iterable[Node], may_run: Callable[[Any], bool] | None) -> None:
+        # First: what changes from here on has its effect on the next wait.
+        self._stale = False
+        self._renew_at = time.monotonic() + RENEW_SEC
+        nodes = list(nodes)
+        turn = 0
+        count: Any = NumberOfEntities()  # type: ignore[no-untyped-call]
+        self._handles = {kind: [] for kind in _COUNTED}
+        waitable: Any
+        for node in nodes:
+            for waitable in node.waitables:
+                if (may_run is None or may_run(waitable)) and self._enter(waitable):
+                    turn += 1
+                    self._waitables.append(Ready(waitable, node, self._takers['waitable'], turn))
+                    count += waitable.get_num_entities()
+        for kinds in (_KINDS, (_TIMERS,)):
+            for node in nodes:
+                for kind, plural in kinds:
+                    for entity in getattr(node, plural):
+                        if (may_run is None or may_run(entity)) and self._enter(entity.handle):
+                            turn += 1
+                            self._handles[kind].append(entity.handle)
+                            self._by_pointer[entity.handle.pointer] = Ready(
+                                entity, node, self._takers[kind], turn
+                            )
+        for guard in compat.own_guards(self._executor):
+            if self._enter(guard.handle):
+                self._handles['guard_condition'].append(guard.handle)
+        for kind, counter in _COUNTED.items():
+            setattr(count, counter, getattr(count, counter) + len(self._handles[kind]))
+        context = self._executor.context.handle
+        if self._enter(context):
+            self._wait_set = compat.new_wait_set(context, count)
+
+    def _take_timer(self, timer: Any) -> Any:
+        # One that an earlier callback of this round has cancelled or reset is not due any more.
+        try:
+            return self._call_timer(timer) if timer.is_ready() else None
+        except InvalidHandle:
+            return None
+
+    def _enter(self, handle: Any) -> bool:
+        """Keep what belongs to a handle from being destroyed; return False if it was before."""
+        try:
+            handle.__enter__()
+        except InvalidHandle:
+            return False
+        self._entered.append(handle)
+        return True
+
+    def _leave(self) -> None:
+        """Let what was entered be destroyed."""
+        self._stale = True
+        self._wait_set = None
+        self._waitables, self._by_pointer, self._handles = [], {}, {}
+        while self._entered:
+            self._entered.pop().__exit__(None, None, None)
+
+    def _fill(self) -> Any:
+        """Put everything into the wait set: a wait empties it."""
+        wait_set = self._wait_set
+        if wait_set is None:
+            raise InvalidHandle('ROS is shut down')
+        wait_set.clear_entities()
+        for kind, handles in self._handles.items():
+            if handles:
+                add = getattr(wait_set, f'add_{kind}')
+                for handle in handles:
+                    add(handle)
+        for waitable in self._waitables:
+            waitable.entity.add_to_wait_set(wait_set)
+        return wait_set
+
+    def _ready(self, wait_set: Any) -> list[Ready]:
+        ready = [waitable for waitable in self._waitables if waitable.entity.is_ready(wait_set)]
+        for kind, handles in self._handles.items():
+            if handles:
+                for pointer in wait_set.get_ready_entities(kind):
+                    found = self._by_pointer.get(pointer)
+                    if found is not None:
+                        ready.append(found)
+        if len(ready) > 1:
+            ready.sort(key=lambda one: one.turn)
+        return ready
