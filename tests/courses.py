@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import shutil
@@ -13,6 +14,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 from labkit.setup import machine
+from labkit.setup.installer import LOCK
 
 ROOT = Path(__file__).resolve().parent.parent
 # A hang ends; nothing is judged by it.
@@ -32,7 +34,7 @@ class Course:
         self.folder = folder
         self.venv = folder / '.venv'
         self.work = folder / 'work'
-        ignored = shutil.ignore_patterns('__pycache__', 'exercises', 'ros2')
+        ignored = shutil.ignore_patterns('__pycache__', 'exercises', 'ros2', '*.lock')
         shutil.copytree(ROOT / 'labkit', folder / 'labkit', ignore=ignored)
         (folder / 'notebooks').mkdir()
         (folder / 'tests').mkdir()
@@ -50,8 +52,17 @@ class Course:
         for name in ('PYTHONPATH', 'VIRTUAL_ENV', 'LABKIT_REQUIRE_ALL', *measuring):
             self.env.pop(name, None)
 
-    def wheel(self, name: str, version: str = '1.0', size: int = 0) -> str:
-        """Make a package with one module, and a file of `size` bytes; return its requirement."""
+    def wheel(
+        self, name: str, version: str = '1.0', size: int = 0, program: str | None = None
+    ) -> str:
+        """Make a package with one module; return its requirement.
+
+        Args:
+            name: Its name.
+            version: Its version.
+            size: Bytes of a further file.
+            program: Text of a program of the package's name, None for no program.
+        """
         path = self.folder / f'{name}-{version}-py3-none-any.whl'
         info = f'{name}-{version}.dist-info'
         with zipfile.ZipFile(path, 'w', zipfile.ZIP_DEFLATED) as archive:
@@ -62,11 +73,33 @@ class Course:
             kind = 'Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: py3-none-any\n'
             archive.writestr(f'{info}/WHEEL', kind)
             archive.writestr(f'{info}/RECORD', '')
+            if program is not None:
+                script = zipfile.ZipInfo(f'{name}-{version}.data/scripts/{name}')
+                script.external_attr = 0o100755 << 16  # a file that can be run
+                archive.writestr(script, program)
         return f'./{path.name}'
 
     def require(self, *requirements: str) -> None:
         """Write `environment.txt`."""
         (self.folder / 'environment.txt').write_text('\n'.join(requirements) + '\n')
+
+    def lock(self, *wheels: str) -> None:
+        """Write the lock: requirements of `wheel`, with the hashes of their files.
+
+        What the course's own package is built with comes too, from the environment of this test.
+        """
+        lines = []
+        for wheel in wheels:
+            name, version = Path(wheel).name.split('-')[:2]
+            digest = hashlib.sha256((self.folder / wheel).read_bytes()).hexdigest()
+            lines.append(f'{name}=={version} \\\n    --hash=sha256:{digest}\n')
+        (self.folder / LOCK).write_text(''.join(lines))
+        self.env.update(
+            PIP_FIND_LINKS=str(self.folder),
+            UV_FIND_LINKS=str(self.folder),
+            PIP_NO_INDEX='1',
+            UV_NO_INDEX='1',
+        )
 
     def make_complete(self) -> None:
         """Make the environment, and give it all that the one of this test has."""

@@ -10,11 +10,16 @@ import sys
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 from IPython.core.inputtransformer2 import TransformerManager
+from packaging.markers import default_environment
+from packaging.requirements import Requirement
 from test_layers import imports
 
+from labkit.setup.installer import LOCK
+from labkit.setup.machine import VERSIONS
 from labkit.setup.requirements import applicable
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -57,7 +62,7 @@ USED_BY_NAME = {
     'ruff': '`labkit test` runs it',
     'setuptools': 'colcon runs the setup.py of each package with it',
     'types-pyyaml': 'mypy reads it',
-    'uv': '`labkit lab` runs it where it is there',
+    'uv': '`labkit lab` installs with it',
 }
 
 
@@ -177,6 +182,33 @@ def test_no_package_is_in_both_files() -> None:
         lines = applicable((ROOT / file).read_text().splitlines(), tuple(sys.version_info[:3]))
         found.append({normal(re.split(r'[\[=]', line)[0]) for line in lines})
     assert found[0] & found[1] == set()
+
+
+@pytest.mark.parametrize('version', VERSIONS)
+def test_the_lock_holds_the_same_versions_with_hashes(version: tuple[int, int]) -> None:
+    python = '{}.{}.9'.format(*version)
+    here: dict[str, Any] = {
+        **default_environment(),
+        'python_full_version': python,
+        'python_version': python[:4],
+    }
+    asked = applicable((ROOT / ENVIRONMENT).read_text().splitlines(), (*version, 9))
+    wanted = {pinned(line) for line in asked if line != '-e .'}
+    locked = (ROOT / LOCK).read_text().replace('\\\n', ' ').splitlines()
+    found = {
+        pinned(line)
+        for line in locked
+        if (marker := Requirement(line.partition('--hash')[0]).marker) is None
+        or marker.evaluate(here)
+    }
+    assert found == wanted, f'write {LOCK} anew: {ENVIRONMENT} says how'
+    assert [line for line in locked if ' --hash=sha256:' not in line] == []
+
+
+def pinned(line: str) -> str:
+    """Return name and version of a requirement, without extras, markers and hashes."""
+    requirement = Requirement(line.partition('--hash')[0])
+    return f'{normal(requirement.name)}{requirement.specifier}'
 
 
 def test_what_colcon_brings_for_pytest_stays_out_of_these_tests(

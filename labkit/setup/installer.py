@@ -29,6 +29,11 @@ _FETCHED = re.compile(
     r' *(?:Collecting|Requirement already satisfied:|Obtaining|Downloaded) (\S+)'
 )
 _NO_SPACE = re.compile(r'No space left on device|Disk quota exceeded', re.IGNORECASE)
+_WRONG_HASH = re.compile(r'hash mismatch|DO NOT MATCH THE HASHES', re.IGNORECASE)
+# The same versions as in the file of the requirements, with the hashes of the packages' files.
+LOCKED = 'environment.txt'
+LOCK = 'labkit/setup/environment.lock'
+_LOCKED_UV = re.compile(r'^uv==(?:.*\\\n)*.*\n', re.MULTILINE)
 _READ_ONLY = re.compile(r'Read-only file system', re.IGNORECASE)
 
 
@@ -69,6 +74,7 @@ class Progress:
         """Leave the line in which progress was shown."""
         if self._in_place and self._shown:
             print(flush=True)
+        self._shown = ''
 
 
 def install(
@@ -78,7 +84,9 @@ def install(
     progress: Progress,
     count_installed: Callable[[], int],
 ) -> None:
-    """Install what the files ask for, with uv if it is on PATH, else with pip.
+    """Install what the files ask for: with uv, which takes seconds, or else with pip.
+
+    A uv that is on PATH is used. Otherwise pip fetches the one of the course into the environment.
 
     Args:
         python: Interpreter of the environment.
@@ -90,24 +98,72 @@ def install(
     Raises:
         SetupError: It did not work, with the reason and what to do.
     """
-    files = [option for name in requirements for option in ('-r', name)]
-    uv = shutil.which('uv')
-    if uv:
-        command = [uv, 'pip', 'install', '--python', str(python), *files]
-        # pip does that by itself. uv looks at the version and at pyproject.toml, not at the files
-        # that are copied into the environment.
-        command += ['--reinstall-package', 'labkit']
-    else:
-        command = [str(python), '-I', '-m', 'pip', 'install', '--no-input', *files]
-        command += ['--disable-pip-version-check', '--no-warn-script-location']
     variables = clean_environment()
     # Settings of the user's own that would install somewhere else.
     for name in ('PIP_TARGET', 'PIP_PREFIX', 'PIP_ROOT', 'UV_SYSTEM_PYTHON'):
         variables.pop(name, None)
-    variables.update(PIP_USER='0', UV_NO_PROGRESS='1')
-    code, output = _follow(command, root, variables, progress, count_installed)
-    if code != 0:
-        raise explain(output, root)
+    variables.update(PIP_USER='0', PIP_NO_INPUT='1', UV_NO_PROGRESS='1')
+    pip = [str(python), '-I', '-m', 'pip', 'install']
+    pip += ['--disable-pip-version-check', '--no-warn-script-location']
+    installers = [pip] if (python.parent / 'pip').exists() else []
+    progress.show('Fetching', 0)
+    uv = shutil.which('uv') or _fetch_uv(pip, python, root, variables)
+    if uv:
+        # pip does the last by itself. uv looks at the version and at pyproject.toml, not at the
+        # files that are copied into the environment.
+        own = ['--python', str(python), '--reinstall-package', 'labkit']
+        installers.insert(0, [uv, 'pip', 'install', *own])
+    output: list[str] = []
+    for installer in installers:
+        try:
+            for step in _steps(root, requirements):
+                code, output = _follow(
+                    [*installer, *step], root, variables, progress, count_installed
+                )
+                if code != 0:
+                    break
+            else:
+                progress.show('Installed', progress.total)
+                return
+        finally:
+            progress.close()
+        if installer is not installers[-1]:
+            print('uv could not install the packages. Trying pip, which takes longer.', flush=True)
+    raise explain(output, root)
+
+
+def _fetch_uv(
+    pip: Sequence[str], python: Path, root: Path, variables: dict[str, str]
+) -> str | None:
+    """Let pip install the course's uv. Return its path, None if that is not possible here."""
+    lock = root / LOCK
+    found = _LOCKED_UV.search(lock.read_text(encoding='utf-8')) if lock.is_file() else None
+    if found is None:
+        return None
+    done = subprocess.run(
+        [*pip, '--quiet', '--no-deps', '--require-hashes', '-r', '/dev/stdin'],
+        cwd=root,
+        env=variables,
+        input=found[0].encode(),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        close_fds=False,  # it keeps the lock: see environment
+    )
+    uv = python.parent / 'uv'
+    return str(uv) if done.returncode == 0 and uv.exists() else None
+
+
+def _steps(root: Path, requirements: Sequence[str]) -> list[list[str]]:
+    """Return what to install one after the other, as options of uv and of pip."""
+    if LOCKED not in requirements or not (root / LOCK).is_file():
+        return [[option for name in requirements for option in ('-r', name)]]
+    others = [option for name in requirements if name != LOCKED for option in ('-r', name)]
+    return [
+        ['--require-hashes', '-r', LOCK],
+        # The package of the folder itself has no hash. What builds it is there by now.
+        ['--no-deps', '--no-build-isolation', '-e', '.'],
+        *([others] if others else []),
+    ]
 
 
 def _follow(
@@ -156,10 +212,7 @@ def _follow(
             except subprocess.TimeoutExpired:
                 pass
         reader.join()
-        if process.returncode == 0:
-            progress.show('Installed', progress.total)
     finally:
-        progress.close()
         if process.poll() is None:
             process.terminate()
             process.wait()
@@ -184,6 +237,14 @@ def explain(output: Sequence[str], root: Path) -> SetupError:
         return SetupError(
             f'The folder {str(root)!r}, or the one for temporary files, can not be written to.',
             todo='Copy the course to a folder of your own, and repeat the command there.',
+        )
+    if _WRONG_HASH.search(text):
+        return SetupError(
+            'A package that was fetched is not the one that the course was tested with: its hash '
+            'differs.',
+            todo='Repeat the command: a download may have been damaged. If it stays, ask who runs '
+            'the package index or proxy of this network.\nThe last lines of the installer:\n  '
+            + '\n  '.join(output[-15:]),
         )
     errors = [line for line in output if re.match(r'\s*(ERROR|error|×)', line)]
     last = (errors or [line for line in output if line.strip()] or ['no output'])[-1].strip()

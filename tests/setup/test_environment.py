@@ -73,6 +73,50 @@ def test_installed_with_pip_where_there_is_no_uv(course: Course) -> None:
     assert course.installed() == {'alpha-1.0'}
 
 
+@pytest.fixture
+def without_uv(course: Course) -> Course:
+    """Give a course whose environment was made with pip, and can build labkit itself."""
+    course.env['PATH'] = BARE_PATH
+    for name in ('pyproject.toml', 'LICENSE'):
+        shutil.copy(ROOT / name, course.folder)
+    assert course.make().returncode == 0
+    course.lend_packages()
+    return course
+
+
+@pytest.mark.parametrize('works', [True, False], ids=['works', 'fails'])
+def test_uv_is_fetched_first_and_pip_helps_where_it_fails(without_uv: Course, works: bool) -> None:
+    course = without_uv
+    asked = course.folder / 'asked.txt'
+    run = f'exec {course.folder}/uv/uv "$@"' if works else 'exit 1'
+    program = f'#!/bin/sh\necho "$@" >> {asked}\n{run}\n'
+    course.lock(course.wheel('uv', program=program), course.wheel('alpha', '2.0'))
+    course.require('uv==1.0', 'alpha==2.0', '-e .')
+    done = course.make()
+    assert done.returncode == 0, done.stderr
+    assert 'Installed    3 of 3 packages' in done.stdout
+    assert ('Trying pip' in done.stdout) != works
+    assert len(asked.read_text().splitlines()) == (2 if works else 1)
+    assert {'alpha-2.0', 'uv-1.0'} <= course.installed()
+    assert (course.venv / 'bin' / 'labkit').is_file()
+    assert course.make().stdout == ''
+
+
+@pytest.mark.parametrize('installer', ['uv', 'pip'])
+def test_a_package_that_is_not_the_tested_one_is_refused(
+    without_uv: Course, installer: str
+) -> None:
+    course = without_uv
+    if installer == 'uv':
+        course.env['PATH'] = f'{course.folder / "uv"}:{BARE_PATH}'
+    course.lock(course.wheel('alpha', '2.0'))
+    course.wheel('alpha', '2.0', size=1)
+    course.require('alpha==2.0', '-e .')
+    said = ' '.join(sentence(course.make()).split())
+    assert 'is not the one that the course was tested with' in said
+    assert 'alpha-1.0' in course.installed()
+
+
 def test_failed_install_leaves_nothing(course: Course) -> None:
     course.require('./missing-1.0-py3-none-any.whl')
     assert 'missing-1.0' in sentence(course.make())
