@@ -6,6 +6,7 @@ every installation of rclpy, whose message classes need it.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -24,6 +25,8 @@ TOUCH = 1e-9
 STILL = 1e-12
 # A row of steps towards a contact converges in about 5; more means a graze, where it stops short.
 MAX_STEPS = 1000
+# A robot remembers what is around it, so far beyond its way, m.
+AROUND = 0.3
 
 
 class Wall(NamedTuple):
@@ -111,6 +114,9 @@ class World:
         for thing in self.fixed:
             _check(thing)
         self._lines = np.array(self.walls, dtype=float).reshape(-1, 4)
+        self._rounds = np.array(self.posts, dtype=float).reshape(-1, 3)
+        # Where a robot has looked around, how far, m, and what it has found.
+        self._looked: dict[str, tuple[float, float, float, tuple[Wall | Post, ...]]] = {}
 
     def __repr__(self) -> str:
         return f'<World: {len(self.walls)} walls, {len(self.posts)} posts>'
@@ -157,7 +163,9 @@ class World:
         path = _Path(motion, duration)
         first: Contact | None = None
         x, y, _ = motion.start
-        for thing in self.things(but):
+        far = path.reach + radius + TOUCH
+        others = [post for name, post in list(self.robots.items()) if name != but]
+        for thing in (*self._near(x, y, far, but), *others):
             if thing.away(x, y)[0] - radius > path.reach + TOUCH:
                 continue
             time = _touch_time(path, thing, radius, first.time if first else duration)
@@ -167,6 +175,18 @@ class World:
                 touch_x, touch_y = x_then - distance * away_x, y_then - distance * away_y
                 first = Contact(time, touch_x, touch_y, thing)
         return first
+
+    def _near(self, x: float, y: float, distance: float, who: str) -> tuple[Wall | Post, ...]:
+        """Return the fixed things that may be nearer to (x, y) than a distance.
+
+        Who has looked further than that looks again only when it is used up.
+        """
+        x_then, y_then, limit, near = self._looked.get(who, (x, y, 0.0, ()))
+        if math.hypot(x - x_then, y - y_then) + distance > limit:
+            limit = distance + AROUND
+            near = tuple(thing for thing in self.fixed if thing.away(x, y)[0] <= limit)
+            self._looked[who] = (x, y, limit, near)
+        return near
 
     def ranges(self, pose: Pose, *, robot: Robot = BURGER, but: str = '') -> NDArray[np.float64]:
         """Return what the robot's laser scanner sees, beam after beam to the left, m.
@@ -181,17 +201,27 @@ class World:
         """
         eye_x = pose.x + robot.scan_x * math.cos(pose.yaw)
         eye_y = pose.y + robot.scan_x * math.sin(pose.yaw)
-        angles = pose.yaw + np.arange(robot.scan_beams) * (math.tau / robot.scan_beams)
-        beam_x, beam_y = np.cos(angles)[:, None], np.sin(angles)[:, None]
+        # The fan of beams, turned by the heading.
+        ahead, aside = _fan(robot.scan_beams)
+        cos, sin = math.cos(pose.yaw), math.sin(pose.yaw)
+        beam_x, beam_y = cos * ahead - sin * aside, sin * ahead + cos * aside
         nearest = np.full(robot.scan_beams, math.inf)
         if self.walls:
             seen = _see_walls(beam_x, beam_y, self._lines - (eye_x, eye_y, eye_x, eye_y))
             np.minimum(nearest, seen, out=nearest)
-        posts = [thing for thing in self.things(but) if isinstance(thing, Post)]
-        if posts:
-            seen = _see_posts(beam_x, beam_y, np.array(posts, dtype=float) - (eye_x, eye_y, 0))
+        others = [post for name, post in list(self.robots.items()) if name != but]
+        rounds = np.vstack([self._rounds, others]) if others else self._rounds
+        if len(rounds):
+            seen = _see_posts(beam_x, beam_y, rounds - (eye_x, eye_y, 0.0))
             np.minimum(nearest, seen, out=nearest)
         return nearest
+
+
+@functools.cache
+def _fan(count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the directions of so many beams of a scanner that looks along the x axis."""
+    angles = np.arange(count) * (math.tau / count)
+    return np.cos(angles), np.sin(angles)
 
 
 class _Path:
@@ -263,8 +293,8 @@ def _see_walls(
     beam_x: NDArray[np.float64], beam_y: NDArray[np.float64], lines: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Return for each beam the distance of the nearest wall; `lines` are seen from the eye."""
-    x, y = lines[:, 0], lines[:, 1]
-    along_x, along_y = lines[:, 2] - x, lines[:, 3] - y
+    x, y = lines[:, 0, None], lines[:, 1, None]
+    along_x, along_y = lines[:, 2, None] - x, lines[:, 3, None] - y
     with np.errstate(divide='ignore', invalid='ignore', over='ignore'):
         # beam * distance = start + along * share, solved by Cramer's rule.
         cross = beam_x * along_y - beam_y * along_x
@@ -272,7 +302,7 @@ def _see_walls(
         share = (x * beam_y - y * beam_x) / cross
     # The margin closes the corners, where two walls share a point.
     hit = (distance >= 0) & (share >= -TOUCH) & (share <= 1 + TOUCH)
-    nearest: NDArray[np.float64] = np.where(hit, distance, math.inf).min(axis=1)
+    nearest: NDArray[np.float64] = np.where(hit, distance, math.inf).min(axis=0)
     return nearest
 
 
@@ -280,12 +310,12 @@ def _see_posts(
     beam_x: NDArray[np.float64], beam_y: NDArray[np.float64], posts: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Return for each beam the distance of the nearest post; `posts` are seen from the eye."""
-    x, y, radius = posts[:, 0], posts[:, 1], posts[:, 2]
+    x, y, radius = posts[:, 0, None], posts[:, 1, None], posts[:, 2, None]
     middle = beam_x * x + beam_y * y
     under = radius**2 - (beam_x * y - beam_y * x) ** 2
     distance = middle - np.sqrt(np.maximum(under, 0))
     hit = (under >= 0) & (distance >= 0)
-    nearest: NDArray[np.float64] = np.where(hit, distance, math.inf).min(axis=1)
+    nearest: NDArray[np.float64] = np.where(hit, distance, math.inf).min(axis=0)
     return nearest
 
 
