@@ -1,7 +1,7 @@
 """Numbers of messages over time, live: `lab.plot(field, ...)`.
 
-Every message is taken; the page gets what is new some times a second, as bytes, and thinned to
-what can be seen.
+Of every message the number is taken, and no more; the page gets what is new some times a second,
+as bytes, and thinned to what can be seen.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from labkit.rosgraph.names import full_topic_name
 from labkit.views.feed import Feed, heard
 from labkit.views.live import helper
 from labkit.views.live_page import LivePage, News
-from labkit.views.plot_fields import Source, parse, resolve, unit_of
+from labkit.views.plot_fields import Source, parse, reader, resolve, unit_of
 from labkit.views.plot_picture import COLOURS, Floats, Line, in_words, thin, to_svg
 
 __all__ = ['Plot', 'plot']
@@ -51,19 +51,19 @@ class Series:
         self.unit = ''
         self.problem = ''
         self.waiting: deque[tuple[float, float]] = deque(maxlen=MAX_WAITING)
-        self._get: Callable[[Any], Any] | None = None
+        self._get: Callable[[bytes], Any] | None = None
         self._type: Any = None
         # What the page has been sent, for the next page.
         self._sent: deque[tuple[Floats, Floats]] = deque()
 
-    def add(self, moment: float, message: Any) -> None:
-        """Keep the field of a message that came at a moment."""
-        if type(message) is not self._type:
-            self.settle(type(message))
+    def add(self, moment: float, data: bytes, msg_type: Any) -> None:
+        """Keep the field of a serialized message that came at a moment."""
+        if msg_type is not self._type:
+            self.settle(msg_type)
         if self._get is None:
             return
         try:
-            value = self._get(message)
+            value = self._get(data)
         except IndexError:
             self.problem = f'{self.source.text}: the array is shorter than that in some messages.'
             value = math.nan
@@ -73,7 +73,7 @@ class Series:
         """Find the field in a type of messages; note why if that can't be."""
         self._type, self._get, self.problem = msg_type, None, ''
         try:
-            self._get = resolve(self.source, msg_type)
+            self._get = reader(self.source, msg_type)
             self.unit = unit_of(self.source.path, msg_type)
         except LabError as error:
             self.problem = str(error)
@@ -219,16 +219,17 @@ def _feeds(series: list[Series]) -> list[Feed]:
     for each in series:
         each.topic = full_topic_name(each.source.topic, helper())
         groups.setdefault(each.topic, []).append(each)
-    return [Feed(topic, helper(), _adder(group)) for topic, group in groups.items()]
+    return [_feed(topic, group) for topic, group in groups.items()]
 
 
-def _adder(group: list[Series]) -> Callable[[Any], None]:
-    def add(message: Any) -> None:
+def _feed(topic: str, group: list[Series]) -> Feed:
+    def add(data: bytes) -> None:
         moment = time.monotonic()
         for each in group:
-            each.add(moment, message)
+            each.add(moment, data, feed.msg_type)
 
-    return add
+    feed = Feed(topic, helper(), add, raw=True)
+    return feed
 
 
 def _refuse_wrong_fields(feed: Feed, series: list[Series]) -> None:

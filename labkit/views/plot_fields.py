@@ -11,10 +11,13 @@ from dataclasses import dataclass
 from operator import attrgetter, itemgetter
 from typing import Any
 
+from rclpy.serialization import deserialize_message
+
 from labkit.errors import LabError, nearest
 from labkit.rosgraph.interfaces import message_class, type_name
+from labkit.rosgraph.serialized import number_reader
 
-__all__ = ['Source', 'number_paths', 'parse', 'resolve', 'unit_of']
+__all__ = ['Source', 'number_paths', 'parse', 'reader', 'resolve', 'unit_of']
 
 _PART = re.compile(r'(?P<name>[A-Za-z]\w*)(?:\[(?P<index>\d+)\])?')
 # Types of interface files that are no numbers although they are basic.
@@ -141,6 +144,24 @@ def resolve(source: Source, msg_type: Any) -> Callable[[Any], Any]:
     if what:
         raise _no_number(source, msg_type, what)
     return _joined(words, getters)
+
+
+def reader(source: Source, msg_type: Any) -> Callable[[bytes], Any]:
+    """Return the function that takes the field out of a serialized message.
+
+    Args:
+        source: The field.
+        msg_type: The class of the messages.
+
+    Raises:
+        LabError: As `resolve` does.
+    """
+    get = resolve(source, msg_type)
+    path = [
+        (found['name'], int(found['index']) if found['index'] is not None else None)
+        for found in _PART.finditer(source.path)
+    ]
+    return number_reader(msg_type, path, lambda data: get(deserialize_message(data, msg_type)))
 
 
 def number_paths(msg_type: Any, start: str = '') -> Iterator[str]:
