@@ -11,8 +11,6 @@ from dataclasses import dataclass
 from operator import attrgetter, itemgetter
 from typing import Any
 
-from rclpy.serialization import deserialize_message
-
 from labkit.errors import LabError, nearest
 from labkit.rosgraph.interfaces import message_class, type_name
 from labkit.rosgraph.serialized import number_reader
@@ -156,6 +154,8 @@ def reader(source: Source, msg_type: Any) -> Callable[[bytes], Any]:
     Raises:
         LabError: As `resolve` does.
     """
+    from rclpy.serialization import deserialize_message
+
     get = resolve(source, msg_type)
     path = [
         (found['name'], int(found['index']) if found['index'] is not None else None)
