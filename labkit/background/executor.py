@@ -20,7 +20,7 @@ from collections import deque
 from collections.abc import Callable, Coroutine
 from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NoReturn
 
 from rclpy.exceptions import InvalidHandle
 from rclpy.executors import Executor
@@ -199,32 +199,25 @@ class BackgroundExecutor(Executor):
         super().wake()
         return task
 
-    def spin(self) -> None:
-        """Refuse to spin: see `spin_once`."""
-        self._refuse_spin('spin')
-
-    def spin_once(self, timeout_sec: float | None = None) -> None:
+    def spin(self) -> NoReturn:
         """Refuse to spin: the background does, and two at once would take from each other.
 
         Raises:
             LabError: Always.
         """
-        self._refuse_spin('spin_once')
+        raise _spins_already('spin')
 
-    def spin_once_until_future_complete(self, future: Any, timeout_sec: Any = None) -> None:
-        """Refuse to spin: see `spin_once`."""
-        self._refuse_spin('spin_once_until_future_complete')
+    def spin_once(self, timeout_sec: float | None = None) -> NoReturn:
+        """Refuse to spin, as `spin` does."""
+        raise _spins_already('spin_once')
 
-    def spin_until_future_complete(self, future: Any, timeout_sec: float | None = None) -> None:
-        """Refuse to spin: see `spin_once`."""
-        self._refuse_spin('spin_until_future_complete')
+    def spin_once_until_future_complete(self, future: Any, timeout_sec: Any = None) -> NoReturn:
+        """Refuse to spin, as `spin` does."""
+        raise _spins_already('spin_once_until_future_complete')
 
-    def _refuse_spin(self, method: str) -> None:
-        raise LabError(
-            f'{method}() of this executor: it is the one that spins in the background already.',
-            todo='Wait for what you expect: lab.wait_until(lambda: future.done()), or '
-            'lab.wait_for_message(...).',
-        )
+    def spin_until_future_complete(self, future: Any, timeout_sec: Any = None) -> NoReturn:
+        """Refuse to spin, as `spin` does."""
+        raise _spins_already('spin_until_future_complete')
 
     # -- waiting --------------------------------------------------------------------------------
 
@@ -481,6 +474,14 @@ class BackgroundExecutor(Executor):
         entry.counts[entity] = entry.counts.get(entity, 0) + 1
         if entry.budget is not None:
             entry.budget -= 1
+
+
+def _spins_already(method: str) -> LabError:
+    return LabError(
+        f'{method}() of this executor: it is the one that spins in the background already.',
+        todo='Wait for what you expect: lab.wait_until(lambda: future.done()), or '
+        'lab.wait_for_message(...).',
+    )
 
 
 def callback_name(what: Any) -> str:
