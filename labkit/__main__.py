@@ -139,7 +139,8 @@ def _parser() -> argparse.ArgumentParser:
     test = add(
         'test',
         'Run every lesson and every test',
-        'Other options, and paths, are for pytest, which then runs alone: `-k odds`, `tests/sim`.',
+        'With the number of a lesson, such as `04`, what is about that lesson. Other options, and '
+        'paths, are for pytest, which then runs alone: `-k odds`, `tests/sim`.',
     )
     test.add_argument(
         '--fast', action='store_true', help='only what takes seconds: style, types, layers, format'

@@ -16,6 +16,7 @@ from test_layers import BARE
 from labkit import __version__
 from labkit.__main__ import main
 from labkit.course import run_tests
+from labkit.errors import LabError
 
 MEASURED = """
 import subprocess, sys
@@ -146,6 +147,18 @@ def test_arguments_for_pytest() -> None:
     assert 'notebooks' not in command
     ((_, command),) = run_tests._steps(['-x'], shard='lessons')
     assert {'notebooks', '-x'} < set(command) and 'tests' not in command
+
+
+def test_what_is_run_for_a_lesson() -> None:
+    first, second = run_tests._steps(['04', '5', '-n', '1'])
+    assert [first[0], second[0]] == ['lesson 04', 'lesson 5']
+    assert 'notebooks/04_odds.ipynb' in first[1]
+    assert first[1][-4:] == ['-k', '04_odds or odds-', '-n', '1']
+    assert 'notebooks/05_my_name_is.ipynb' in second[1]
+    ((_, command),) = run_tests._steps(['-n', '1'])
+    assert command[-4:] == ['notebooks', 'tests', '-n', '1']
+    with pytest.raises(LabError, match='There is no lesson 44'):
+        run_tests._steps(['44'])
 
 
 def test_what_is_measured() -> None:

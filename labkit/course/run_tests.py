@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Sequence
+from itertools import takewhile
 from pathlib import Path
 
 from labkit.errors import LabError
@@ -32,8 +33,10 @@ SHARDS = {
     'rest': ('tests',),
 }
 _PYTEST = ('pytest', '--nbval', '--timeout=300')
-# One worker runs a notebook from top to bottom, so that its cells share a kernel.
-_PARALLEL = ('-n', '2', '--dist', 'loadscope')
+# As many workers as processors, and two at least: many a test waits for messages. One worker runs
+# a notebook from top to bottom, so that its cells share a kernel.
+_WORKERS = max(2, len(os.sched_getaffinity(0)) if hasattr(os, 'sched_getaffinity') else 2)
+_PARALLEL = ('-n', str(_WORKERS), '--dist', 'loadscope')
 
 
 def run_tests(
@@ -46,7 +49,8 @@ def run_tests(
     """Make the environment and run the tests in it.
 
     Args:
-        arguments: Options and paths for pytest. With any, only pytest runs.
+        arguments: Options and paths for pytest. With any, only pytest runs. Numbers of lessons
+            come first, such as `04`: its cells, its format, and the proof of its exercises.
         fast: Whether to run only what takes seconds: style, types, layers, format of notebooks.
         shard: Which part of the notebooks and tests to run, None for all; see `SHARDS`.
         coverage: Whether to measure which lines and branches of labkit run, kernels included.
@@ -82,6 +86,10 @@ def _steps(
         return _fast_steps()
     done = [f'--ignore={path}' for path in _FAST_TESTS]
     run = [*_PYTEST, *_PARALLEL]
+    lessons = list(takewhile(str.isdigit, arguments))
+    if lessons and not shard:
+        others = arguments[len(lessons) :]
+        return [(f'lesson {number}', [*run, *_of_lesson(number), *others]) for number in lessons]
     if shard:
         return [(f'tests of {shard}', [*run, *shard_paths(shard), *done, *arguments])]
     if arguments:
@@ -89,6 +97,26 @@ def _steps(
         paths = [] if chosen else ['notebooks', 'tests']
         return [('tests', [*run, *paths, *arguments])]
     return [*_fast_steps(), ('notebooks and tests', [*run, 'notebooks', 'tests', *done])]
+
+
+def _of_lesson(number: str) -> list[str]:
+    """Return the words for pytest that choose what is about one lesson.
+
+    Args:
+        number: Its number, such as `04`.
+
+    Raises:
+        LabError: There is no such lesson.
+    """
+    folder = ROOT / 'notebooks'
+    found = sorted(path.stem for path in folder.glob(f'{int(number):02}_*.ipynb'))
+    if not found:
+        names = ', '.join(path.stem for path in sorted(folder.glob('*.ipynb')))
+        raise LabError(f'There is no lesson {number}.', todo=f'The lessons are: {names}.')
+    lesson, name = found[0], found[0].partition('_')[2]
+    # In the proof, each exercise is called after the lesson.
+    chosen = ['-k', f'{lesson} or {name}-']
+    return [f'notebooks/{lesson}.ipynb', 'tests/test_notebook_format.py', 'tests/lessons', *chosen]
 
 
 def _fast_steps() -> list[tuple[str, list[str]]]:
