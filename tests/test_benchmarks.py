@@ -12,7 +12,7 @@ import pytest
 BENCHMARKS = Path(__file__).with_name('benchmarks')
 ROWS = {
     'messages': [
-        *('delay, half below: rclpy.spin', 'delay, half below: script / rclpy.spin'),
+        *('delay, half below: rclpy.spin', 'delay, half below: kernel / rclpy.spin'),
         *(
             'throughput: kernel / rclpy.spin',
             'delay, 99 of 100 below: lab.spin in a kernel',
@@ -23,6 +23,7 @@ ROWS = {
     ],
     'ros2': ['topic list', 'node info', 'ros2 topic list'],
     'views': ['to the page: monitor', 'to the page: plot', 'an empty cell: monitor'],
+    'soak': ['messages', 'memory at the end'],
     'course': ['JupyterLab answers'],
     'bags': ['throughput: to mcap / bare', 'lost: to sqlite3', 'memory, second half: to mcap'],
 }

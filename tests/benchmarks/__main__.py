@@ -2,6 +2,7 @@
 
     python tests/benchmarks                      # some 5 minutes, on a machine that is idle
     python tests/benchmarks messages process     # some: messages process ros2 views bags sim ...
+    python tests/benchmarks soak                 # a million messages, ten thousand nodes
     python tests/benchmarks --quick              # does it run at all?
 
 A table has a figure, the target that the course has set itself, and whether it is met.
@@ -21,6 +22,7 @@ import bench_course
 import bench_messages
 import bench_process
 import bench_ros2
+import bench_soak
 import bench_views
 from table import show
 
@@ -35,6 +37,8 @@ BENCHES = {
     'course': bench_course.tables,
     'bags': bench_bags.tables,
 }
+# Longer, so only when named.
+LONG = {'soak': bench_soak.tables}
 
 
 def main() -> int:
@@ -43,7 +47,7 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument('--quick', action='store_true', help='only to see whether it runs')
-    parser.add_argument('names', nargs='*', choices=[[], *BENCHES, 'sim'], metavar='name')
+    parser.add_argument('names', nargs='*', choices=[[], *BENCHES, 'sim', *LONG], metavar='name')
     options = parser.parse_args()
     for name in [name for name in os.environ if name.startswith(FOREIGN)]:
         del os.environ[name]
@@ -60,8 +64,8 @@ def main() -> int:
     )
     names = options.names or [*BENCHES, 'sim']
     for name in names:
-        if name in BENCHES:
-            for title, rows in BENCHES[name](options.quick):
+        if name in {**BENCHES, **LONG}:
+            for title, rows in {**BENCHES, **LONG}[name](options.quick):
                 show(title, rows)
     if 'sim' not in names:
         return 0
