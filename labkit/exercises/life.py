@@ -142,11 +142,13 @@ class Life:
         return not late and sample.at < self.seconds - within
 
     def is_known(self, topic: str, sample: Sample) -> bool:
-        """Tell whether it is known exactly when a message came: not if a stranger has sent it."""
+        """Tell whether it is known exactly when a message came: not if a stranger has sent it.
+
+        A stranger's may have come in the very moment of a test. So it is none of the tests.
+        """
         if not self.strangers.get(topic):
             return True
-        tests = [sent.at for sent in self.sent if sent.topic == topic]
-        return any(abs(sample.at - at) < SAME_SEC for at in tests)
+        return not any(sample is other for other in self.besides_tests(topic))
 
     def without_strangers(
         self, topic: str, extra: Sequence[tuple[float, Any]], known: Collection[Any]

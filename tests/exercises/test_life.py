@@ -57,12 +57,38 @@ def test_what_is_said_more_often_than_others_speak_counts() -> None:
 
 
 def test_a_message_of_a_stranger_may_be_on_its_way_when_it_ends() -> None:
-    sent = Sent(2.0, '/range', {})
-    life = Life(seconds=30.0, ended=1000.0, sent=[sent], strangers={'/range': 1})
-    test, stranger = (Sample(None, 999.9, 0, at) for at in (2.0, 3.0))
-    assert life.is_due('/range', test, 1.0)
-    assert not life.is_due('/range', stranger, 1.0)
-    assert life.is_due('/range', replace(stranger, stamp=990.0), 1.0)
+    test, stranger, early, late = (
+        Sample(SimpleNamespace(data=data), stamp, 0, at)
+        for data, stamp, at in (
+            ('test', 999.9, 2.0),
+            ('hello', 999.9, 3.0),
+            ('hello', 990.0, 3.0),
+            ('hello', 990.0, 29.5),
+        )
+    )
+    life = Life(
+        seconds=30.0,
+        ended=1000.0,
+        samples={'/range': [test, stranger, early, late]},
+        sent=[Sent(2.0, '/range', {'data': 'test'})],
+        strangers={'/range': 1},
+    )
+    due = [life.is_due('/range', sample, 1.0) for sample in life.on('/range')]
+    assert due == [True, False, True, False]
     life.strangers = {}
     assert life.is_due('/range', stranger, 1.0)
-    assert not life.is_due('/range', replace(stranger, at=29.5), 1.0)
+    assert not life.is_due('/range', late, 1.0)
+
+
+@pytest.mark.parametrize('text', ['hello', 'test'])
+def test_a_message_of_a_stranger_in_the_moment_of_a_test_is_no_test(text: str) -> None:
+    test, stranger = (Sample(SimpleNamespace(data=data), 999.9, 0, 2.0) for data in ('test', text))
+    life = Life(
+        seconds=30.0,
+        ended=1000.0,
+        samples={'/range': [test, stranger]},
+        sent=[Sent(2.0, '/range', {'data': 'test'})],
+        strangers={'/range': 1},
+    )
+    assert life.is_due('/range', test, 1.0)
+    assert not life.is_due('/range', stranger, 1.0)
