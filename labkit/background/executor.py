@@ -380,8 +380,8 @@ class BackgroundExecutor(Executor):
         )
         self._ready.extend(ready)
         if settling is not None and not ready:
+            self._settling = None  # before the one who waits asks anew
             settling.set()
-            self._settling = None
 
     def _run(self, work: Ready | _UnderWay) -> None:
         """Run a callback, or go on with what is under way, and look what has come of it."""
