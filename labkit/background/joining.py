@@ -15,7 +15,7 @@ import os
 import secrets
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 
 from rclpy.context import Context
@@ -161,16 +161,19 @@ class Joined(Session):
         self._here.publish(data)
 
     def _work(self) -> None:
-        try:
+        # Whatever fails at the end, the rest of it is done.
+        with ExitStack() as ending:
+            if self._claim is not None:
+                ending.callback(self._claim.close)
+            ending.callback(self._stop_programs)
+            ending.callback(self._end_guest)
+            ending.callback(self._executor.shutdown)
             while not self._stopping.is_set():
                 self._executor.spin_once(timeout_sec=SPIN_SEC)
-        finally:
-            self._executor.shutdown()
-            self._end_guest()
-            for program in self.programs:
-                program.stop()
-            if self._claim is not None:
-                self._claim.close()
+
+    def _stop_programs(self) -> None:
+        for program in self.programs:
+            program.stop()
 
     def _end_guest(self) -> None:
         destroy_node(self._guest)
