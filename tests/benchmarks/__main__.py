@@ -3,6 +3,7 @@
     python tests/benchmarks                      # some 5 minutes, on a machine that is idle
     python tests/benchmarks messages process     # some: messages process ros2 views bags sim ...
     python tests/benchmarks soak                 # a million messages, ten thousand nodes
+    python tests/benchmarks lessons setup        # each lesson's test; the first start beside pip
     python tests/benchmarks --quick              # does it run at all?
 
 A table has a figure, the target that the course has set itself, and whether it is met.
@@ -38,7 +39,11 @@ BENCHES = {
     'bags': bench_bags.tables,
 }
 # Longer, so only when named.
-LONG = {'soak': bench_soak.tables}
+LONG = {
+    'soak': bench_soak.tables,
+    'lessons': bench_course.lessons,
+    'setup': bench_course.setup,
+}
 
 
 def main() -> int:
