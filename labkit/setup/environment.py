@@ -218,8 +218,7 @@ def _bring_up(stamp: dict[str, Any] | None, lacking: str, requirements: Sequence
 
 def _make_anew(lacking: str, requirements: Sequence[str]) -> None:
     interpreter = find_interpreter()
-    uv = shutil.which('uv')
-    if not (uv or interpreter.has_pip):
+    if not (shutil.which('uv') or interpreter.has_pip):
         raise SetupError(
             f'{interpreter.path} comes without the module `ensurepip`, which makes environments.',
             todo='Install it, on Debian and Ubuntu with `sudo apt install '
@@ -235,7 +234,7 @@ def _make_anew(lacking: str, requirements: Sequence[str]) -> None:
         _write_stamp({})  # from here on it is known to be unfinished, and to be ours
         _clear()
         _check_space()
-        _create(interpreter.path, with_pip=not uv)
+        _create(interpreter.path)
         version = _version()
         if version is None:
             raise SetupError(
@@ -271,10 +270,9 @@ def _clear() -> None:
             path.unlink()
 
 
-def _create(python: str, *, with_pip: bool) -> None:
-    options = [] if with_pip else ['--without-pip']
+def _create(python: str) -> None:
     done = subprocess.run(
-        [python, '-I', '-m', 'venv', *options, str(VENV)],
+        [python, '-I', '-m', 'venv', '--without-pip', str(VENV)],
         env=clean_environment(),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,

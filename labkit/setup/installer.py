@@ -34,6 +34,19 @@ _WRONG_HASH = re.compile(r'hash mismatch|DO NOT MATCH THE HASHES', re.IGNORECASE
 LOCKED = 'environment.txt'
 LOCK = 'labkit/setup/environment.lock'
 _LOCKED_UV = re.compile(r'^uv==(?:.*\\\n)*.*\n', re.MULTILINE)
+# Distributions may keep the wheels of `ensurepip` in a folder of their own.
+_FIND_PIP = """
+import ensurepip, pathlib, sysconfig
+own = pathlib.Path(ensurepip.__file__).parent / '_bundled'
+folders = [own, pathlib.Path(sysconfig.get_config_var('WHEEL_PKG_DIR') or own)]
+print(next((path for folder in folders for path in folder.glob('pip-*.whl')), ''))
+"""
+_RUN_PIP = """
+import runpy, sys
+sys.path.insert(0, sys.argv.pop(1))
+sys.argv[0] = 'pip'
+runpy.run_module('pip', run_name='__main__', alter_sys=True)
+"""
 _READ_ONLY = re.compile(r'Read-only file system', re.IGNORECASE)
 
 
@@ -103,16 +116,15 @@ def install(
     for name in ('PIP_TARGET', 'PIP_PREFIX', 'PIP_ROOT', 'UV_SYSTEM_PYTHON'):
         variables.pop(name, None)
     variables.update(PIP_USER='0', PIP_NO_INPUT='1', UV_NO_PROGRESS='1')
-    pip = [str(python), '-I', '-m', 'pip', 'install']
-    pip += ['--disable-pip-version-check', '--no-warn-script-location']
-    installers = [pip] if (python.parent / 'pip').exists() else []
     progress.show('Fetching', 0)
-    uv = shutil.which('uv') or _fetch_uv(pip, python, root, variables)
-    if uv:
-        # pip does the last by itself. uv looks at the version and at pyproject.toml, not at the
-        # files that are copied into the environment.
-        own = ['--python', str(python), '--reinstall-package', 'labkit']
-        installers.insert(0, [uv, 'pip', 'install', *own])
+    pip = _pip(python)
+    uv = shutil.which('uv') or (_fetch_uv(pip, python, root, variables) if pip else None)
+    # pip does the last by itself. uv looks at the version and at pyproject.toml, not at the files
+    # that are copied into the environment.
+    own = ['--python', str(python), '--reinstall-package', 'labkit']
+    installers = [[uv, 'pip', 'install', *own]] if uv else []
+    # What uv has begun and not finished looks installed to pip.
+    installers += [[*pip, 'install', *(['--force-reinstall'] if uv else [])]] if pip else []
     output: list[str] = []
     for installer in installers:
         try:
@@ -127,9 +139,33 @@ def install(
                 return
         finally:
             progress.close()
+        text = '\n'.join(output)
+        if _NO_SPACE.search(text) or _READ_ONLY.search(text) or _WRONG_HASH.search(text):
+            break  # pip would find the same
         if installer is not installers[-1]:
             print('uv could not install the packages. Trying pip, which takes longer.', flush=True)
     raise explain(output, root)
+
+
+def _pip(python: Path) -> list[str]:
+    """Return a command that runs pip in the environment; [] if there is none.
+
+    One that is not installed is run out of the wheel that comes with Python: to install it from
+    there first would take longer than uv takes for everything.
+    """
+    options = ['--disable-pip-version-check']
+    if (python.parent / 'pip').exists():
+        return [str(python), '-I', '-m', 'pip', *options]
+    found = subprocess.run(
+        [str(python), '-I', '-c', _FIND_PIP],
+        env=clean_environment(),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    )
+    wheel = found.stdout.strip()
+    return [str(python), '-I', '-c', _RUN_PIP, wheel, *options] if wheel else []
 
 
 def _fetch_uv(
@@ -141,7 +177,7 @@ def _fetch_uv(
     if found is None:
         return None
     done = subprocess.run(
-        [*pip, '--quiet', '--no-deps', '--require-hashes', '-r', '/dev/stdin'],
+        [*pip, 'install', '--quiet', '--no-deps', '--require-hashes', '-r', '/dev/stdin'],
         cwd=root,
         env=variables,
         input=found[0].encode(),
