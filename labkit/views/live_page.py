@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, ClassVar
 
 import anywidget
 
@@ -39,6 +39,9 @@ class LivePage(Live):
     Args:
         feeds: The topics that it listens to.
     """
+
+    # The page hears something new this long after the last news at the earliest, s.
+    _least: ClassVar[float] = 0.0
 
     def __init__(self, feeds: Sequence[Feed] = ()) -> None:
         super().__init__()
@@ -148,13 +151,15 @@ class LivePage(Live):
         call_in_kernel(close, delay_sec=CATCH_UP_SEC)
 
     def _send(self, *, everything: bool = False) -> None:
+        since = time.monotonic() - self._sent_at
         if everything:
             self._told.clear()
+        elif since < self._least:
+            return  # a timer that was late ticks again soon
         content, buffers = self._news(everything)
-        now = time.monotonic()
-        if content or buffers or now - self._sent_at >= STATUS_SEC:
-            self._sent_at = now
+        if content or buffers or since >= STATUS_SEC:
             self._tell(content, buffers)
+            self._sent_at = time.monotonic()
 
     def _say_end(self) -> None:
         self._tell({'ended': self._ended})

@@ -115,6 +115,15 @@ def test_thousand_messages_a_second_are_few_updates(run):
     )
 
 
+def test_ticks_that_come_close_together_are_one_update(run):
+    run('talker = lab.spin(Talker(period=0.001))\npage = PlotPage(plot := lab.plot("/odds.data"))')
+    run('page.wait_numbers(10)\nbefore = len(page.times)')
+    # As when a late timer catches up: all of these fall into far less time than one update has.
+    run('with plot._lock:\n    for _ in range(30): plot._tick()')
+    run('lab.wait_until(lambda: len(page.times) > before + 3)')
+    assert run('print(min(b - a for a, b in zip(page.times, page.times[1:])) >= 0.05)') == 'True'
+
+
 def test_all_of_a_thousand_messages_a_second_are_taken(run):
     run('talker = lab.spin(Talker(period=0.001))\nplot = PlotPage(lab.plot("/odds.data"))')
     run('monitor = Page(lab.monitor("/odds"))\nstart = talker.count')
