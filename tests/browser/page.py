@@ -7,6 +7,7 @@ by its id in JupyterLab's own model, scrolled to, and then looked at in the page
 from __future__ import annotations
 
 import os
+import re
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -164,8 +165,14 @@ class Notebook:
         return self.cell(cell_id).locator('.jp-Cell-outputArea')
 
     def output_text(self, cell_id: str) -> str:
-        """Return what can be read under a cell."""
-        return self.output(cell_id).inner_text().strip()
+        """Return what can be read under a cell.
+
+        JupyterLab draws text anew when a cell comes into view: while it has not, there is none.
+        """
+        place = self.output(cell_id)
+        if self._has_text(cell_id):
+            expect(place).to_have_text(re.compile(r'\S'), use_inner_text=True)
+        return place.inner_text().strip()
 
     def error_of(self, cell_id: str) -> str:
         """Return name and message of the error with which a cell has ended, '' if it is well."""
@@ -307,6 +314,11 @@ class Notebook:
     def _index(self, cell_id: str) -> int:
         ids = [cell['id'] for cell in self.cells()]
         return ids.index(cell_id)
+
+    def _has_text(self, cell_id: str) -> bool:
+        outputs = self.cells()[self._index(cell_id)]['outputs']
+        texts = [output.get('text', '') for output in outputs if output['output_type'] == 'stream']
+        return any(text.strip() for text in map(''.join, texts))
 
     def _wait_for_prompt(self, cell_id: str, condition: str) -> None:
         self.page.wait_for_function(

@@ -126,8 +126,8 @@ def test_hostile_text_is_only_text(open_cells: Callable[..., Notebook]) -> None:
     said = notebook.wait_output('chat', 'printed Mallory: the last one')
     for text in ('<script>window.labkitHacked = true</script>', '<b>bold</b>', '</pre></div>'):
         assert f'printed Mallory: {text}' in said or text in said
-        assert text in notebook.output_text('values')
-        assert text in notebook.output_text('shown')
+        notebook.wait_output('values', text)
+        notebook.wait_output('shown', text)
     assert 'broken' in said and 'before' in said
     value = notebook.output('monitor').locator('.labkit-monitor-value')
     expect(value).to_have_text("'Mallory: the last one'")
