@@ -167,6 +167,8 @@ def believed(twist: Twist2, mismatch: float, robot: Robot = BURGER) -> Twist2:
         mismatch: Difference of the radii by their mean, without unit; 0 for perfect wheels.
         robot: The robot's measures.
     """
+    if not mismatch:
+        return twist
     width = robot.wheel_separation
     return Twist2(
         twist.v - mismatch * twist.w * width / 4,
@@ -186,6 +188,8 @@ def ramp(twist: Twist2, target: Twist2, limits: DriveLimits) -> tuple[Twist2, fl
         The acceleration, and the time until a component reaches its target; infinity if both
         are there.
     """
+    if twist == target:
+        return Twist2(), math.inf
     v_gap, w_gap = target.v - twist.v, target.w - twist.w
     v_time = abs(v_gap) / limits.v_rate if v_gap else math.inf
     w_time = abs(w_gap) / limits.w_rate if w_gap else math.inf
@@ -216,12 +220,23 @@ class Motion(NamedTuple):
             self.twist.w + self.acceleration.w * time,
         )
 
+    def fastest(self, time: float) -> Twist2:
+        """Return the largest speeds, either way, within the first `time` seconds."""
+        # They are linear in time, so the largest ones are at an end.
+        (v, w), (v_rate, w_rate) = self.twist, self.acceleration
+        return Twist2(
+            max(abs(v), abs(v + v_rate * time)),
+            max(abs(w), abs(w + w_rate * time)),
+        )
+
     def turned(self, time: float) -> float:
         """Return how far the heading has turned after `time` seconds, rad, not wrapped."""
         return (self.twist.w + self.acceleration.w * time / 2) * time
 
     def pose_at(self, time: float) -> Pose:
         """Return the pose after `time` seconds."""
+        if time == 0:
+            return self.start
         yaw = wrap_angle(self.start.yaw + self.turned(time))
         if self.acceleration.w or (self.acceleration.v and self.twist.w):
             ahead, aside = self._integrate(time)
@@ -240,8 +255,7 @@ class Motion(NamedTuple):
         """Return the way made ahead and to the left, seen from the start, m."""
         # The way is a Fresnel integral. Gauss-Legendre quadrature with 6 points is exact to
         # rounding as long as the heading turns by no more than half a radian in a panel.
-        top_w = max(abs(self.twist.w), abs(self.twist_at(time).w))
-        panels = max(1, math.ceil(2 * top_w * time))
+        panels = max(1, math.ceil(2 * self.fastest(time).w * time))
         half = time / panels / 2
         ahead = aside = 0.0
         for panel in range(panels):

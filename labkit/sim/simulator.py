@@ -130,6 +130,8 @@ class Simulator:
         self.wheels = (0.0, 0.0)
         self.collisions: list[Contact] = []
         self._command_left = math.inf
+        # The command with which it pushes against a wall or a post, which will not give way.
+        self._pushes: Twist2 | None = None
         self._random = np.random.default_rng(self._seed)
         self._show()
 
@@ -205,6 +207,10 @@ class Simulator:
             self.acceleration = Twist2()
             self._pass(dt)
             return dt
+        if self.target == self._pushes:
+            used = min(dt, self._command_left)
+            self._pass(used)
+            return used
         acceleration, change = ramp(self.twist, self.target, self.robot.limits)
         longest = min(dt, self._command_left, LONGEST_PIECE)
         used = min(longest, change)
@@ -216,6 +222,8 @@ class Simulator:
             # It pushes against what it touches: time passes, the robot stands.
             used = longest
             self.acceleration = Twist2()
+            if contact.thing in self.world.fixed:
+                self._pushes = self.target
             self._pass(used)
         else:
             used = contact.time
@@ -226,7 +234,10 @@ class Simulator:
         return used
 
     def _move(self, motion: Motion, time: float) -> None:
-        mean, acceleration = motion.twist_at(time / 2), motion.acceleration
+        self._pushes = None
+        acceleration = motion.acceleration
+        steady = acceleration == Twist2()
+        mean = motion.twist if steady else motion.twist_at(time / 2)
         left, right = wheel_speeds(believed(mean, self.drift, self.robot), self.robot)
         self.wheels = (self.wheels[0] + left * time, self.wheels[1] + right * time)
         self.pose = motion.pose_at(time)
@@ -238,11 +249,12 @@ class Simulator:
         else:
             self.odometry = self.pose
         self.acceleration = acceleration
-        v, w = motion.twist_at(time)
-        self.twist = Twist2(
-            self.target.v if abs(self.target.v - v) < SAME_SPEED else v,
-            self.target.w if abs(self.target.w - w) < SAME_SPEED else w,
-        )
+        if not steady:
+            v, w = motion.twist_at(time)
+            self.twist = Twist2(
+                self.target.v if abs(self.target.v - v) < SAME_SPEED else v,
+                self.target.w if abs(self.target.w - w) < SAME_SPEED else w,
+            )
         self._show()
         self._pass(time)
 

@@ -1,8 +1,4 @@
-"""What surrounds the robot: walls, round posts, other robots. Contact and laser scan.
-
-NumPy casts the rays: 360 beams against every wall would take Python milliseconds. It comes with
-every installation of rclpy, whose message classes need it.
-"""
+"""What surrounds the robot: walls, round posts, other robots. Contact and laser scan."""
 
 from __future__ import annotations
 
@@ -15,12 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from labkit.errors import LabError
-from labkit.sim.kinematics import BURGER, Motion, Pose, Robot
+from labkit.sim.kinematics import BURGER, Motion, Pose, Robot, Twist2
+from labkit.sim.rays import TOUCH, Convex, see_posts, see_walls
 
 __all__ = ['Contact', 'Post', 'Wall', 'World', 'open_field', 'pillars', 'playground', 'room']
 
-# Closer than this the robot touches, m. It is far below what can be seen and far above rounding.
-TOUCH = 1e-9
 # Approaching more slowly than this is rounding, m/s.
 STILL = 1e-12
 # A row of steps towards a contact converges in about 5; more means a graze, where it stops short.
@@ -113,18 +108,17 @@ class World:
         self.fixed: tuple[Wall | Post, ...] = (*self.walls, *self.posts)
         for thing in self.fixed:
             _check(thing)
+        self._room = Convex(self.corners) if len(self.corners) > 2 else None
         self._lines = np.array(self.walls, dtype=float).reshape(-1, 4)
         self._rounds = np.array(self.posts, dtype=float).reshape(-1, 3)
-        # Where a robot has looked around, how far, m, and what it has found.
-        self._looked: dict[str, tuple[float, float, float, tuple[Wall | Post, ...]]] = {}
+        self._looks: dict[str, _Look] = {}
 
     def __repr__(self) -> str:
         return f'<World: {len(self.walls)} walls, {len(self.posts)} posts>'
 
     def things(self, but: str = '') -> list[Wall | Post]:
         """Return all that can be met, except the robot named `but`."""
-        others = [post for name, post in list(self.robots.items()) if name != but]
-        return [*self.fixed, *others]
+        return [*self.fixed, *self._others(but)]
 
     def is_outside(self, x: float, y: float) -> bool:
         """Tell whether (x, y), m, is outside of the room."""
@@ -160,13 +154,15 @@ class World:
             The first contact, its time counted from the start of the motion. None if there is
             none: the disc does not come near anything, or moves away from what it touches.
         """
-        path = _Path(motion, duration)
-        first: Contact | None = None
         x, y, _ = motion.start
+        others = self._others(but)
+        if not self.fixed and not others:
+            return None
+        path = _Path(motion, motion.fastest(duration), duration)
         far = path.reach + radius + TOUCH
-        others = [post for name, post in list(self.robots.items()) if name != but]
+        first: Contact | None = None
         for thing in (*self._near(x, y, far, but), *others):
-            if thing.away(x, y)[0] - radius > path.reach + TOUCH:
+            if thing.away(x, y)[0] > far:
                 continue
             time = _touch_time(path, thing, radius, first.time if first else duration)
             if time is not None:
@@ -176,16 +172,24 @@ class World:
                 first = Contact(time, touch_x, touch_y, thing)
         return first
 
+    def _others(self, but: str) -> list[Post]:
+        return [post for name, post in list(self.robots.items()) if name != but]
+
     def _near(self, x: float, y: float, distance: float, who: str) -> tuple[Wall | Post, ...]:
         """Return the fixed things that may be nearer to (x, y) than a distance.
 
         Who has looked further than that looks again only when it is used up.
         """
-        x_then, y_then, limit, near = self._looked.get(who, (x, y, 0.0, ()))
-        if math.hypot(x - x_then, y - y_then) + distance > limit:
+        look = self._looks.get(who, _Look(x, y, 0.0, 0.0, ()))
+        moved = math.hypot(x - look.x, y - look.y)
+        if moved + distance <= look.free:
+            return ()
+        limit, near = look.limit - moved, look.near
+        if distance > limit:
             limit = distance + AROUND
             near = tuple(thing for thing in self.fixed if thing.away(x, y)[0] <= limit)
-            self._looked[who] = (x, y, limit, near)
+        free = min((thing.away(x, y)[0] for thing in near), default=limit)
+        self._looks[who] = _Look(x, y, min(free, limit), limit, near)
         return near
 
     def ranges(self, pose: Pose, *, robot: Robot = BURGER, but: str = '') -> NDArray[np.float64]:
@@ -201,46 +205,70 @@ class World:
         """
         eye_x = pose.x + robot.scan_x * math.cos(pose.yaw)
         eye_y = pose.y + robot.scan_x * math.sin(pose.yaw)
-        # The fan of beams, turned by the heading.
-        ahead, aside = _fan(robot.scan_beams)
         cos, sin = math.cos(pose.yaw), math.sin(pose.yaw)
-        beam_x, beam_y = cos * ahead - sin * aside, sin * ahead + cos * aside
-        nearest = np.full(robot.scan_beams, math.inf)
-        if self.walls:
-            seen = _see_walls(beam_x, beam_y, self._lines - (eye_x, eye_y, eye_x, eye_y))
-            np.minimum(nearest, seen, out=nearest)
-        others = [post for name, post in list(self.robots.items()) if name != but]
+        # The fan of beams, turned by the heading.
+        rays = np.array(((cos, -sin), (sin, cos))) @ _fan(robot.scan_beams)
+        nearest = self._see_walls(eye_x, eye_y, rays)
+        others = self._others(but)
         rounds = np.vstack([self._rounds, others]) if others else self._rounds
         if len(rounds):
-            seen = _see_posts(beam_x, beam_y, rounds - (eye_x, eye_y, 0.0))
-            np.minimum(nearest, seen, out=nearest)
+            np.minimum(nearest, see_posts(rounds - (eye_x, eye_y, 0.0), rays), out=nearest)
+        return nearest
+
+    def _see_walls(self, x: float, y: float, rays: NDArray[np.float64]) -> NDArray[np.float64]:
+        nearest = self._room.see(np.array((x, y)), rays) if self._room else None
+        lines = self._lines
+        if nearest is not None:
+            lines = lines[len(self._sides) :]
+        if nearest is None:
+            nearest = np.full(rays.shape[1], math.inf)
+        if len(lines):
+            np.minimum(nearest, see_walls(lines - (x, y, x, y), rays), out=nearest)
         return nearest
 
 
+class _Look(NamedTuple):
+    """What a robot knows of the fixed things around a place.
+
+    Attributes:
+        x: The place, m.
+        y: The place, m.
+        free: Nothing is nearer to it than that, m.
+        limit: How far it has looked, m.
+        near: What it has found within that.
+    """
+
+    x: float
+    y: float
+    free: float
+    limit: float
+    near: tuple[Wall | Post, ...]
+
+
 @functools.cache
-def _fan(count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _fan(count: int) -> NDArray[np.float64]:
     """Return the directions of so many beams of a scanner that looks along the x axis."""
     angles = np.arange(count) * (math.tau / count)
-    return np.cos(angles), np.sin(angles)
+    return np.vstack((np.cos(angles), np.sin(angles)))
 
 
-class _Path:
+class _Path(NamedTuple):
     """A motion with what bounds it, for the search for a contact.
 
     Attributes:
         motion: The motion.
-        reach: The longest way that it can come, m.
+        fastest: Its largest speeds.
+        duration: How long it takes, s.
     """
 
-    def __init__(self, motion: Motion, duration: float) -> None:
-        end = motion.twist_at(duration)
-        # Speeds are linear in time, so the largest ones are at an end.
-        top_v = max(abs(motion.twist.v), abs(end.v))
-        top_w = max(abs(motion.twist.w), abs(end.w))
-        self.motion = motion
-        self.reach = top_v * duration
-        self._turn = top_w * duration
-        self._across = top_v * top_w
+    motion: Motion
+    fastest: Twist2
+    duration: float
+
+    @property
+    def reach(self) -> float:
+        """The longest way that it can come, m."""
+        return self.fastest.v * self.duration
 
     def bend(self, share: float) -> float:
         """Return the largest acceleration in a direction, m/s².
@@ -249,8 +277,9 @@ class _Path:
             share: Cosine of the angle between the direction and the heading at some time.
         """
         # Along its way the disc speeds up, across its way it follows the curve.
-        along = abs(self.motion.acceleration.v) * min(1.0, abs(share) + self._turn)
-        return along + self._across
+        turn = self.fastest.w * self.duration
+        along = abs(self.motion.acceleration.v) * min(1.0, abs(share) + turn)
+        return along + self.fastest.v * self.fastest.w
 
 
 def _touch_time(path: _Path, thing: Wall | Post, radius: float, until: float) -> float | None:
@@ -287,36 +316,6 @@ def _safe_step(gap: float, rate: float, bend: float) -> float:
     if rate < 0:
         return 2 * gap / (root - rate)
     return (rate + root) / bend if bend else math.inf
-
-
-def _see_walls(
-    beam_x: NDArray[np.float64], beam_y: NDArray[np.float64], lines: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Return for each beam the distance of the nearest wall; `lines` are seen from the eye."""
-    x, y = lines[:, 0, None], lines[:, 1, None]
-    along_x, along_y = lines[:, 2, None] - x, lines[:, 3, None] - y
-    with np.errstate(divide='ignore', invalid='ignore', over='ignore'):
-        # beam * distance = start + along * share, solved by Cramer's rule.
-        cross = beam_x * along_y - beam_y * along_x
-        distance = (x * along_y - y * along_x) / cross
-        share = (x * beam_y - y * beam_x) / cross
-    # The margin closes the corners, where two walls share a point.
-    hit = (distance >= 0) & (share >= -TOUCH) & (share <= 1 + TOUCH)
-    nearest: NDArray[np.float64] = np.where(hit, distance, math.inf).min(axis=0)
-    return nearest
-
-
-def _see_posts(
-    beam_x: NDArray[np.float64], beam_y: NDArray[np.float64], posts: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Return for each beam the distance of the nearest post; `posts` are seen from the eye."""
-    x, y, radius = posts[:, 0, None], posts[:, 1, None], posts[:, 2, None]
-    middle = beam_x * x + beam_y * y
-    under = radius**2 - (beam_x * y - beam_y * x) ** 2
-    distance = middle - np.sqrt(np.maximum(under, 0))
-    hit = (under >= 0) & (distance >= 0)
-    nearest: NDArray[np.float64] = np.where(hit, distance, math.inf).min(axis=0)
-    return nearest
 
 
 def _check(thing: Wall | Post) -> None:

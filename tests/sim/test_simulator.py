@@ -197,6 +197,31 @@ def test_robots_in_one_world_stop_when_they_meet() -> None:
     assert left.scan()[0] == math.inf
 
 
+def test_what_pushes_goes_on_when_what_it_pushes_is_gone() -> None:
+    world = open_field()
+    left = Simulator(world, name='left')
+    right = Simulator(world, start=Pose(0.3), name='right')
+    run(left, [(0.2, 0, 0.9)] * 3, 5)
+    stopped = left.pose.x
+    assert stopped == pytest.approx(0.3 - 2 * R, abs=1e-7)
+    right.close()
+    run(left, [(0.2, 0, 0.9)], 5)
+    assert left.pose.x > stopped + 0.1
+
+
+def test_a_push_in_another_direction_is_another_one() -> None:
+    robot = Simulator(World([Wall(0.5, -1, 0.5, 1)]), start=Pose(0.3))
+    run(robot, [(0.2, 0.0, 0.9)] * 3, 5)
+    place = robot.pose.x
+    run(robot, [(0.1, 0.0, 0.9)], 5)
+    assert robot.pose.x == place
+    run(robot, [(-0.1, 0.0, 0.9), (0.2, 0.0, 0.2)], 5)
+    assert robot.pose.x < place - 0.02
+    robot.place(Pose(0.0))
+    run(robot, [(0.2, 0.0, 0.9)], 5)
+    assert robot.pose.x > 0.1
+
+
 def test_a_robot_of_the_same_name_replaces_the_old_one() -> None:
     world = open_field()
     old = Simulator(world)
