@@ -1,4 +1,4 @@
-"""What counts as an answer: what came before a check began is answered in it, too."""
+"""What counts as an answer, or a line: what came before a check began is answered in it, too."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, cast
 import pytest
 
 from labkit.exercises import Fail
-from labkit.exercises.clauses import Answers, Evidence
+from labkit.exercises.clauses import Answers, Evidence, Logs
 from labkit.exercises.life import Life, Sent
 from labkit.exercises.watch import Sample
 
@@ -73,3 +73,27 @@ def test_answer_that_is_left_out_now_and_then_is_still_one_of_a_timer() -> None:
     with pytest.raises(Fail) as refused:
         CLAUSE.judge(evidence(heard, came))
     assert refused.value.why.startswith('The answer is repeated')
+
+
+def lines(heard: list[tuple[float, str]], logged: list[tuple[float, str]]) -> Evidence:
+    """Return evidence of half a minute in which these texts were heard, and lines were logged."""
+    life = Life(
+        30.0,
+        {
+            '/chatter': [Sample(SimpleNamespace(data=text), 0.0, 0, at) for at, text in heard],
+            '/rosout': [
+                Sample(SimpleNamespace(name='ear', msg=text), 0.0, 0, at) for at, text in logged
+            ],
+        },
+    )
+    ends = {('subscription', '/chatter', ''): SimpleNamespace(node='/ear')}
+    return Evidence(cast(Any, None), ends=cast(Any, ends), life=life)
+
+
+def test_line_about_what_came_before_the_check_is_no_extra_line() -> None:
+    clause = Logs('/chatter', 'log it', draw=lambda: ['hello'])
+    seen = lines([(2.0, 'hello')], [(0.05, 'from before'), (2.1, 'I heard hello')])
+    assert clause.judge(seen) == '/ear logged each of 1 texts in a line.'
+    seen = lines([(2.0, 'hello')], [(1.05, 'from nowhere'), (2.1, 'I heard hello')])
+    with pytest.raises(Fail, match='1 lines when none had come'):
+        clause.judge(seen)

@@ -302,8 +302,11 @@ class Logs(Clause):
                     why='The same message is logged more than once.',
                     todo='Call get_logger().info(...) once in the callback.',
                 )
+        # At the beginning it may log what came before: a node may keep what it hears.
         silent = [
-            (t, line) for t, line in lines if not any(a <= t < a + WITHIN_SEC for a, _ in heard)
+            (t, line)
+            for t, line in lines
+            if t >= WITHIN_SEC and not any(a <= t < a + WITHIN_SEC for a, _ in heard)
         ]
         quiet = [line for _, line in evidence.life.without_strangers(self.topic, silent, known)]
         if quiet:
