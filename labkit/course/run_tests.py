@@ -33,10 +33,10 @@ SHARDS = {
     'rest': ('tests',),
 }
 _PYTEST = ('pytest', '--nbval', '--timeout=300')
-# As many workers as processors, and two at least: many a test waits for messages. One worker runs
-# a notebook from top to bottom, so that its cells share a kernel.
-_WORKERS = max(2, len(os.sched_getaffinity(0)) if hasattr(os, 'sched_getaffinity') else 2)
-_PARALLEL = ('-n', str(_WORKERS), '--dist', 'loadscope')
+# Two workers for each processor: a test mostly waits, for messages, processes and pages. One
+# worker runs a notebook from top to bottom, so that its cells share a kernel.
+_PROCESSORS = len(os.sched_getaffinity(0)) if hasattr(os, 'sched_getaffinity') else 2
+_PARALLEL = ('-n', str(2 * max(2, _PROCESSORS)), '--dist', 'loadscope')
 
 
 def run_tests(

@@ -28,7 +28,7 @@ Findings = dict[tuple[str, str], Finding]
 def findings_of(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Callable[[Lesson], Findings]]:
-    """Give what came of a lesson. All that were asked for are begun at once, four at a time."""
+    """Give what came of a lesson. All that were asked for are begun at once, eight at a time."""
     wanted: dict[str, set[tuple[str, str]]] = {}
     found: dict[str, Future[Findings]] = {}
     for item in request.session.items:
@@ -41,7 +41,7 @@ def findings_of(
             states = {(exercise.name, wrong.name) for wrong in exercise.wrong}
             wanted.setdefault(params['lesson'].name, set()).update(states)
     # The kernels mostly wait for messages, so there may be more of them than cores.
-    with ThreadPoolExecutor(max_workers=4) as pool:
+    with ThreadPoolExecutor(max_workers=8) as pool:
         for lesson in sorted(lessons(), key=lambda lesson: -len(wanted.get(lesson.name, ()))):
             if lesson.name in wanted:
                 folder = tmp_path_factory.mktemp(lesson.name)
