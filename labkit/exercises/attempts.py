@@ -10,6 +10,9 @@ from labkit.exercises.progress_file import Store
 
 __all__ = ['ProgressStore', 'number_of', 'progress_store']
 
+# Of an answer that was typed, no more than this is kept.
+LONGEST_ANSWER = 200
+
 
 class ProgressStore:
     """Note what the learner does. Each `note_...` returns a note about the file, mostly `''`.
@@ -44,10 +47,32 @@ class ProgressStore:
         """Note that the solution was shown."""
         return self._change(lesson, 'exercises', name, lambda entry: entry.update(solution=True))
 
-    def note_answer(self, lesson: str, quiz: str, number: int, right: bool) -> str:
+    def note_answer(
+        self, lesson: str, quiz: str, number: int, right: bool, given: str = ''
+    ) -> str:
         """Note the answer to a question of a quiz."""
-        name = f'{quiz}.{number}'
-        return self._change(lesson, 'questions', name, lambda entry: _note_try(entry, right))
+
+        def change(entry: dict[str, Any]) -> None:
+            _note_try(entry, right)
+            entry['given'], entry['last'] = given[:LONGEST_ANSWER], right
+
+        return self._change(lesson, 'questions', f'{quiz}.{number}', change)
+
+    def answers(self, lesson: str, quiz: str) -> dict[int, tuple[str, bool]]:
+        """Return the last answer to each question of a quiz, and whether it was right."""
+        data, _ = self.store.read()
+        found = {}
+        for name, entry in data['lessons'].get(lesson, {}).get('questions', {}).items():
+            start, _, number = name.rpartition('.')
+            given, right = entry.get('given'), entry.get('last')
+            if (
+                start == quiz
+                and number.isdecimal()
+                and isinstance(given, str)
+                and isinstance(right, bool)
+            ):
+                found[int(number)] = (given, right)
+        return found
 
     def _change(
         self, lesson: str, kind: str, name: str, change: Callable[[dict[str, Any]], None]

@@ -53,7 +53,9 @@ class Quiz:
         if not isinstance(number, int) or not 1 <= number <= len(self):
             raise LabError(f'Questions are numbered 1 to {len(self)}, but this is {number!r}.')
         feedback = self.questions[number - 1].judge(given)
-        note = progress_store.note_answer(self.lesson, self.name, number, feedback.is_right)
+        note = progress_store.note_answer(
+            self.lesson, self.name, number, feedback.is_right, str(given)
+        )
         word, tone = ('RIGHT', 'good') if feedback.is_right else ('NOT YET', 'bad')
         rows = [*feedback.lines, ('note', note)]
         return Card(tone, word, f'question {number}', rows=rows)
@@ -75,7 +77,11 @@ class Quiz:
             with contextlib.suppress(ImportError):
                 from labkit.views.quiz import quiz_form
 
-                self._form = self._form or quiz_form(self.form_data(), self.answer)
+                self._form = self._form or quiz_form(
+                    self.form_data(),
+                    self.answer,
+                    progress_store.answers(self.lesson, self.name),
+                )
                 bundle = {**self._form.bundle(), **bundle}
         return bundle
 

@@ -6,7 +6,8 @@ A form listens to nothing, so it has no end: nothing is left behind when its pag
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 import anywidget
@@ -24,18 +25,26 @@ class QuizForm(anywidget.AnyWidget):
 
     Attributes:
         questions: For each one its text, how to answer it, kind of input and labels.
-        feedback: For each question that was answered, by number: HTML.
+        answers: For each question that was answered, by number: what was `given`, the `tone` and
+            the `word` of what is thought of it, its `rows`, and a `count` that is new each time.
     """
 
     _esm, _css = page_files('quiz')
     questions: traitlets.List[dict[str, Any]] = traitlets.List().tag(sync=True)
-    feedback: traitlets.Dict[str, str] = traitlets.Dict().tag(sync=True)
+    answers: traitlets.Dict[str, dict[str, Any]] = traitlets.Dict().tag(sync=True)
 
     def __init__(
-        self, questions: Sequence[dict[str, Any]], answer: Callable[[int, Any], Card]
+        self,
+        questions: Sequence[dict[str, Any]],
+        answer: Callable[[int, Any], Card],
+        earlier: Mapping[int, tuple[str, bool]],
     ) -> None:
         super().__init__(questions=list(questions))
         self._answer = answer
+        self._count = 0
+        for number, (given, is_right) in earlier.items():
+            tone, word = ('good', 'RIGHT') if is_right else ('bad', 'NOT YET')
+            self._show(number, given, Card(tone, f'{word}, when you answered it before', ''))
         self.on_msg(self._on_message)
 
     def _on_message(self, _: object, content: dict[str, Any], __: object) -> None:
@@ -45,26 +54,43 @@ class QuizForm(anywidget.AnyWidget):
         try:
             card = self._answer(number, given)
         except LabError as error:
-            card = Card('warn', 'NO ANSWER', error.message, text=error.todo)
+            rows = [('', error.message), ('', error.todo)]
+            card = Card('warn', 'NO ANSWER', '', rows=rows)
         except Exception as error:  # an answer that is read off the graph, which is not there
-            text = f'{type(error).__name__}: {error}'
-            card = Card('warn', 'CANNOT TELL', 'the graph could not be asked', text=text)
-        self.feedback = {**self.feedback, str(number): card._repr_html_()}
+            rows = [('', f'The graph could not be asked: {type(error).__name__}: {error}')]
+            card = Card('warn', 'CANNOT TELL', '', rows=rows)
+        self._show(number, str(given), card)
+
+    def _show(self, number: int, given: str, card: Card) -> None:
+        self._count += 1
+        answer = {
+            'given': given,
+            'tone': card.tone,
+            'word': card.word,
+            'rows': [row for row in card.rows if row[1]],
+            'count': self._count,
+        }
+        self.answers = {**self.answers, str(number): answer}
 
     def bundle(self) -> dict[str, object]:
         """Return the data that makes a notebook show the form."""
         return widget_bundle(self)
 
 
-def quiz_form(questions: Sequence[dict[str, Any]], answer: Callable[[int, Any], Card]) -> QuizForm:
+def quiz_form(
+    questions: Sequence[dict[str, Any]],
+    answer: Callable[[int, Any], Card],
+    earlier: Mapping[int, tuple[str, bool]] = MappingProxyType({}),
+) -> QuizForm:
     """Return a form.
 
     Args:
         questions: For each one `text`, `how`, `kind` (`'radio'`, `'checkbox'` or `'text'`) and
             `labels`.
         answer: Called with the number of a question, from 1, and the answer: letters, or text.
+        earlier: What was answered before, by number, and whether it was right.
 
     Returns:
         The form; `bundle()` gives what a cell shows.
     """
-    return QuizForm(questions, answer)
+    return QuizForm(questions, answer, earlier)

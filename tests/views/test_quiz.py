@@ -47,22 +47,55 @@ def test_where_a_program_runs_the_notebook_a_quiz_is_text(
     assert quiz._repr_mimebundle_() == {'text/plain': repr(quiz)}
 
 
-def test_answer_comes_back_as_escaped_html(quiz: Quiz) -> None:
+def test_answer_comes_back_with_its_reasons(quiz: Quiz) -> None:
     form = quiz_form(quiz.form_data(), quiz.answer)
     labels = quiz.questions[0].labels()
-    send(form, 1, 'ab'[labels.index('four')])
-    assert 'NOT YET' in form.feedback['1']
-    send(form, 1, 'ab'[labels.index('three')])
-    assert 'RIGHT' in form.feedback['1']
-    assert '<img' not in form.feedback['1'] and '&lt;img' in form.feedback['1']
+    four, three = ('ab'[labels.index(label)] for label in ('four', 'three'))
+    send(form, 1, four)
+    assert form.answers['1'] == {
+        'given': four,
+        'tone': 'bad',
+        'word': 'NOT YET',
+        'rows': [(four, 'Four is even.')],
+        'count': 1,
+    }
+    send(form, 1, three)
+    assert form.answers['1']['word'] == 'RIGHT'
+    # The page writes it as text: it is not escaped here.
+    assert form.answers['1']['rows'] == [(three, EVIL), (four, 'Four is even.')]
+
+
+def test_same_answer_is_news_to_the_page(quiz: Quiz) -> None:
+    form = quiz_form(quiz.form_data(), quiz.answer)
+    counts = []
+    for _ in range(2):
+        send(form, 1, 'x')
+        counts.append(form.answers['1']['count'])
+    assert counts == [1, 2]
 
 
 def test_no_answer_and_a_graph_that_cannot_be_asked_are_said(quiz: Quiz) -> None:
     form = quiz_form(quiz.form_data(), quiz.answer)
     send(form, 1, 'x')
-    assert 'must be a letter, a to b' in form.feedback['1']
+    assert form.answers['1']['tone'] == 'warn'
+    assert 'must be a letter, a to b' in str(form.answers['1']['rows'])
     send(form, 2, '3')
-    assert 'CANNOT TELL' in form.feedback['2'] and 'ZeroDivisionError' in form.feedback['2']
+    assert form.answers['2']['word'] == 'CANNOT TELL'
+    assert 'ZeroDivisionError' in str(form.answers['2']['rows'])
+
+
+def test_answers_of_an_earlier_session_come_back(quiz: Quiz) -> None:
+    quiz.lesson = 'counting'
+    quiz._repr_mimebundle_()
+    send(quiz._form, 1, 'a')
+    again = Quiz(quiz.name, *quiz.questions)
+    again.lesson = quiz.lesson
+    again._repr_mimebundle_()
+    assert set(again._form.answers) == {'1'}
+    answer = again._form.answers['1']
+    assert (answer['given'], answer['tone']) == ('a', quiz._form.answers['1']['tone'])
+    # The reasons come when it is answered anew.
+    assert answer['rows'] == []
 
 
 @pytest.mark.parametrize('content', [{}, {'number': None}, {'number': '1'}, {'number': [1]}])
@@ -72,4 +105,4 @@ def test_message_that_is_none_of_the_forms_is_ignored(content: dict[str, Any]) -
 
     form = quiz_form([], answer)
     form._handle_custom_msg(content, [])
-    assert form.feedback == {}
+    assert form.answers == {}
