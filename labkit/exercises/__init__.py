@@ -39,6 +39,8 @@ complete::
     LESSON = Lesson(
         'odds',
         '04_odds.ipynb',
+        title='Odd numbers',
+        teaches='numbers on topics, types and their limits, queues; finding a silent fault',
         exercises=[
             Exercise(
                 name='ones',

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from labkit.errors import LabError
 from labkit.exercises.attempts import progress_store
@@ -14,10 +15,14 @@ from labkit.exercises.pending import Pending, learner_task_runs
 from labkit.exercises.probe import Probe
 from labkit.exercises.recorder import Recorder
 from labkit.exercises.scope import Scope
+from labkit.exercises.standing import after
 from labkit.exercises.traces import refuse_traces
 from labkit.exercises.verdict import Fail, LearnerError, NotAttempted, Outcome, Verdict
 from labkit.exercises.watch import Watch
 from labkit.views.card import Card
+
+if TYPE_CHECKING:
+    from labkit.exercises.lesson import Lesson
 
 __all__ = ['Exercise', 'Solution', 'Style', 'Wrong', 'changed']
 
@@ -152,6 +157,7 @@ class Exercise:
 
     def __post_init__(self) -> None:
         self.lesson = ''
+        self.home: Lesson | None = None
         self.scope = Scope(
             publishes=self.publishes,
             subscribes=self.subscribes,
@@ -168,6 +174,11 @@ class Exercise:
         self._recorder = Recorder(recorded) if recorded else None
         self._hints_shown = 0
         self._before: tuple[frozenset[bytes], Verdict] | None = None
+
+    @property
+    def task_id(self) -> str:
+        """Id of the cell with the task."""
+        return f'{self.starter_id.removesuffix("-starter")}-task'
 
     def begin(self) -> None:
         """Get ready: called in the setup cell of the notebook."""
@@ -197,6 +208,8 @@ class Exercise:
     def _check(self) -> Verdict:
         verdict = self._examine()
         note = progress_store.note_check(self.lesson, self.name, verdict.outcome.value)
+        if verdict.passed and self.home is not None:
+            verdict = replace(verdict, standing=after(self, progress_store.store.read()[0]))
         return verdict if not note else verdict.with_note(note)
 
     def hint(self, number: int | None = None) -> Card:
@@ -317,7 +330,9 @@ class Exercise:
                 todo=fail.todo,
                 clause=fail.clause,
             )
-        return Verdict(Outcome.PASS, self.name, text or 'It does what the task asks for.')
+        text = text or 'It does what the task asks for.'
+        asked = tuple(clause.text for clause in self.clauses)
+        return Verdict(Outcome.PASS, self.name, text, asked=asked)
 
     def _asked(self) -> str:
         return '; '.join(clause.text for clause in self.clauses) or self.task

@@ -32,6 +32,8 @@ class Lesson:
     Args:
         name: Its name, such as `'odds'`; the module in `labkit.lessons` is called the same.
         notebook: File name of the notebook, such as `'04_odds.ipynb'`.
+        title: The heading of the notebook.
+        teaches: What one learns in it, in a few words, as in the README.
         exercises: In the order of the notebook.
         quizzes: In the order of the notebook.
         topics: Further topics that the lesson's own cells use.
@@ -44,6 +46,8 @@ class Lesson:
         name: str,
         notebook: str,
         *,
+        title: str = '',
+        teaches: str = '',
         exercises: Sequence[Exercise] = (),
         quizzes: Sequence[Quiz] = (),
         topics: Sequence[str] = (),
@@ -51,6 +55,8 @@ class Lesson:
     ) -> None:
         self.name = name
         self.notebook = notebook
+        self.title = title
+        self.teaches = teaches
         self._exercises = {exercise.name: exercise for exercise in exercises}
         self._quizzes = {quiz.name: quiz for quiz in quizzes}
         known = frozenset(topics).union(*(exercise.scope.topics for exercise in exercises))
@@ -59,6 +65,7 @@ class Lesson:
         for exercise in exercises:
             scope = exercise.scope
             exercise.lesson = name
+            exercise.home = self
             exercise.scope = replace(
                 scope,
                 known=known,
@@ -76,6 +83,12 @@ class Lesson:
         for exercise in self.exercises:
             exercise.begin()
         return self
+
+    @property
+    def heading(self) -> str:
+        """Its number and its title: `'04 Odd numbers'`."""
+        number, _, rest = self.notebook.removesuffix('.ipynb').partition('_')
+        return f'{number} {self.title or rest.replace("_", " ")}'
 
     @property
     def exercises(self) -> list[Exercise]:

@@ -8,11 +8,11 @@ import io
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
-from labkit.exercises.attempts import number_of, progress_store
+from labkit.exercises.attempts import progress_store
 from labkit.exercises.lesson import all_lessons
-from labkit.views.progress_picture import Item, Row, picture, text_form
+from labkit.exercises.standing import entries, onward, row_of
+from labkit.views.progress_picture import Row, picture, text_form
 
 __all__ = ['ProgressView', 'main', 'progress']
 
@@ -29,16 +29,18 @@ class ProgressView:
     Attributes:
         rows: One a lesson.
         note: Something about the file.
+        onward: Where to go on: pairs of a text and where it is.
     """
 
     rows: Sequence[Row]
     note: str = ''
+    onward: Sequence[tuple[str, str]] = ()
 
     def __repr__(self) -> str:
         return text_form(self.rows, self.note)
 
     def _repr_html_(self) -> str:
-        return picture(self.rows, self.note)
+        return picture(self.rows, self.note, self.onward)
 
 
 def progress() -> ProgressView:
@@ -47,11 +49,8 @@ def progress() -> ProgressView:
     aside = progress_store.store.damaged_files()
     if aside and not note:
         note = f'Damaged progress files that were kept aside: {", ".join(p.name for p in aside)}'
-    rows = []
-    for title, entries in _entries(data):
-        items = [Item(entry['kind'], entry['name'], entry['state']) for entry in entries]
-        rows.append(Row(title, items))
-    return ProgressView(rows, note)
+    rows = [row_of(lesson, data) for lesson in all_lessons()]
+    return ProgressView(rows, note, onward(data))
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -79,42 +78,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     table = io.StringIO()
     writer = csv.DictWriter(table, COLUMNS, lineterminator='\n')
     writer.writeheader()
-    for _, entries in _entries(data):
-        writer.writerows(entries)
+    for lesson in all_lessons():
+        writer.writerows(entries(lesson, data))
     # At once, so that a reader that has seen enough (`| head`) does no harm.
     print(table.getvalue(), end='')
     return 0
-
-
-def _entries(data: dict[str, Any]) -> list[tuple[str, list[dict[str, Any]]]]:
-    """Return title and table lines of each lesson, those not begun included."""
-    found = []
-    for lesson in all_lessons():
-        known = data['lessons'].get(lesson.name, {})
-        names = [('exercise', exercise.name) for exercise in lesson.exercises]
-        names += [
-            ('question', f'{quiz.name}.{number}')
-            for quiz in lesson.quizzes
-            for number in range(1, len(quiz) + 1)
-        ]
-        lines = [
-            _line(lesson.name, kind, name, known.get(f'{kind}s', {}).get(name, {}))
-            for kind, name in names
-        ]
-        found.append((lesson.notebook.removesuffix('.ipynb'), lines))
-    return found
-
-
-def _line(lesson: str, kind: str, name: str, entry: dict[str, Any]) -> dict[str, Any]:
-    passed, tries = entry.get('passed_at', ''), number_of(entry.get('tries'))
-    return {
-        'lesson': lesson,
-        'kind': kind,
-        'name': name,
-        'state': 'done' if passed else 'tried' if tries else 'open',
-        'tries': tries,
-        'hints': number_of(entry.get('hints')),
-        'solution_shown': 'yes' if entry.get('solution') is True else 'no',
-        'first_try': entry.get('first_try', ''),
-        'passed_at': passed,
-    }

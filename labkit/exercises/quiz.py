@@ -25,10 +25,12 @@ class Quiz:
     Args:
         name: Its name, for `lesson.quiz('name')` and for the progress.
         questions: The questions, in their order.
+        cell_id: Id of the notebook cell that shows it.
     """
 
-    def __init__(self, name: str, *questions: Question) -> None:
+    def __init__(self, name: str, *questions: Question, cell_id: str = 'quiz') -> None:
         self.name = name
+        self.cell_id = cell_id
         self.questions = questions
         self.lesson = ''
         self._form: Any = None

@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import dataclasses
 import enum
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from labkit.views.card import Card
+from labkit.views.passed import PassedCard
+from labkit.views.progress_picture import Row
 
 __all__ = ['Fail', 'LearnerError', 'NotAttempted', 'Outcome', 'Verdict']
 
@@ -51,6 +54,8 @@ class Verdict:
         trace: The learner's lines of a traceback, and the message of the error.
         note: Something beside the point, such as a progress file that can't be written.
         clause: What of the task is not fulfilled, in its words; `''` if no clause says so.
+        asked: What the task asks for, clause by clause, where all of it is fulfilled.
+        standing: The lesson, and what comes next, where that is known.
     """
 
     outcome: Outcome
@@ -63,6 +68,8 @@ class Verdict:
     trace: str = ''
     note: str = ''
     clause: str = ''
+    asked: Sequence[str] = ()
+    standing: tuple[Row, Sequence[tuple[str, str]]] | None = None
 
     @property
     def passed(self) -> bool:
@@ -85,15 +92,12 @@ class Verdict:
                 ('Note', self.note),
             )
         ]
-        word, tone = self.outcome.value, _TONES[self.outcome]
-        return Card(
-            tone,
-            word,
-            self.name,
-            text=_bounded(self.text),
-            rows=rows,
-            code=_bounded(self.trace, 4 * LONGEST),
-        )
+        word, tone, text = self.outcome.value, _TONES[self.outcome], _bounded(self.text)
+        if self.passed:
+            row, onward = self.standing or (Row('', ()), ())
+            exercises = row.of_kind('exercise')
+            return PassedCard(tone, word, self.name, text, rows, '', self.asked, exercises, onward)
+        return Card(tone, word, self.name, text, rows, _bounded(self.trace, 4 * LONGEST))
 
     def __repr__(self) -> str:
         return repr(self._card())

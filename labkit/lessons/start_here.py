@@ -201,6 +201,8 @@ _QUIZ = Quiz(
 LESSON = Lesson(
     'start_here',
     '00_start_here.ipynb',
+    title='Start here',
+    teaches='how a lesson works; your first message',
     exercises=[first_node],
     quizzes=[_QUIZ],
     topics=['/greetings'],

@@ -1,7 +1,7 @@
-"""The picture of a learner's progress: one line a lesson, one square an exercise or question.
+"""The picture of a learner's progress: one line a lesson, one mark an exercise.
 
-A square says by its sign, not only by its colour, whether it is done, tried or open. The same
-stands in the picture's text alternative and in a table under it.
+A mark says by its sign, not only by its colour, whether an exercise is done, tried or open, and
+leads to it. The same stands in text for those who do not see it.
 """
 
 from __future__ import annotations
@@ -10,19 +10,27 @@ import html
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-__all__ = ['Item', 'Row', 'picture', 'text_form']
+__all__ = ['Item', 'Row', 'link', 'marks', 'percent', 'picture', 'text_form']
 
 # state -> (sign, colour, word)
-_STATES = {
+STATES = {
     'done': ('✔', 'var(--jp-success-color1, #2e7d32)', 'done'),
     'tried': ('…', 'var(--jp-warn-color1, #ef6c00)', 'tried'),
-    'open': ('', 'var(--jp-border-color1, #9e9e9e)', 'open'),
+    'open': ('○', 'var(--jp-border-color1, #9e9e9e)', 'open'),
 }
-_SIDE = 18
-_GAP = 4
-_LINE = 30
-_LEFT = 190
-_PER_LINE = 24
+_FONT = 'color:var(--jp-content-font-color1, inherit)'
+_LINK = 'color:var(--jp-content-link-color, inherit)'
+_MARK = (
+    'display:inline-block;border:1px solid {colour};border-radius:0.8em;padding:0 0.6em;'
+    'margin:0.15em 0.3em 0.15em 0;white-space:nowrap;text-decoration:none;'
+    f'{_FONT}'
+)
+_CELL = 'padding:0.4em 1.2em 0.4em 0;text-align:left;vertical-align:baseline;{more}'
+_BAR = (
+    'display:inline-block;box-sizing:border-box;width:{width}em;height:0.7em;'
+    'border:1px solid var(--jp-border-color1, #9e9e9e);border-radius:0.35em;overflow:hidden'
+)
+_DONE = 'display:block;width:{part}%;height:100%;background:var(--jp-success-color1, #2e7d32)'
 
 
 @dataclass(frozen=True)
@@ -33,11 +41,13 @@ class Item:
         kind: `'exercise'` or `'question'`.
         name: Its name.
         state: `'done'`, `'tried'` or `'open'`.
+        href: Where it is, `''` if that is not known.
     """
 
     kind: str
     name: str
     state: str
+    href: str = ''
 
 
 @dataclass(frozen=True)
@@ -47,89 +57,133 @@ class Row:
     Attributes:
         title: Its name.
         items: What it asks for.
+        href: Where it is, `''` if that is not known.
+        teaches: What one learns in it.
     """
 
     title: str
     items: Sequence[Item]
+    href: str = ''
+    teaches: str = ''
 
     def counts(self) -> str:
         """Return how much is done, in words: `'1 of 3 exercises, 0 of 8 questions'`."""
         return ', '.join(
-            f'{sum(item.state == "done" for item in group)} of {len(group)} {kind}'
-            + 's' * (len(group) != 1)
+            f'{_done(group)} of {len(group)} {kind}' + 's' * (len(group) != 1)
             for kind, group in self.groups()
         )
 
     def groups(self) -> list[tuple[str, list[Item]]]:
         """Return the items by kind; kinds that do not occur are left out."""
         kinds = ('exercise', 'question')
-        found = [(kind, [item for item in self.items if item.kind == kind]) for kind in kinds]
+        found = [(kind, self.of_kind(kind)) for kind in kinds]
         return [(kind, group) for kind, group in found if group]
+
+    def of_kind(self, kind: str) -> list[Item]:
+        """Return the items of one kind."""
+        return [item for item in self.items if item.kind == kind]
+
+
+def percent(items: Sequence[Item]) -> int:
+    """Return how much is done, in percent: 100 only if it is all."""
+    return 100 * _done(items) // max(len(items), 1)
 
 
 def text_form(rows: Sequence[Row], note: str = '') -> str:
     """Return progress as lines of text."""
-    everything = Row('', [item for row in rows for item in row.items])
-    lines = [f'Progress: {everything.counts() or "no exercises here"} done']
+    everything = _everything(rows)
+    share = f', {percent(everything.items)} %' if everything.items else ''
+    lines = [f'Progress: {everything.counts() or "no exercises here"} done{share}']
     width = max((len(row.title) for row in rows), default=0)
     for row in rows:
         lines.append(f'  {row.title:<{width}}  {row.counts()}')
         if all(item.state == 'open' for item in row.items):
             continue
-        for item in row.items:
-            if item.kind == 'exercise':
-                lines.append(f'    {item.state:<5}  {item.name}')
+        for item in row.of_kind('exercise'):
+            lines.append(f'    {item.state:<5}  {item.name}')
     return '\n'.join([*lines, *filter(None, [note])])
 
 
-def picture(rows: Sequence[Row], note: str = '') -> str:
-    """Return progress as HTML: a picture, its text alternative, a table to unfold."""
-    parts, top = [], _GAP
-    for row in rows:
-        drawn, height = _draw(row, top)
-        parts.append(drawn)
-        top += height
-    width = _LEFT + _PER_LINE * (_SIDE + _GAP) + _GAP
-    summary = html.escape(text_form(rows).replace('\n', '; '))
-    svg = (
-        f'<svg role="img" aria-label="{summary}" viewBox="0 0 {width} {top}" '
-        f'width="{width}" style="max-width:100%;color:var(--jp-content-font-color1, inherit)" '
-        f'xmlns="http://www.w3.org/2000/svg">{"".join(parts)}</svg>'
-    )
-    legend = '✔ done, … tried, empty: open. Squares: exercises. Circles: quiz questions.'
-    return (
-        f'<div>{svg}<div>{legend}</div>'
-        + (f'<div role="status">{html.escape(note)}</div>' if note else '')
-        + '<details><summary>The same as text</summary>'
-        f'<pre>{html.escape(text_form(rows))}</pre></details></div>'
-    )
+def picture(rows: Sequence[Row], note: str = '', onward: Sequence[tuple[str, str]] = ()) -> str:
+    """Return progress as HTML: what is done of all lessons, and of each of them.
 
-
-def _draw(row: Row, top: int) -> tuple[str, int]:
-    """Return the drawing of one lesson, and its height in pixels."""
+    Args:
+        rows: The lessons.
+        note: Something beside the point.
+        onward: What comes next: pairs of a text and where it is.
+    """
+    everything = _everything(rows)
+    share = percent(everything.items)
     parts = [
-        f'<text x="0" y="{top + 14}" font-size="13" fill="currentColor">'
-        f'{html.escape(row.title)}</text>'
+        f'<div style="{_FONT};max-width:80em">',
+        f'<p style="margin:0 0 0.6em">{_bar(share, 12)} <strong>{share} %</strong> '
+        f'{everything.counts() or "no exercises here"} done</p>',
+        *(f'<p style="margin:0 0 0.6em">Go on: {link(*place)}</p>' for place in onward),
+        '<table style="border-collapse:collapse;font-size:inherit;margin:0">',
+        '<thead><tr>',
+        *(
+            f'<th scope="col" style="{_CELL.format(more="font-weight:bold")}">{name}</th>'
+            for name in ('Lesson', 'Done', 'Exercises', 'Quiz')
+        ),
+        '</tr></thead><tbody>',
+        *map(_line, rows),
+        '</tbody></table>',
+        '<p style="margin:0.6em 0 0">✔ done, … tried, ○ open.</p>',
     ]
-    line = 0
-    for _, group in row.groups():
-        for position, item in enumerate(group):
-            x = _LEFT + position % _PER_LINE * (_SIDE + _GAP)
-            y = top + (line + position // _PER_LINE) * (_SIDE + _GAP)
-            parts.append(_draw_item(item, x, y))
-        line += (len(group) - 1) // _PER_LINE + 1
-    return ''.join(parts), max(line, 1) * (_SIDE + _GAP) + _LINE - _SIDE - _GAP
+    if note:
+        parts.append(f'<p role="status" style="margin:0.6em 0 0">{html.escape(note)}</p>')
+    return '\n'.join([*parts, '</div>'])
 
 
-def _draw_item(item: Item, x: int, y: int) -> str:
-    sign, colour, word = _STATES[item.state]
-    radius = 2 if item.kind == 'exercise' else _SIDE // 2
-    # The colour is that of the edge: the sign is drawn in the colour of text, on the page's own
-    # background, so that it can be read in any theme.
+def marks(items: Sequence[Item]) -> str:
+    """Return a mark for each item as HTML: its sign, its name, and a link to it."""
+    return ' '.join(map(_mark, items))
+
+
+def link(text: str, href: str) -> str:
+    """Return a link as HTML; only the text, if it leads nowhere."""
+    if not href:
+        return html.escape(text)
+    return f'<a href="{html.escape(href)}" style="{_LINK}">{html.escape(text)}</a>'
+
+
+def _line(row: Row) -> str:
+    share, questions = percent(row.items), row.of_kind('question')
+    quiz = f'{_done(questions)} of {len(questions)}' if questions else ''
+    cells = [
+        f'{_bar(share, 4)} {share} %',
+        marks(row.of_kind('exercise')),
+        quiz,
+    ]
+    tight = _CELL.format(more='white-space:nowrap')
+    start = f'<th scope="row" style="{_CELL.format(more="font-weight:normal")}">'
     return (
-        f'<g><title>{html.escape(f"{item.kind} {item.name}: {word}")}</title>'
-        f'<rect x="{x + 1}" y="{y + 1}" width="{_SIDE - 2}" height="{_SIDE - 2}" rx="{radius}" '
-        f'fill="transparent" stroke="{colour}" stroke-width="2"/>'
-        f'<text x="{x + _SIDE / 2}" y="{y + 13}" font-size="12" text-anchor="middle" '
-        f'fill="currentColor">{sign}</text></g>'
+        f'<tr style="background:none">{start}{link(row.title, row.href)}</th>'
+        f'<td style="{tight}">{cells[0]}</td>'
+        f'<td style="{_CELL.format(more="")}">{cells[1]}</td>'
+        f'<td style="{tight}">{cells[2]}</td></tr>'
     )
+
+
+def _mark(item: Item) -> str:
+    sign, colour, word = STATES[item.state]
+    text = f'<span aria-hidden="true">{sign}</span> {html.escape(item.name)}'
+    label = html.escape(f'{item.kind} {item.name}: {word}')
+    # The colour is that of the edge: what is written can be read in any theme.
+    style = f'style="{_MARK.format(colour=colour)}" title="{label}"'
+    if not item.href:
+        return f'<span role="img" aria-label="{label}" {style}>{text}</span>'
+    return f'<a href="{html.escape(item.href)}" aria-label="{label}" {style}>{text}</a>'
+
+
+def _bar(share: int, width: int) -> str:
+    done = f'<span style="{_DONE.format(part=share)}"></span>'
+    return f'<span aria-hidden="true" style="{_BAR.format(width=width)}">{done}</span>'
+
+
+def _everything(rows: Sequence[Row]) -> Row:
+    return Row('', [item for row in rows for item in row.items])
+
+
+def _done(items: Sequence[Item]) -> int:
+    return sum(item.state == 'done' for item in items)

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from labkit.exercises import progress as module
+from labkit.exercises import lesson as lesson_module
+from labkit.exercises import progress as progress_module
 from labkit.exercises.attempts import progress_store
 from labkit.exercises.exercise import Exercise, Solution
 from labkit.exercises.lesson import Lesson
@@ -32,7 +33,8 @@ def lesson(monkeypatch: pytest.MonkeyPatch) -> Lesson:
     found = Lesson(
         'odds', '04_odds.ipynb', exercises=[exercise('one'), exercise('two')], quizzes=[quiz]
     )
-    monkeypatch.setattr(module, 'all_lessons', lambda: [found])
+    for module in (progress_module, lesson_module):
+        monkeypatch.setattr(module, 'all_lessons', lambda: [found])
     return found
 
 
@@ -40,11 +42,11 @@ def test_picture_and_text_say_what_is_done_and_tried(lesson: Lesson) -> None:
     progress_store.note_check('odds', 'one', 'PASS')
     progress_store.note_check('odds', 'two', 'FAIL')
     shown = progress()
-    assert '04_odds  1 of 2 exercises, 0 of 1 question' in repr(shown)
+    assert '04 odds  1 of 2 exercises, 0 of 1 question' in repr(shown)
     assert '    done   one' in repr(shown) and '    tried  two' in repr(shown)
     html = shown._repr_html_()
-    assert 'role="img" aria-label="Progress: 1 of 2 exercises' in html
-    assert 'exercise one: done' in html and 'question types.1: open' in html
+    assert '<strong>33 %</strong> 1 of 2 exercises, 0 of 1 question done' in html
+    assert 'exercise one: done' in html and '0 of 1</td>' in html
 
 
 def test_csv_has_a_line_for_everything(lesson: Lesson, capsys: pytest.CaptureFixture[str]) -> None:
@@ -63,7 +65,9 @@ def test_csv_has_a_line_for_everything(lesson: Lesson, capsys: pytest.CaptureFix
 
 def test_command_shows_text(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([]) == 0
-    assert capsys.readouterr().out.startswith('Progress: 0 of 2 exercises, 0 of 1 question done')
+    assert capsys.readouterr().out.startswith(
+        'Progress: 0 of 2 exercises, 0 of 1 question done, 0 %'
+    )
 
 
 def test_damaged_file_is_said_from_then_on(home: Path) -> None:

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import re
 from html.parser import HTMLParser
+from typing import Any
 
 import pytest
 
@@ -69,7 +70,7 @@ def test_colours_are_those_of_the_theme_with_a_fallback() -> None:
 
 @pytest.mark.parametrize('part', ['name', 'text', 'expected', 'seen', 'why', 'todo', 'trace'])
 def test_everything_is_escaped(part: str) -> None:
-    fields = {'name': 'x', part: EVIL}
+    fields: dict[str, Any] = {'name': 'x', part: EVIL}
     page = Page(Verdict(Outcome.ERROR, **fields)._repr_html_())
     assert {'script', 'img'}.isdisjoint(page.tags)
     assert EVIL in page.text

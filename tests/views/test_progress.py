@@ -2,39 +2,92 @@ from __future__ import annotations
 
 from xml.etree import ElementTree
 
-from labkit.views.progress_picture import Item, Row, picture, text_form
+import pytest
+
+from labkit.views.passed import PassedCard
+from labkit.views.progress_picture import Item, Row, percent, picture, text_form
 
 ROWS = [
-    Row('01_a & b', [Item('exercise', '<one>', 'done'), Item('question', 'q.1', 'tried')]),
-    Row('02_long', [Item('question', f'q.{n}', 'open') for n in range(60)]),
-    Row('03_empty', []),
+    Row(
+        '01 a & b',
+        [
+            Item('exercise', '<one>', 'done', '01_a.ipynb#cell-id=<one>'),
+            Item('question', 'q.1', 'tried'),
+        ],
+        '01_a.ipynb',
+    ),
+    Row('02 long', [Item('question', f'q.{n}', 'open') for n in range(60)]),
+    Row('03 empty', []),
 ]
 
 
-def test_picture_is_well_formed_and_escaped() -> None:
+def page_of(html: str) -> ElementTree.Element:
     # No bare `&` or `<` from a name: an XML parser would refuse it.
-    root = ElementTree.fromstring(picture(ROWS, '<note>'))
-    texts = ''.join(root.itertext())
-    assert '01_a & b' in texts and 'exercise <one>: done' in texts and '<note>' in texts
+    return ElementTree.fromstring(html)
 
 
-def test_every_square_is_inside_the_picture_and_has_a_sign() -> None:
-    svg = ElementTree.fromstring(picture(ROWS)).find('{http://www.w3.org/2000/svg}svg')
-    assert svg is not None
-    _, _, width, height = map(float, svg.attrib['viewBox'].split())
-    squares = svg.findall('.//{http://www.w3.org/2000/svg}rect')
-    assert len(squares) == 62
-    for square in squares:
-        assert float(square.attrib['x']) + float(square.attrib['width']) <= width
-        assert float(square.attrib['y']) + float(square.attrib['height']) <= height
-    assert '✔' in ''.join(svg.itertext()) and '…' in ''.join(svg.itertext())
+def test_picture_is_well_formed_and_escaped() -> None:
+    page = page_of(picture(ROWS, '<note>', [('02 long, <x>', '02_long.ipynb')]))
+    text = ''.join(page.itertext())
+    assert '01 a & b' in text and '✔ <one>' in text and '<note>' in text
+    links = {''.join(a.itertext()): a.attrib['href'] for a in page.iter('a')}
+    assert links == {
+        '01 a & b': '01_a.ipynb',
+        '✔ <one>': '01_a.ipynb#cell-id=<one>',
+        '02 long, <x>': '02_long.ipynb',
+    }
+
+
+def test_mark_says_its_state_in_words() -> None:
+    page = page_of(picture(ROWS))
+    labels = [element.attrib.get('aria-label') for element in page.iter('a')]
+    assert 'exercise <one>: done' in labels
+
+
+def test_each_lesson_has_a_line_with_its_share() -> None:
+    lines = list(page_of(picture(ROWS)).iter('tr'))[1:]
+    cells = [[' '.join(''.join(c.itertext()).split()) for c in line] for line in lines]
+    assert cells == [
+        ['01 a & b', '50 %', '✔ <one>', '0 of 1'],
+        ['02 long', '0 %', '', '0 of 60'],
+        ['03 empty', '0 %', '', ''],
+    ]
+
+
+@pytest.mark.parametrize(
+    ('done', 'count', 'share'), [(0, 0, 0), (0, 3, 0), (1, 3, 33), (199, 200, 99), (3, 3, 100)]
+)
+def test_all_is_said_only_of_all(done: int, count: int, share: int) -> None:
+    states = ['done'] * done + ['tried'] * (count - done)
+    assert percent([Item('exercise', 'x', state) for state in states]) == share
 
 
 def test_text_form_counts() -> None:
     assert text_form(ROWS).splitlines() == [
-        'Progress: 1 of 1 exercise, 0 of 61 questions done',
-        '  01_a & b  1 of 1 exercise, 0 of 1 question',
+        'Progress: 1 of 1 exercise, 0 of 61 questions done, 1 %',
+        '  01 a & b  1 of 1 exercise, 0 of 1 question',
         '    done   <one>',
-        '  02_long   0 of 60 questions',
-        '  03_empty  ',
+        '  02 long   0 of 60 questions',
+        '  03 empty  ',
     ]
+
+
+def test_card_of_a_solved_exercise() -> None:
+    items = [Item('exercise', 'one', 'done', 'x#1'), Item('exercise', 'two', 'open', 'x#2')]
+    card = PassedCard(
+        'good',
+        'PASS',
+        'one',
+        'Seen <it>.',
+        asked=['publish `Int16`', '<b>'],
+        exercises=items,
+        onward=[('Next: two', 'x#2')],
+    )
+    assert repr(card) == 'PASS: one\n  Seen <it>.'
+    page = page_of(card._repr_html_().replace('<br>', '<br/>'))
+    text = ' '.join(''.join(page.itertext()).split())
+    assert text.startswith('✔ PASS: one')
+    assert 'Task✔ publish Int16✔ <b>' in text and 'SeenSeen <it>.' in text
+    assert '✔ one ○ two 1 of 2 exercises of this lesson' in text
+    hrefs = [a.attrib['href'] for a in page.iter('a')]
+    assert hrefs == ['x#1', 'x#2', 'x#2']

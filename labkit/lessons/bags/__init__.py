@@ -13,6 +13,11 @@ __all__ = ['LESSON']
 LESSON = Lesson(
     'bags',
     '10_bags.ipynb',
+    title='Bags',
+    teaches=(
+        'record a drive, look inside, plot it, play it back; a node can not tell a bag '
+        'from a robot'
+    ),
     exercises=[one_topic, distance, half_speed],
     quizzes=[QUIZ],
     topics=[

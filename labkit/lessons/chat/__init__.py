@@ -14,6 +14,11 @@ __all__ = ['LESSON']
 LESSON = Lesson(
     'chat',
     '06_chat.ipynb',
+    title='Chat',
+    teaches=(
+        "typed text, everybody's messages; share one topic with other computers; replies "
+        'without an end'
+    ),
     exercises=[teller, hearer, greeter, polite],
     quizzes=[QUIZ],
     topics=['/shared_chatter', '/heard_next_door'],

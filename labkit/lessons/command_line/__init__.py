@@ -14,6 +14,10 @@ __all__ = ['LESSON']
 LESSON = Lesson(
     'command_line',
     '03_command_line.ipynb',
+    title='The command line',
+    teaches=(
+        '`ros2` topics, nodes, messages and parameters from the command line; ROS 1 in ROS 2 words'
+    ),
     exercises=[odds, drive],
     quizzes=[HARBOUR, QUIZ],
     topics=['/chatter', '/limit', '/turtle/cmd_vel', *TOPICS],

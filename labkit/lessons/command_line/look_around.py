@@ -278,4 +278,5 @@ HARBOUR = Quiz(
         explain=_no_service_type,
         form=spelling.type_name('srv'),
     ),
+    cell_id='look-around',
 )

@@ -14,6 +14,11 @@ __all__ = ['LESSON']
 LESSON = Lesson(
     'interfaces_and_actions',
     '12_interfaces_and_actions.ipynb',
+    title='Interfaces and actions',
+    teaches=(
+        'work that takes long: goal, feedback, result, cancel; types of your own, built '
+        'by colcon (this part needs a C++ compiler)'
+    ),
     exercises=[squares, stairs, countdown, asker],
     quizzes=[QUIZ],
     topics=['/odom', '/scan', '/joint_states', '/imu', '/battery_state', '/cmd_vel'],

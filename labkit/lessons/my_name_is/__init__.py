@@ -14,6 +14,8 @@ __all__ = ['LESSON']
 LESSON = Lesson(
     'my_name_is',
     '05_my_name_is.ipynb',
+    title='My name is',
+    teaches='a chain of nodes, in one process and in several',
     exercises=[two_stages, own_process, third_stage, two_names],
     quizzes=[QUIZ],
     topics=['/celsius', '/fahrenheit'],

@@ -16,6 +16,8 @@ __all__ = ['LESSON']
 LESSON = Lesson(
     'odds',
     '04_odds.ipynb',
+    title='Odd numbers',
+    teaches='numbers on topics, types and their limits, queues; finding a silent fault',
     exercises=[ones, count_up, stay_within, evens, find_gate],
     quizzes=[QUIZ],
     topics=['/high', '/burst', GOALS, VISITORS],

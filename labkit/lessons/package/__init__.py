@@ -14,6 +14,11 @@ __all__ = ['LESSON']
 LESSON = Lesson(
     'package',
     '11_package.ipynb',
+    title='From notebook to package',
+    teaches=(
+        'make a package, build it with colcon, run it from a terminal, break and repair '
+        'it; turn the class of a notebook into a package'
+    ),
     exercises=[listener, repair, counter, beacon],
     quizzes=[QUIZ],
     topics=['/chatter', '/count', '/half', '/lit', '/news'],

@@ -17,6 +17,11 @@ __all__ = ['LESSON']
 LESSON = Lesson(
     'quality_of_service',
     '08_quality_of_service.ipynb',
+    title='Quality of service',
+    teaches=(
+        'depth, reliability, durability, lifespan, deadline; two ends that do not match, '
+        'and where ROS tells'
+    ),
     exercises=[site, watchdog, millimetres, door],
     quizzes=[QUIZ],
     topics=['/frames', *TOPICS, '/numbers', '/fresh', '/kept', '/beat'],

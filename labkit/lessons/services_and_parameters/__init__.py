@@ -14,6 +14,11 @@ __all__ = ['LESSON']
 LESSON = Lesson(
     'services_and_parameters',
     '09_services_and_parameters.ipynb',
+    title='Services and parameters',
+    teaches=(
+        'ask and answer, a callback that waits for itself; settings of a running node, '
+        'and refusing bad ones'
+    ),
     exercises=[lamp, porter, metronome, pilot],
     quizzes=[QUIZ],
     topics=['/odom', '/scan', '/joint_states', '/imu', '/battery_state', '/knock'],

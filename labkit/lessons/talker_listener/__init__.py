@@ -14,6 +14,8 @@ __all__ = ['LESSON']
 LESSON = Lesson(
     'talker_listener',
     '02_talker_listener.ipynb',
+    title='Talker and listener',
+    teaches='publishers, subscribers, timers, the logger; why spin',
     exercises=[four_a_second, every_two_seconds, hear_chatter, say_once],
     quizzes=[QUIZ],
     topics=['/mail', '/stamped', '/news'],

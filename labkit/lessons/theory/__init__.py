@@ -12,6 +12,8 @@ __all__ = ['LESSON']
 LESSON = Lesson(
     'theory',
     '01_theory.ipynb',
+    title='What ROS is',
+    teaches='the words and pictures of ROS; ROS 1 and ROS 2',
     exercises=[ears, mouth],
     quizzes=[QUIZ],
     topics=['/sight', '/move'],

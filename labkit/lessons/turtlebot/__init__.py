@@ -15,6 +15,8 @@ __all__ = ['LESSON']
 LESSON = Lesson(
     'turtlebot',
     '07_turtlebot.ipynb',
+    title='The turtlebot',
+    teaches='a robot on real topics: drive it, read its odometry, write its controller',
     exercises=[stop, bot, wall, go_to, square],
     quizzes=[QUIZ],
     topics=['/scan', '/joint_states', '/imu', '/battery_state'],

@@ -1,0 +1,34 @@
+"""What leads a learner on: PASS to the next exercise, progress to any lesson, without a kernel."""
+
+from __future__ import annotations
+
+from playwright.sync_api import expect
+
+OPEN = "() => window.jupyterapp.shell.currentWidget?.context?.path ?? ''"
+
+
+def test_pass_leads_to_the_next_exercise_and_progress_to_any_lesson(open_lesson):
+    notebook = open_lesson('04_odds')
+    page = notebook.page
+    notebook.run_cell('setup')
+    notebook.replace_cell('ones-starter', 'exec(lesson.ones.answer.code)')
+    notebook.run_cell('ones-starter')
+    notebook.replace_cell('ones-help', 'lab.progress()')
+    notebook.run_cell('ones-help')
+    notebook.run_cell('ones-check')
+    card = notebook.output('ones-check')
+    expect(card).to_contain_text('✔ the number is always 1')
+    expect(card.get_by_role('link', name='exercise ones: done')).to_be_visible()
+    next_task = page.get_by_role('heading', name='Exercise 2: odd numbers')
+    page.keyboard.press('Escape')
+    onward = card.get_by_role('link', name='Next: count_up')
+    onward.focus()
+    notebook.page.keyboard.press('Enter')
+    expect(next_task).to_be_in_viewport()
+    shown = notebook.output('ones-help')
+    expect(shown.get_by_role('rowheader')).to_have_count(13)
+    expect(shown.get_by_role('link', name='exercise first_node: open')).to_be_visible()
+    shown.get_by_role('link', name='05 My name is').click()
+    page.wait_for_function(f"({OPEN})() === '05_my_name_is.ipynb'")
+    page.evaluate('() => window.jupyterapp.shell.currentWidget.close()')
+    notebook.execute('docmanager:open', path='04_odds.ipynb')
