@@ -38,7 +38,7 @@ FLOORS = {
 # Rooms, and one module, in which all that is loaded may need rclpy.
 WITH_ROS = ('labkit.rosgraph', 'labkit.background', 'labkit.bags', 'labkit.sim.turtlebot')
 WITHOUT_ROS = ('labkit.errors', 'labkit.files', 'labkit.settings', 'labkit.setup')
-VIEWS_ONLY = ('anywidget', 'ipywidgets', 'matplotlib')
+VIEWS_ONLY = ('anywidget', 'ipywidgets', 'matplotlib', 'pygments')
 # What `python3 -m labkit` needs before there is an environment.
 BARE = (
     *('labkit', 'labkit.__main__', 'labkit.checkup.report', 'labkit.errors', 'labkit.settings'),

@@ -20,6 +20,7 @@ from labkit.exercises.traces import refuse_traces
 from labkit.exercises.verdict import Fail, LearnerError, NotAttempted, Outcome, Verdict
 from labkit.exercises.watch import Watch
 from labkit.views.card import Card
+from labkit.views.solution import SolutionCard
 
 if TYPE_CHECKING:
     from labkit.exercises.lesson import Lesson
@@ -235,7 +236,8 @@ class Exercise:
         last_cell.asked()
         progress_store.note_solution(self.lesson, self.name)
         text = f'{self.answer.reason}\nYours may look different: what counts is what it does.'
-        return Card('info', 'SOLUTION', self.name, text=text, code=self.answer.code.strip())
+        code = self.answer.code.strip()
+        return SolutionCard('info', 'SOLUTION', self.name, text=text, code=code)
 
     def __dir__(self) -> list[str]:
         # What the tab key offers: the rest is for those who write lessons.

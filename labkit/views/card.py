@@ -12,7 +12,7 @@ import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-__all__ = ['Card', 'rich']
+__all__ = ['CODE_STYLE', 'Card', 'rich']
 
 # tone -> (sign, colour of the edge)
 _TONES = {
@@ -32,7 +32,7 @@ _ROWS = 'display:grid;grid-template-columns:max-content 1fr;gap:0.2em 1em;margin
 _LABEL = 'font-weight:bold;float:none;width:auto;white-space:nowrap'
 # Spaces are shown as they are: one too many may be the mistake.
 _TEXT = 'margin:0;padding:0;overflow-wrap:anywhere;white-space:break-spaces'
-_CODE = (
+CODE_STYLE = (
     'margin:0.5em 0 0;padding:0.5em;overflow-x:auto;white-space:pre;'
     'border:1px solid var(--jp-border-color2, #9e9e9e)'
 )
@@ -97,7 +97,7 @@ class Card:
         if self.code:
             # Reachable by keyboard, because a wide one scrolls.
             parts.append(
-                f'<pre tabindex="0" style="{_CODE}">{html.escape(self.code.rstrip())}</pre>'
+                f'<pre tabindex="0" style="{CODE_STYLE}">{html.escape(self.code.rstrip())}</pre>'
             )
         return '\n'.join([*parts, '</div>'])
 

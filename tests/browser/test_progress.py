@@ -32,3 +32,20 @@ def test_pass_leads_to_the_next_exercise_and_progress_to_any_lesson(open_lesson)
     page.wait_for_function(f"({OPEN})() === '05_my_name_is.ipynb'")
     page.evaluate('() => window.jupyterapp.shell.currentWidget.close()')
     notebook.execute('docmanager:open', path='04_odds.ipynb')
+
+
+def test_solution_is_copied_without_a_kernel(open_cells, browser):
+    browser.grant_permissions(['clipboard-read', 'clipboard-write'])
+    setup = "import labkit as lab\nlesson = lab.lesson('odds')"
+    notebook = open_cells(setup=setup, solution='lesson.ones.solution()')
+    for cell_id in ('setup', 'solution'):
+        notebook.run_cell(cell_id)
+    page = notebook.page
+    page.evaluate('() => window.jupyterapp.serviceManager.sessions.shutdownAll()')
+    output = notebook.output('solution')
+    output.get_by_role('button', name='Copy').focus()
+    page.keyboard.press('Enter')
+    expect(output.get_by_text('Copied.')).to_be_visible()
+    copied = page.evaluate('() => navigator.clipboard.readText()')
+    assert copied == output.locator('pre').text_content()
+    assert 'class Ones(Node):' in copied
