@@ -128,4 +128,5 @@ def __dir__() -> list[str]:
 
 prepare_environment()
 if 'IPython' in sys.modules:
-    importlib.import_module('labkit.ros2.magic').register()
+    for _home in ('labkit.ros2.magic', 'labkit.views.node_card'):
+        importlib.import_module(_home).register()

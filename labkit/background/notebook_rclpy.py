@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from labkit.background.executor import BackgroundExecutor
     from labkit.background.nodes import NodeEntry
 
-__all__ = ['ORIGINALS', 'Background', 'install', 'uninstall']
+__all__ = ['ORIGINALS', 'Background', 'install', 'is_installed', 'uninstall']
 
 # Python runs the handler of the stop button only between two waits in C.
 SLICE_SEC = 0.1
@@ -130,12 +130,17 @@ def install(background: Background) -> None:
     Args:
         background: Runs the nodes that they are called with.
     """
-    if rclpy.init is not ORIGINALS['init']:
+    if is_installed():
         return
     made.follow()
     safe = _NotebookSafe(background)
     for owner, name, stand_in in REPLACED:
         setattr(owner, name, _replacement(ORIGINALS[stand_in], getattr(safe, stand_in)))
+
+
+def is_installed() -> bool:
+    """Tell whether the notebook-safe functions are in place."""
+    return rclpy.init is not ORIGINALS['init']
 
 
 def uninstall() -> None:
