@@ -11,14 +11,17 @@ import math
 import time
 from collections import deque
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from labkit.errors import LabError
+from labkit.sim.kinematics import BURGER, Pose, wrap_angle
 from labkit.views.arena_picture import Scene, to_svg
 from labkit.views.feed import Feed, heard
 from labkit.views.live import helper
 from labkit.views.live_page import LivePage, News
-from labkit.views.robot_messages import beam_ends, motion_of, nearest_of
+from labkit.views.robot_messages import beam_ends, motion_of, nearest_of, scanner_place
 
 if TYPE_CHECKING:
     from nav_msgs.msg import Odometry
@@ -31,6 +34,13 @@ WORDS_SEC = 1.0
 # A point of the trail, m from the one before. A longer way at once is none that was driven.
 TRAIL_STEP, JUMP = 0.01, 0.5
 TRAIL_LENGTH = 5000
+# The robot touches what is so near to it, m: the scanner's noise, and what it moves in a round.
+TOUCH = 0.015
+# It was stopped by that if it is ahead by this angle or less, rad.
+AHEAD = math.radians(80)
+# Walls are remembered at one point of each square of this size, m.
+SQUARE = 0.02
+MOST_MET = 20_000
 # How long a picture waits for the first message of a topic that somebody publishes, s.
 FIRST_SEC = 1.0
 
@@ -45,7 +55,8 @@ class Arena(LivePage):
     """
 
     _name = 'arena'
-    _period = 1 / 30
+    # Often enough: the page lets the robot glide from one place to the next.
+    _period = 1 / 15
 
     def __init__(
         self, *, odom: str, scan: str, namespace: str, goals: Iterable[tuple[float, float]]
@@ -56,10 +67,18 @@ class Arena(LivePage):
         self._trail: deque[tuple[float, float]] = deque(maxlen=TRAIL_LENGTH)
         # The topics on which something has come since it listens.
         self._heard: set[str] = set()
+        # Where walls were seen, by square.
+        self._met: dict[int, list[float]] = {}
+        # The last scan: as it was heard, where its beams ended, and while the scene has it not.
+        self._heard_scan: tuple[object, Pose] | None = None
+        self._ends: Any = None
+        self._unseen: LaserScan | None = None
         # What the page does not know yet.
+        self._fresh = True
         self._lifted = False
         self._new_trail: list[float] = []
         self._new_scan = self._last_scan = b''
+        self._eye: tuple[float, float] | None = None
         self._worded_at = 0.0
 
     # -- for cells ------------------------------------------------------------------------------
@@ -67,6 +86,7 @@ class Arena(LivePage):
     @property
     def text(self) -> str:
         """What there is to see, in words."""
+        self._look_at_scan()
         return self.scene.words() or (
             f'Nothing was heard on {self.odom} yet. Start a robot with lab.spin(lab.Turtlebot()).'
         )
@@ -81,6 +101,7 @@ class Arena(LivePage):
             self._open()
         self._wait_for_first()
         with self._lock:
+            self._look_at_scan()
             self.scene.trail = list(self._trail)
             return {'text/plain': self.text, 'image/svg+xml': to_svg(self.scene, self.text)}
 
@@ -103,16 +124,24 @@ class Arena(LivePage):
         motion = motion_of(message)
         if motion is None:
             return
-        point = (motion[0].x, motion[0].y)
+        pose, twist = motion
+        point = (pose.x, pose.y)
         self._heard.add(self.odom)
         with self._lock:
-            self.scene.pose, self.scene.twist = motion
+            scene = self.scene
             way = math.dist(self._trail[-1], point) if self._trail else math.inf
             if way > JUMP:
                 # The robot was put there: its path begins anew.
                 self._trail.clear()
                 self._new_trail.clear()
                 self._lifted = True
+            if way > JUMP or twist.v:
+                scene.bump = None
+            elif scene.twist.v:
+                scene.bump = self._touched(pose, scene.twist.v)
+                # A bump is told at once.
+                self._worded_at = 0.0 if scene.bump else self._worded_at
+            scene.pose, scene.twist = motion
             if way >= TRAIL_STEP:
                 self._trail.append(point)
                 self._new_trail += point
@@ -123,23 +152,55 @@ class Arena(LivePage):
             if pose is None:
                 return
             self._heard.add(self.scan)
-            ends = beam_ends(message, pose)
+            if self._heard_scan == (message.ranges, pose):
+                return  # while it stands, each is like the one before
+            self._heard_scan = (message.ranges, pose)
+            self._unseen = message
+            ends = self._ends = beam_ends(message, pose)
+            self._eye = scanner_place(pose)
+            self._new_scan = ends.astype('<f4').tobytes()
+            walls = ends[np.isfinite(ends[:, 0])]
+            squares = np.rint(walls / SQUARE).astype(np.int64) @ (1 << 32, 1)
+            self._met.update(zip(squares.tolist(), walls.tolist(), strict=True))
+            while len(self._met) > MOST_MET:
+                del self._met[next(iter(self._met))]
+
+    def _look_at_scan(self) -> None:
+        """Put the last scan into the scene: not each is looked at."""
+        with self._lock:
+            message, self._unseen = self._unseen, None
+            if message is None:
+                return
             self.scene.scan = [
-                (end[0], end[1]) if end[0] == end[0] else None for end in ends.tolist()
+                (end[0], end[1]) if end[0] == end[0] else None for end in self._ends.tolist()
             ]
             self.scene.reach = float(message.range_max)
             self.scene.nearest = nearest_of(message)
-            numbers = ends.astype('<f4').tobytes()
-            self._new_scan = numbers if numbers != self._last_scan else b''
+
+    def _touched(self, pose: Pose, v: float) -> tuple[float, float] | None:
+        """Return the nearest of what is close ahead of a robot that drove and stands now."""
+        ahead = pose.yaw if v > 0 else pose.yaw + math.pi
+
+        def turn(point: list[float]) -> float:
+            return wrap_angle(math.atan2(point[1] - pose.y, point[0] - pose.x) - ahead)
+
+        near = BURGER.radius + TOUCH
+        close = [point for point in self._met.values() if math.dist(point, pose[:2]) <= near]
+        touched = [point for point in close if abs(turn(point)) <= AHEAD]
+        if not touched:
+            return None
+        x, y = min(touched, key=lambda point: math.dist(point, pose[:2]))
+        return x, y
 
     # -- the page -------------------------------------------------------------------------------
 
     def _news(self, everything: bool) -> News:
         scene, now = self.scene, time.monotonic()
+        buffers: list[bytes] = []
         if everything:
             self._lifted, self._new_scan = True, self._new_scan or self._last_scan
             self._new_trail = [number for point in self._trail for number in point]
-        state: dict[str, object] = {'goals': scene.goals}
+        state: dict[str, object] = {'goals': scene.goals, 'bump': scene.bump}
         if scene.pose is not None:
             state['pose'] = (*scene.pose, *scene.twist)
         if everything or now - self._worded_at >= WORDS_SEC:
@@ -149,10 +210,16 @@ class Arena(LivePage):
         news = self._new_of(state)
         if self._lifted or self._new_trail:
             news |= {'lifted': self._lifted, 'trail': self._new_trail}
-        scans = [self._new_scan] if self._new_scan else []
+        if self._new_scan:
+            news['eye'] = self._eye
+            buffers.append(self._new_scan)
+        if everything:
+            # Its cell was run just now: only then the page scrolls there.
+            news |= {'fresh': self._fresh, 'met': True}
+            buffers.append(np.array([*self._met.values()], '<f4').tobytes())
         self._last_scan = self._new_scan or self._last_scan
-        self._lifted, self._new_trail, self._new_scan = False, [], b''
-        return news, scans
+        self._fresh, self._lifted, self._new_trail, self._new_scan = False, False, [], b''
+        return news, buffers
 
 
 def arena(
@@ -165,7 +232,8 @@ def arena(
     """Show a live map of what a robot says on `/odom` and `/scan`.
 
     The robot, where it looks, the path that it has driven, and the walls as its scanner sees
-    them. The map grows with what is seen; one square of the grid is 1 m.
+    them. What was seen stays; what it bumps into is marked. Mouse, keys and buttons zoom and move
+    the map. Where the same cell shows `lab.teleop()`, map and keys stand side by side.
 
     Args:
         odom: Topic with the robot's `nav_msgs/msg/Odometry`.

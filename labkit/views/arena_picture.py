@@ -13,7 +13,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from labkit.sim.kinematics import BURGER, Pose, Twist2
+from labkit.sim.kinematics import BURGER, Pose, Twist2, wrap_angle
 
 __all__ = ['Scene', 'bounds', 'joined', 'row', 'to_svg', 'two']
 
@@ -29,10 +29,18 @@ LEAST = 1.0
 SAME_WALL = 8.0
 # Below this the robot stands, m/s and rad/s.
 STILL = 0.005
+# A TurtleBot3 Burger from above, m: back, front and half of the width of its body, and the width
+# of a wheel. Source: ROBOTIS-GIT/turtlebot3_simulations, turtlebot3_gazebo/models/
+# turtlebot3_burger/model.sdf: a box of 0.14 m, 0.032 m behind the axle (here it is a little
+# narrower, to leave the wheels to be seen), wheels 0.018 m wide.
+BODY, WHEEL_WIDTH = (-0.102, 0.038, 0.062), 0.018
+# It is drawn no smaller than with this radius, pixels.
+LEAST_PX = 13
 
 _INK, _GRID, _WALL, _TRAIL, _ROBOT, _GOAL = (
     *('#424242', '#e0e0e0', '#37474f', '#1565c0', '#ef6c00', '#2e7d32'),
 )
+_BUMP = '#c62828'
 
 
 @dataclass
@@ -47,6 +55,7 @@ class Scene:
         reach: How far the scanner sees; 0 if nothing was heard of it.
         nearest: Distance and direction of what is nearest, seen by the robot; None if nothing is.
         goals: Points to be marked.
+        bump: Where it touches what has stopped it; None if nothing has.
     """
 
     pose: Pose | None = None
@@ -56,6 +65,7 @@ class Scene:
     reach: float = 0.0
     nearest: tuple[float, float] | None = None
     goals: Sequence[Point] = ()
+    bump: Point | None = None
 
     def words(self) -> str:
         """Return the scene in words; '' if nothing is known of a robot."""
@@ -66,6 +76,10 @@ class Scene:
         v, w = self.twist
         if abs(v) < STILL and abs(w) < STILL:
             text += 'It stands.'
+            if self.bump is not None:
+                x, y = self.bump
+                angle = math.atan2(y - self.pose.y, x - self.pose.x) - self.pose.yaw
+                text += f' It bumped into something, {_direction(wrap_angle(angle))}.'
         else:
             text += f'It drives at {two(v)} m/s and turns at {two(w)} rad/s.'
         if self.nearest is not None:
@@ -123,6 +137,7 @@ def to_svg(scene: Scene, text: str = '', *, least: float = LEAST, font: int = 11
     paper.grid()
     if scene.pose is not None and seen:
         eye = _ahead(scene.pose, BURGER.scan_x)
+        paper.fan(scene.scan, eye)
         paper.lines(joined(scene.scan, eye), _WALL, 2.5)
         paper.dots(seen, _WALL)
     paper.path(scene.trail, _TRAIL)
@@ -131,6 +146,8 @@ def to_svg(scene: Scene, text: str = '', *, least: float = LEAST, font: int = 11
     # Above the robot, which may stand on one.
     for number, goal in enumerate(scene.goals, start=1):
         paper.goal(goal, str(number) if len(scene.goals) > 1 else '')
+    if scene.bump is not None:
+        paper.bump(scene.bump)
     text = html.escape(text or scene.words() or 'An empty map')
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
@@ -208,6 +225,11 @@ class _Paper:
         path = ''.join(f'M{" ".join(self.at(a))}L{" ".join(self.at(b))}' for a, b in lines)
         self.parts.append(f'<path d="{path}" stroke="{colour}" stroke-width="{width}"/>')
 
+    def fan(self, scan: Sequence[Point | None], eye: Point) -> None:
+        """Draw what the scanner sees: from its eye along the ends of its beams."""
+        path = 'L'.join(' '.join(self.at(end or eye)) for end in scan)
+        self.parts.append(f'<path d="M{path}Z" fill="{_TRAIL}" fill-opacity="0.08"/>')
+
     def dots(self, points: Sequence[Point], colour: str) -> None:
         # A line of no length with round ends is a dot.
         path = ''.join(f'M{" ".join(self.at(point))}h0' for point in points)
@@ -235,17 +257,42 @@ class _Paper:
             )
 
     def robot(self, pose: Pose) -> None:
+        """Draw it from above: wheels, body, scanner, and a nose ahead; as in `map.js`."""
+        scale = max(self.scale, LEAST_PX / BURGER.radius)
         x, y = self.at((pose.x, pose.y))
-        radius = max(BURGER.radius * self.scale, 7.0)
-        tip = self.at(_ahead(pose, radius / self.scale))
-        wings = [
-            self.at(_ahead(Pose(pose.x, pose.y, pose.yaw + turn), 0.75 * radius / self.scale))
-            for turn in (2.4, -2.4)
-        ]
-        shape = ' '.join(','.join(corner) for corner in (tip, wings[0], (x, y), wings[1]))
+
+        def path(points: Sequence[Point]) -> str:
+            return 'M' + 'L'.join(
+                f'{scale * ahead:.1f} {-scale * left:.1f}' for ahead, left in points
+            )
+
+        wheel, beside = BURGER.wheel_radius, BURGER.wheel_separation / 2
+        back, front, half = BODY
+        sides = ''.join(path([(-wheel, side), (wheel, side)]) for side in (beside, -beside))
+        body = path([(back, half), (front, half), (front, -half), (back, -half)])
         self.parts.append(
-            f'<circle cx="{x}" cy="{y}" r="{radius:.1f}" fill="#fff3e0" stroke="{_ROBOT}" '
-            f'stroke-width="2"/><polygon points="{shape}" fill="{_INK}"/>'
+            f'<circle cx="{x}" cy="{y}" r="{scale * BURGER.radius:.1f}" fill="{_ROBOT}" '
+            f'fill-opacity="0.18"/><g transform="translate({x} {y}) '
+            f'rotate({-math.degrees(pose.yaw):.1f})">'
+            f'<path d="{sides}" stroke="{_INK}" stroke-width="{scale * WHEEL_WIDTH:.1f}"/>'
+            f'<path d="{body}Z" fill="#ffffff" stroke="{_INK}" stroke-width="2" '
+            f'stroke-linejoin="round"/>'
+            f'<path d="{path([(0.088, 0), (front, 0.04), (front, -0.04)])}Z" fill="{_ROBOT}"/>'
+            f'<path d="{path([(BURGER.scan_x, 0)])}h0" stroke="{_INK}" '
+            f'stroke-width="{scale * 0.07:.1f}" stroke-linecap="round"/></g>'
+        )
+
+    def bump(self, point: Point) -> None:
+        """Draw a star where something is touched."""
+        x, y = self.at(point)
+        corners = ' '.join(
+            f'{(6 if corner % 2 else 13) * math.cos(corner * math.pi / 8):.1f},'
+            f'{(6 if corner % 2 else 13) * math.sin(corner * math.pi / 8):.1f}'
+            for corner in range(16)
+        )
+        self.parts.append(
+            f'<polygon transform="translate({x} {y})" points="{corners}" fill="{_BUMP}" '
+            f'stroke="#ffffff"/>'
         )
 
 

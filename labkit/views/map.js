@@ -3,13 +3,22 @@
 const STEP = 0.25; // what is shown grows in steps of so many metres
 const MARGIN = 0.25;
 const LEAST = 1.0;
-const RADIUS = 0.105; // of a TurtleBot3 Burger, m
 const SCAN_X = -0.032; // place of its scanner on the heading, m
 const SAME_WALL = 8; // see arena_picture.py
+const GRID_PX = 60; // lines of the grid are no nearer to each other
+const GRIDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
+// A TurtleBot3 Burger from above, m, its axle at x = 0. For the sources see arena_picture.py.
+const RADIUS = 0.105; // of the disc that holds it
+const BODY = [-0.102, 0.038, 0.062]; // back, front, half of the width
+const WHEEL = [0.033, 0.08, 0.018]; // radius, place beside the middle, width
+const LIDAR = 0.035;
+const LEAST_PX = 13; // drawn no smaller than this radius
+const FADE_MS = 60000; // by then a point of the trail is as pale as it gets
+const SHADES = 10;
 
 function emptyScene() {
   return {
-    pose: null, trail: [], scan: null, goals: [],
+    pose: null, trail: [], fades: false, scan: null, eye: null, goals: [], bump: null,
     shown: [-LEAST, -LEAST, LEAST, LEAST],
   };
 }
@@ -25,6 +34,12 @@ function include(shown, x, y) {
   if (y + MARGIN > shown[3]) shown[3] = high(y);
 }
 
+// A copy: the bytes may lie anywhere in the message, numbers only at multiples of four.
+function numbers(bytes) {
+  const { buffer, byteOffset, byteLength } = bytes;
+  return new Float32Array(buffer.slice(byteOffset, byteOffset + byteLength));
+}
+
 function take(scene, news, scan) {
   if (news.lifted) scene.trail = [];
   if (news.goals) {
@@ -36,16 +51,30 @@ function take(scene, news, scan) {
     include(scene.shown, news.pose[0], news.pose[1]);
   }
   for (let i = 0; i + 1 < (news.trail?.length ?? 0); i += 2) {
-    scene.trail.push([news.trail[i], news.trail[i + 1]]);
+    scene.trail.push([news.trail[i], news.trail[i + 1], performance.now()]);
     include(scene.shown, news.trail[i], news.trail[i + 1]);
   }
-  if (scan) {
-    // A copy: the bytes may lie anywhere in the message, numbers only at multiples of four.
-    const bytes = scan.buffer.slice(scan.byteOffset, scan.byteOffset + scan.byteLength);
-    scene.scan = new Float32Array(bytes);
+  if (news.eye) {
+    scene.scan = numbers(scan);
+    scene.eye = news.eye;
     for (let i = 0; i < scene.scan.length; i += 2) {
       include(scene.shown, scene.scan[i], scene.scan[i + 1]);
     }
+  }
+}
+
+// Call for each beam that meets something: with its end, and with that of the next one if that
+// is on the same wall.
+function eachEnd(scan, [x, y], call) {
+  const count = scan.length / 2;
+  const apart = (ax, ay, bx, by) => Math.hypot(ax - bx, ay - by);
+  for (let i = 0; i < count; i += 1) {
+    const j = (i + 1) % count;
+    const [ax, ay, bx, by] = [scan[2 * i], scan[2 * i + 1], scan[2 * j], scan[2 * j + 1]];
+    if (!Number.isFinite(ax)) continue; // not a number where a beam met nothing
+    const near = Math.min(apart(x, y, ax, ay), apart(x, y, bx, by));
+    const same = apart(ax, ay, bx, by) <= (SAME_WALL * 2 * Math.PI * near) / count;
+    call(ax, ay, same ? [bx, by] : null);
   }
 }
 
@@ -53,10 +82,11 @@ class Map2d {
   constructor(canvas) {
     this.canvas = canvas;
     this.context = canvas.getContext('2d');
+    this.above = 0; // pixels at the top that something else covers
   }
 
-  // Fit the floor that is shown into the canvas; y goes up.
-  fit([left, bottom, right, top]) {
+  // Fit the floor that is shown into the canvas, or look at one place of it; y goes up.
+  fit([left, bottom, right, top], view) {
     const ratio = window.devicePixelRatio || 1;
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (this.canvas.width !== Math.round(width * ratio)) {
@@ -68,78 +98,125 @@ class Map2d {
     this.context.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.width = width;
     this.height = height;
-    this.scale = Math.min(width / (right - left), height / (top - bottom));
-    this.x0 = width / 2 - (this.scale * (left + right)) / 2;
-    this.y0 = height / 2 + (this.scale * (bottom + top)) / 2;
+    const { x, y, scale } = view ?? {
+      x: (left + right) / 2, y: (bottom + top) / 2,
+      scale: Math.min(width / (right - left), (height - this.above) / (top - bottom)),
+    };
+    this.scale = scale;
+    this.x0 = width / 2 - scale * x;
+    this.y0 = (height + this.above) / 2 + scale * y;
     const style = getComputedStyle(this.canvas);
     this.colour = (name) => style.getPropertyValue(`--labkit-${name}`).trim() || '#777';
-    this.font = `11px ${style.fontFamily}`;
+    this.font = `${0.8 * parseFloat(style.fontSize)}px ${style.fontFamily}`;
   }
 
   px(x) { return this.x0 + this.scale * x; }
   py(y) { return this.y0 - this.scale * y; }
   metres(px, py) { return [(px - this.x0) / this.scale, (this.y0 - py) / this.scale]; }
 
-  draw(scene, cursor) {
-    this.fit(scene.shown);
+  draw(scene, cursor, view = null) {
+    this.fit(scene.shown, view);
     const { context } = this;
     context.fillStyle = this.colour('ground');
     context.fillRect(0, 0, this.width, this.height);
     context.font = this.font;
+    this.below(scene);
     this.grid();
-    if (scene.scan && scene.pose) this.walls(scene.scan, scene.pose);
-    this.trail(scene.trail);
+    const eye = scene.pose && (scene.eye ?? this.ahead(scene.pose, SCAN_X));
+    if (scene.scan && eye) {
+      this.fan(scene.scan, eye);
+      this.walls(scene.scan, eye);
+    }
+    this.trail(scene.trail, scene.fades);
     if (scene.pose) this.robot(...scene.pose);
     // Above the robot, which may stand on one.
     scene.goals.forEach(([x, y], index) => {
       this.goal(x, y, scene.goals.length > 1 ? `${index + 1}` : '');
     });
+    if (scene.bump) this.bump(...scene.bump);
     this.ruler();
     if (cursor) this.cursor(cursor);
   }
 
+  // What lies on the floor, for those that know more of it.
+  below() {}
+
+  ahead([x, y, yaw], way) { return [x + way * Math.cos(yaw), y + way * Math.sin(yaw)]; }
+
   grid() {
     const [left, top] = this.metres(0, 0);
     const [right, bottom] = this.metres(this.width, this.height);
-    const step = right - left > 20 ? 5 : 1;
-    const first = (value) => Math.ceil(value / step) * step;
-    for (let x = first(left); x <= right; x += step) {
+    const step = GRIDS.find((size) => size * this.scale >= GRID_PX) ?? 200;
+    this.step = step;
+    const multiples = (low, high) => {
+      const [first, last] = [Math.ceil(low / step), Math.floor(high / step)];
+      return Array.from({ length: Math.max(0, last - first + 1) }, (_, i) => (first + i) * step);
+    };
+    const text = (value) => (value === 0 ? '0 m' : `${Number(value.toFixed(1))}`);
+    for (const x of multiples(left, right)) {
       this.line([[x, bottom], [x, top]], x === 0 ? 'axis' : 'grid', 1);
-      this.label(x === 0 ? '0 m' : `${x}`, this.px(x) + 3, this.height - 4);
+      this.label(text(x), this.px(x) + 3, this.height - 4);
     }
-    for (let y = first(bottom); y <= top; y += step) {
+    for (const y of multiples(bottom, top)) {
       this.line([[left, y], [right, y]], y === 0 ? 'axis' : 'grid', 1);
       // The corner at the bottom is that of the labels along x.
-      if (this.py(y) < this.height - 20) this.label(y === 0 ? '0 m' : `${y}`, 3, this.py(y) - 3);
+      if (this.py(y) < this.height - 20) this.label(text(y), 3, this.py(y) - 3);
     }
     this.label('x', this.width - 10, this.py(0) - 4);
     this.label('y', this.px(0) - 10, 11);
   }
 
-  walls(scan, [x, y, yaw]) {
+  // What the scanner sees at once, from its eye to the ends of its beams.
+  fan(scan, eye) {
     const { context } = this;
-    const count = scan.length / 2;
-    const eye = [x + SCAN_X * Math.cos(yaw), y + SCAN_X * Math.sin(yaw)];
-    const apart = (ax, ay, bx, by) => Math.hypot(ax - bx, ay - by);
-    context.strokeStyle = context.fillStyle = this.colour('wall');
-    context.lineWidth = 2.5;
+    const [px, py] = [this.px(eye[0]), this.py(eye[1])];
     context.beginPath();
-    for (let i = 0; i < count; i += 1) {
-      const j = (i + 1) % count;
-      const [ax, ay, bx, by] = [scan[2 * i], scan[2 * i + 1], scan[2 * j], scan[2 * j + 1]];
-      const near = Math.min(apart(...eye, ax, ay), apart(...eye, bx, by));
-      // False for NaN, the end of a beam that met nothing.
-      if (apart(ax, ay, bx, by) <= (SAME_WALL * 2 * Math.PI * near) / count) {
-        context.moveTo(this.px(ax), this.py(ay));
-        context.lineTo(this.px(bx), this.py(by));
-      }
-      context.fillRect(this.px(ax) - 1.5, this.py(ay) - 1.5, 3, 3);
-    }
-    context.stroke();
+    context.moveTo(px, py);
+    eachEnd(scan, eye, (ax, ay, next) => {
+      context.lineTo(this.px(ax), this.py(ay));
+      if (next) context.lineTo(this.px(next[0]), this.py(next[1]));
+      else context.lineTo(px, py);
+    });
+    context.closePath();
+    context.fillStyle = this.colour('scan');
+    context.globalAlpha = 0.12;
+    context.fill();
+    context.globalAlpha = 1;
   }
 
-  trail(points) {
-    if (points.length > 1) this.line(points, 'trail', 2.5);
+  walls(scan, eye) {
+    const { context } = this;
+    context.strokeStyle = context.fillStyle = this.colour('wall');
+    context.lineWidth = 2.5;
+    context.lineCap = 'round';
+    context.beginPath();
+    eachEnd(scan, eye, (ax, ay, next) => {
+      const [px, py] = [this.px(ax), this.py(ay)];
+      if (next) {
+        context.moveTo(px, py);
+        context.lineTo(this.px(next[0]), this.py(next[1]));
+      } else context.fillRect(px - 1.25, py - 1.25, 2.5, 2.5);
+    });
+    context.stroke();
+    context.lineCap = 'butt';
+  }
+
+  // Oldest first. Where it fades, points have times, and what is long ago is pale.
+  trail(points, fades) {
+    const { context } = this;
+    const now = performance.now();
+    const shade = ([, , time]) => (
+      fades ? Math.round(SHADES * Math.min(1, (now - time) / FADE_MS)) : 0
+    );
+    let begin = 0;
+    for (let i = 1; i < points.length; i += 1) {
+      if (i + 1 === points.length || shade(points[i + 1]) !== shade(points[i])) {
+        context.globalAlpha = 1 - (0.85 * shade(points[i])) / SHADES;
+        this.line(points.slice(begin, i + 1), 'trail', 2.5);
+        begin = i;
+      }
+    }
+    context.globalAlpha = 1;
   }
 
   goal(x, y, label) {
@@ -157,42 +234,76 @@ class Map2d {
     context.fillText(label, px + 12, py - 8);
   }
 
+  // From above: two wheels, a body with round corners, the scanner on top, and a nose ahead.
   robot(x, y, yaw) {
     const { context } = this;
-    const radius = Math.max(RADIUS * this.scale, 7);
-    const corner = (turn, part) => [
-      this.px(x) + part * radius * Math.cos(yaw + turn),
-      this.py(y) - part * radius * Math.sin(yaw + turn),
-    ];
-    context.beginPath();
-    context.arc(this.px(x), this.py(y), radius, 0, 2 * Math.PI);
-    context.fillStyle = this.colour('ground');
-    context.fill();
-    context.lineWidth = 2.5;
-    context.strokeStyle = this.colour('robot');
-    context.stroke();
-    context.beginPath();
-    context.moveTo(...corner(0, 1));
-    context.lineTo(...corner(2.4, 0.75));
-    context.lineTo(this.px(x), this.py(y));
-    context.lineTo(...corner(-2.4, 0.75));
-    context.closePath();
-    context.fillStyle = this.colour('ink');
-    context.fill();
+    const scale = Math.max(this.scale, LEAST_PX / RADIUS);
+    const [ink, ground, accent] = ['ink', 'ground', 'robot'].map(this.colour);
+    const shape = (fill, line, draw) => {
+      context.beginPath();
+      draw();
+      context.fillStyle = fill;
+      context.fill();
+      if (!line) return;
+      context.lineWidth = line / scale;
+      context.strokeStyle = ink;
+      context.stroke();
+    };
+    context.save();
+    context.translate(this.px(x), this.py(y));
+    context.scale(scale, -scale);
+    context.rotate(yaw);
+    // The room that it needs: what comes into this disc is a bump.
+    context.globalAlpha = 0.18;
+    shape(accent, 0, () => context.arc(0, 0, RADIUS, 0, 2 * Math.PI));
+    context.globalAlpha = 1;
+    const [wheel, beside, wide] = WHEEL;
+    for (const side of [beside, -beside]) {
+      shape(ink, 0, () => context.roundRect(-wheel, side - wide / 2, 2 * wheel, wide, 0.006));
+    }
+    const [back, front, half] = BODY;
+    shape(ground, 1.8, () => context.roundRect(back, -half, front - back, 2 * half, 0.028));
+    shape(accent, 0, () => {
+      context.moveTo(0.088, 0);
+      context.lineTo(front - 0.004, 0.04);
+      context.lineTo(front - 0.004, -0.04);
+    });
+    shape(ink, 0, () => context.arc(SCAN_X, 0, LIDAR, 0, 2 * Math.PI));
+    shape(accent, 0, () => context.arc(SCAN_X, 0, 0.4 * LIDAR, 0, 2 * Math.PI));
+    context.restore();
   }
 
+  // A star where it touches something.
+  bump(x, y) {
+    const { context } = this;
+    const [px, py] = [this.px(x), this.py(y)];
+    context.beginPath();
+    for (let i = 0; i < 16; i += 1) {
+      const [angle, radius] = [(i * Math.PI) / 8, i % 2 ? 6 : 13];
+      context.lineTo(px + radius * Math.cos(angle), py + radius * Math.sin(angle));
+    }
+    context.closePath();
+    context.fillStyle = this.colour('bump');
+    context.fill();
+    context.lineWidth = 1.5;
+    context.strokeStyle = this.colour('ground');
+    context.stroke();
+  }
+
+  // A step of the grid.
   ruler() {
-    const [right, bottom] = [this.width - 12, this.height - 24];
+    const [right, bottom, wide] = [this.width - 12, this.height - 24, this.scale * this.step];
     const { context } = this;
     context.strokeStyle = this.colour('faint');
     context.lineWidth = 2;
     context.beginPath();
-    context.moveTo(right - this.scale, bottom - 4);
-    context.lineTo(right - this.scale, bottom);
+    context.moveTo(right - wide, bottom - 4);
+    context.lineTo(right - wide, bottom);
     context.lineTo(right, bottom);
     context.lineTo(right, bottom - 4);
     context.stroke();
-    this.label('1 m', right - this.scale / 2 - 9, bottom - 5);
+    const text = `${this.step} m`;
+    this.label(text, right - (wide + context.measureText(text).width) / 2, bottom - 5);
   }
 
   cursor([x, y]) {
@@ -209,9 +320,9 @@ class Map2d {
     context.stroke();
     const width = context.measureText(text).width + 10;
     context.fillStyle = this.colour('ground');
-    context.fillRect(this.width - width, 0, width, 18);
+    context.fillRect(0, 0, width, 20);
     context.fillStyle = this.colour('ink');
-    context.fillText(text, this.width - width + 5, 13);
+    context.fillText(text, 5, 14);
   }
 
   line(points, colour, width) {

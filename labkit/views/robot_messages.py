@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from nav_msgs.msg import Odometry
     from sensor_msgs.msg import LaserScan
 
-__all__ = ['beam_ends', 'motion_of', 'nearest_of']
+__all__ = ['beam_ends', 'motion_of', 'nearest_of', 'scanner_place']
 
 
 def motion_of(message: Odometry) -> tuple[Pose, Twist2] | None:
@@ -35,9 +35,15 @@ def beam_ends(message: LaserScan, pose: Pose) -> Any:
         pose: Where the robot is.
     """
     ranges, angles = _beams(message)
-    x = pose.x + BURGER.scan_x * math.cos(pose.yaw) + ranges * np.cos(pose.yaw + angles)
-    y = pose.y + BURGER.scan_x * math.sin(pose.yaw) + ranges * np.sin(pose.yaw + angles)
+    eye_x, eye_y = scanner_place(pose)
+    x, y = eye_x + ranges * np.cos(pose.yaw + angles), eye_y + ranges * np.sin(pose.yaw + angles)
     return np.stack([x, y], axis=1)
+
+
+def scanner_place(pose: Pose) -> tuple[float, float]:
+    """Return where the scanner of a robot is, x and y in m."""
+    ahead = BURGER.scan_x
+    return pose.x + ahead * math.cos(pose.yaw), pose.y + ahead * math.sin(pose.yaw)
 
 
 def nearest_of(message: LaserScan) -> tuple[float, float] | None:

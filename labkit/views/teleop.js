@@ -23,7 +23,8 @@ class Driver {
     this.held = new Set();
     this.pad = null;
     this.steps = [0.25, 0.5, 0.75, 1];
-    this.step = 1;
+    this.step = 3;
+    this.turn = 0.5; // a key turns at this share of the turning rate, the pad at all of it
     this.timer = 0;
   }
 
@@ -32,7 +33,7 @@ class Driver {
   way() {
     if (this.pad) return this.pad;
     const sum = (axis) => [...this.held].reduce((all, name) => all + ACTIONS[name][axis], 0);
-    return [sum(0), sum(1)];
+    return [sum(0), this.turn * sum(1)];
   }
 
   // Something was pressed or let go.
@@ -159,9 +160,11 @@ function speedControl(driver) {
   };
 }
 
+// With spaces that are not broken: a line ends between the numbers.
 function command([v, w], topic, count) {
   const number = (value) => (value || 0).toFixed(2); // no minus before a zero
-  return `${topic} #${count}  linear.x = ${number(v)} m/s  angular.z = ${number(w)} rad/s`;
+  const parts = [`linear.x = ${number(v)} m/s`, `angular.z = ${number(w)} rad/s`];
+  return [`${topic} #${count}`, ...parts].map((part) => part.replaceAll(' ', '\u00a0')).join('  ');
 }
 
 function render({ model, el }) {
@@ -185,18 +188,22 @@ function render({ model, el }) {
     () => {
       speed.share.textContent = `${driver.share * 100} %: ` +
         `${(speeds[0] * driver.share).toFixed(2)} m/s, ` +
-        `${(speeds[1] * driver.share).toFixed(2)} rad/s`;
+        `${(speeds[1] * driver.share * driver.turn).toFixed(2)} rad/s`;
       for (const key of keys.querySelectorAll('button')) {
         key.classList.toggle('labkit-held', driver.held.has(key.dataset.action));
       }
       if (driver.pad === null) round.centre();
     },
   );
+  const takeSettings = (news) => {
+    ({ topic, speeds } = news);
+    ({ steps: driver.steps, step: driver.step, turn: driver.turn } = news);
+  };
   const keys = keypad(driver);
   const round = roundPad(driver);
   const speed = speedControl(driver);
   const { note, say, end } = follow(model, el, (news) => {
-    if (news.topic) ({ topic, speeds, steps: driver.steps, step: driver.step } = news);
+    if (news.topic) takeSettings(news);
     if (news.note !== undefined) fault = news.note;
     if (news.published) way = news.published;
     if (news.count) {

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import time
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from labkit.background.nodes import destroy_node, helper_node, node_exists
 from labkit.background.runtime import runtime
@@ -20,6 +20,9 @@ from labkit.views.arena_picture import two
 from labkit.views.live import living
 from labkit.views.live_page import LivePage, News
 
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
 __all__ = ['Teleop', 'teleop']
 
 # Commands are published this often while a key is held, Hz.
@@ -29,7 +32,9 @@ SILENCE_SEC = 0.5
 QUEUE_DEPTH = 10
 # What `+` and `-` step through: shares of the highest speeds.
 STEPS = (0.25, 0.5, 0.75, 1.0)
-FIRST_STEP = 1
+FIRST_STEP = 3
+# A key turns at this share of the turning rate: a tap of 0.1 s turns a Burger by 8 degrees.
+KEY_TURN = 0.5
 
 _KEYS = """\
   w or ↑   forward       x or ↓   backward
@@ -51,6 +56,7 @@ class Teleop(LivePage):
 
     _name = 'teleop'
     _period = 0.1
+    node: Node = None  # type: ignore[assignment]  # until it is opened
 
     def __init__(
         self,
@@ -74,16 +80,28 @@ class Teleop(LivePage):
         self._heard_at = 0.0
         self._listeners = 0
         self._msg_type = _message_class(stamped)
-        self._full_name = full_node_name(name, namespace)
-        _end_earlier(self._full_name)
-        self.node = helper_node(name, namespace=namespace or None, enable_rosout=True)
-        self._publisher = self.node.create_publisher(self._msg_type, topic, QUEUE_DEPTH)
-        self.topic: str = self._publisher.topic_name
-        self.node.create_timer(1 / RATE, self._drive)
+        # First: where its cell was run before, this ends what is left of that.
         super().__init__()
-        runtime.add(self.node)
+        self._open_node(name, namespace, topic)
         # Where no page shows it too: its node is there.
         self._take_place()
+
+    def _open_node(self, name: str, namespace: str, topic: str) -> None:
+        full_name = full_node_name(name, namespace)
+        others = [view for view in _teleops() if view.node.get_fully_qualified_name() == full_name]
+        # Several have one node: the one that is held drives.
+        self.node = (
+            others[0].node
+            if others
+            else helper_node(name, namespace=namespace or None, enable_rosout=True)
+        )
+        self._publisher = self.node.create_publisher(self._msg_type, topic, QUEUE_DEPTH)
+        self.topic: str = self._publisher.topic_name
+        self._repeat = self.node.create_timer(1 / RATE, self._drive)
+        # A new way is published at once, in the background, and not when the timer comes round.
+        self._new_way = self.node.create_guard_condition(self._drive_now)
+        if not others:
+            runtime.add(self.node)
 
     # -- for cells ------------------------------------------------------------------------------
 
@@ -103,7 +121,7 @@ class Teleop(LivePage):
             f'Teleop publishes geometry_msgs/msg/{self._msg_type.__name__} on {self.topic}, '
             f'{RATE:.0f} times a second while a key is held.\n{_KEYS}\n'
             f'  at first {share:.0%} of full speed: {two(share * self.max_speed)} m/s, '
-            f'{two(share * self.max_turn)} rad/s'
+            f'{two(share * KEY_TURN * self.max_turn)} rad/s'
         )
 
     def _still(self) -> dict[str, str]:
@@ -120,19 +138,27 @@ class Teleop(LivePage):
 
     def _cut_off(self) -> str:
         words = super()._cut_off()
-        if not words and not node_exists(self.node):
+        if not words and self.node is not None and not node_exists(self.node):
             words = 'The node of this teleop has ended. Run this cell to start it again.'
         return words
 
     def _end(self, words: str) -> None:
-        self.stop()
+        shared = any(view.node is self.node for view in _teleops() if view is not self)
+        if not shared:
+            self.stop()
         super()._end(words)
-        if node_exists(self.node):
-            entry = runtime.entry_of(self.node)
-            if entry is not None:
-                runtime.discard(entry)
-            else:
-                destroy_node(self.node)
+        if self.node is None or not node_exists(self.node):
+            return
+        if shared:
+            self.node.destroy_timer(self._repeat)
+            self.node.destroy_guard_condition(self._new_way)
+            self.node.destroy_publisher(self._publisher)
+            return
+        entry = runtime.entry_of(self.node)
+        if entry is not None:
+            runtime.discard(entry)
+        else:
+            destroy_node(self.node)
 
     # -- the page -------------------------------------------------------------------------------
 
@@ -143,7 +169,10 @@ class Teleop(LivePage):
             self.stop()
         elif all(isinstance(part, (int, float)) and math.isfinite(part) for part in way):
             v, w = (max(-1.0, min(1.0, float(part))) for part in way if part is not None)
+            is_new = self._way != (v, w)
             self._way, self._heard_at = (v, w), time.monotonic()
+            if is_new and node_exists(self.node):
+                self._new_way.trigger()  # type: ignore[no-untyped-call]
 
     def _news(self, everything: bool) -> News:
         deaf = self.published is not None and not self._listeners
@@ -152,6 +181,7 @@ class Teleop(LivePage):
             'speeds': [self.max_speed, self.max_turn],
             'steps': STEPS,
             'step': FIRST_STEP,
+            'turn': KEY_TURN,
             'published': self.published,
             'count': self.count,
             'note': f'Nobody listens on {self.topic}. Is the robot running?' if deaf else '',
@@ -159,6 +189,11 @@ class Teleop(LivePage):
         return self._new_of(state), []
 
     # -- driving --------------------------------------------------------------------------------
+
+    def _drive_now(self) -> None:
+        # The next repetition is a full period from now.
+        self._repeat.reset()  # type: ignore[no-untyped-call]
+        self._drive()
 
     def _drive(self) -> None:
         with self._lock:
@@ -171,7 +206,7 @@ class Teleop(LivePage):
                 self.stop()
 
     def _publish(self, v: float, w: float) -> None:
-        if not node_exists(self.node):
+        if self.node is None or not node_exists(self.node):
             return
         message = self._msg_type()
         if hasattr(message, 'header'):
@@ -183,11 +218,10 @@ class Teleop(LivePage):
         self._listeners = self._publisher.get_subscription_count()
 
 
-def _end_earlier(full_name: str) -> None:
-    """End a teleop whose node has the name that a new one gets."""
-    for view in living():
-        if isinstance(view, Teleop) and view._full_name == full_name:
-            view.close()
+def _teleops() -> list[Teleop]:
+    """Return the teleops that live, and have a node."""
+    found = [view for view in living() if isinstance(view, Teleop)]
+    return [view for view in found if view.node is not None and node_exists(view.node)]
 
 
 def _message_class(stamped: bool) -> type:

@@ -10,7 +10,7 @@ import anywidget
 __all__ = ['page_files', 'widget_bundle', 'widget_class']
 
 # What else the page's part of a view is made of. It goes before its own.
-_SHARED = {'arena': ('map',), 'bag': ('map', 'lines'), 'plot': ('lines',)}
+_SHARED = {'arena': ('map', 'seen'), 'bag': ('map', 'lines'), 'plot': ('lines',)}
 
 
 def page_files(name: str) -> tuple[str, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 import pytest
@@ -14,6 +15,10 @@ CELLS = {
     'arena': 'view = lab.arena(goals=[(1.0, 0.5)])\nview',
     'teleop': 'pilot = lab.teleop()\npilot',
     'place': 'robot.place()',
+    'before-a-wall': 'robot.place(x=2.2)',
+    'both': 'display(lab.arena(), lab.teleop())',
+    'other-arena': 'lab.arena()',
+    'other-teleop': 'lab.teleop()',
     'busy': """
 print('busy')
 try:
@@ -99,41 +104,148 @@ def test_arena_is_drawn_and_follows_the_theme(stage):
     expect(words).to_contain_text('It stands. Nearest obstacle 1.81 m away')
     expect(words).to_have_attribute('aria-live', 'polite')
     light = stage.canvas.evaluate(COLOURS)
-    ground = max(light, key=light.get)
-    assert ground == '255,255,255' and len(light) > 20
+    # Most of it is the floor that the scanner sees; there is much else.
+    floor = max(light, key=light.get)
+    assert light[floor] > 10000 and len(light) > 20
     # Whoever looks for coordinates finds them by mouse and by keyboard.
-    before = sum(light.values()) - light[ground]
     stage.canvas.focus()
-    stage.page.keyboard.press('ArrowUp')
+    stage.page.keyboard.press('Shift+ArrowUp')
     stage.notebook.wait_for_pictures()
     with_cross = stage.canvas.evaluate(COLOURS)
-    assert sum(with_cross.values()) - with_cross[ground] > before
+    assert with_cross != light
+    stage.page.keyboard.press('Escape')
+    stage.notebook.wait_for_pictures()
     stage.notebook.execute('apputils:change-theme', theme='JupyterLab Dark')
     try:
         stage.page.wait_for_function(
-            f'canvas => !(({COLOURS})(canvas)["{ground}"] > 10000)',
+            f'canvas => !(({COLOURS})(canvas)["{floor}"] > 10000)',
             arg=stage.canvas.element_handle(),
         )
     finally:
         stage.notebook.execute('apputils:change-theme', theme='JupyterLab Light')
 
 
+def test_map_is_moved_by_mouse_keys_and_buttons(stage):
+    def view():
+        stage.notebook.wait_for_pictures()
+        shown = stage.canvas.get_attribute('data-view')
+        return shown if shown == 'all' else [float(number) for number in shown.split()]
+
+    def press(key):
+        stage.canvas.focus()
+        stage.page.keyboard.press(key)
+        return view()
+
+    assert view() == 'all'
+    whole = stage.canvas.evaluate(COLOURS)
+    x, y, scale = press('+')
+    assert stage.canvas.evaluate(COLOURS) != whole
+    assert press('ArrowLeft')[0] < x and press('ArrowUp')[1] > y and press('-')[2] < scale
+    assert press('0') == 'all'
+    assert stage.canvas.evaluate(COLOURS) == whole
+    box = stage.canvas.bounding_box()
+    middle = box['x'] + box['width'] / 2, box['y'] + box['height'] / 2
+    stage.page.mouse.move(*middle)
+    stage.page.mouse.down()
+    stage.page.mouse.move(middle[0] + 50, middle[1])
+    stage.page.mouse.up()
+    assert view()[0] < x
+    stage.page.get_by_role('button', name='Show the whole map').click()
+    assert view() == 'all'
+    # The wheel scrolls the page, but for a map that was clicked.
+    for press_in, zooms in ((stage.teleop.focus, False), (stage.canvas.focus, True)):
+        press_in()
+        stage.page.mouse.move(*middle)
+        stage.page.mouse.wheel(0, -1)
+        assert (view() != 'all') == zooms
+    follow = stage.page.get_by_role('button', name='Follow the robot')
+    follow.click()
+    expect(follow).to_have_attribute('aria-pressed', 'true')
+    stage.notebook.run_cell('before-a-wall')
+    expect(stage.canvas).to_have_attribute('data-view', re.compile(r'^2\.20 0\.00 '))
+    press('ArrowLeft')
+    expect(follow).to_have_attribute('aria-pressed', 'false')
+
+
+def test_a_bump_is_shown_and_told(stage):
+    stage.notebook.run_cell('before-a-wall')
+    stage.hold('w', 'linear.x = 0.22')
+    expect(stage.canvas).to_have_attribute('data-bumps', '1')
+    words = stage.page.locator('.labkit-arena-words')
+    expect(words).to_contain_text('It stands. It bumped into something, ahead.')
+    stage.page.keyboard.up('w')
+    stage.hold('x', 'linear.x = -0.22')
+    expect(words).not_to_contain_text('bumped')
+    expect(stage.page.locator('.labkit-arena-bump')).to_be_hidden()
+    stage.page.keyboard.up('x')
+    stage.expect_stop()
+    expect(stage.canvas).to_have_attribute('data-bumps', '1')
+
+
+def test_map_and_keys_are_beside_each_other_where_there_is_room(stage):
+    stage.notebook.run_cell('both')
+    area = stage.notebook.output('both')
+    arena, teleop = area.locator('.labkit-arena'), area.locator('.labkit-teleop')
+
+    def beside():
+        stage.notebook.wait_for_pictures()
+        one, other = arena.bounding_box(), teleop.bounding_box()
+        assert one['width'] > 300 and other['width'] > 200
+        return other['x'] >= one['x'] + one['width']
+
+    size = stage.page.viewport_size
+    try:
+        for width, expected in ((1400, True), (800, False)):
+            stage.page.set_viewport_size({'width': width, 'height': 900})
+            assert beside() == expected
+            # Nothing is wider than what there is.
+            assert area.evaluate('place => place.scrollWidth <= place.clientWidth')
+    finally:
+        stage.page.set_viewport_size(size)
+    # With the map, its keys go to the full screen.
+    area.get_by_role('button', name='Full screen').click()
+    stage.page.wait_for_function('document.fullscreenElement')
+    assert stage.page.evaluate("document.fullscreenElement.querySelector('.labkit-teleop')")
+    stage.page.evaluate('document.exitFullscreen()')
+    stage.page.wait_for_function('!document.fullscreenElement')
+
+
+def test_two_maps_and_two_sets_of_keys_work(stage):
+    stage.notebook.run_cell('other-arena')
+    stage.notebook.run_cell('other-teleop')
+    other = stage.notebook.output('other-teleop').locator('.labkit-teleop')
+    published = stage.page.locator('.labkit-teleop-published')
+    for teleop, number in ((other, 1), (stage.teleop.first, 0)):
+        teleop.click(position={'x': 4, 'y': 4})
+        stage.page.keyboard.down('d')
+        expect(published.nth(number)).to_contain_text('angular.z = -1.42')
+        stage.page.keyboard.up('d')
+        expect(published.nth(number)).to_contain_text(STANDS)
+    for canvas in stage.canvas.all():
+        stage.page.wait_for_function(
+            "canvas => !canvas.dataset.pose.startsWith('0.000 0.000 0.000')",
+            arg=canvas.element_handle(),
+        )
+    expect(stage.page.locator('.labkit-live-note:visible')).to_have_count(0)
+
+
 def test_keys_drive_the_robot_and_leave_the_notebook_alone(stage):
     count = len(stage.notebook.cells())
-    stage.hold('w', 'linear.x = 0.11 m/s  angular.z = 0.00 rad/s')
+    stage.hold('w', 'linear.x = 0.22 m/s  angular.z = 0.00 rad/s')
     stage.page.wait_for_function(
         'canvas => parseFloat(canvas.dataset.pose) > 0.1', arg=stage.canvas.element_handle()
     )
     stage.page.keyboard.down('ArrowLeft')
-    expect(stage.published).to_contain_text('linear.x = 0.11 m/s  angular.z = 1.42 rad/s')
-    stage.page.keyboard.press('+')
-    expect(stage.published).to_contain_text('angular.z = 2.13 rad/s')
+    expect(stage.published).to_contain_text('linear.x = 0.22 m/s  angular.z = 1.42 rad/s')
+    stage.page.keyboard.press('-')
+    stage.page.keyboard.press('-')
+    expect(stage.published).to_contain_text('angular.z = 0.71 rad/s')
     stage.page.keyboard.up('w')
-    expect(stage.published).to_contain_text('linear.x = 0.00 m/s  angular.z = 2.13 rad/s')
+    expect(stage.published).to_contain_text('linear.x = 0.00 m/s  angular.z = 0.71 rad/s')
     stage.page.keyboard.up('ArrowLeft')
     stage.expect_stop()
     assert stage.pose()[0] > 0.1
-    for key, shown in (('ArrowDown', '= -0.17 m/s'), ('d', '= -2.13 rad/s'), ('x', '= -0.17')):
+    for key, shown in (('ArrowDown', '= -0.11 m/s'), ('d', '= -0.71 rad/s'), ('x', '= -0.11')):
         stage.hold(key, shown)
         stage.page.keyboard.press(' ')
         stage.expect_stop()
@@ -153,7 +265,7 @@ def test_mouse_drives_the_robot(stage):
     stage.page.mouse.move(x, y)
     stage.page.mouse.down()
     stage.page.mouse.move(x, y - 200)
-    expect(stage.published).to_contain_text('linear.x = 0.11 m/s  angular.z = 0.00 rad/s')
+    expect(stage.published).to_contain_text('linear.x = 0.22 m/s  angular.z = 0.00 rad/s')
     stage.page.mouse.up()
     stage.expect_stop()
     button = stage.page.locator('.labkit-teleop-keys [data-action=right]')
@@ -182,7 +294,7 @@ LEAVING = {
 
 def test_whoever_leaves_stops_the_robot(stage):
     for name, leave in LEAVING.items():
-        stage.hold('w', 'linear.x = 0.11')
+        stage.hold('w', 'linear.x = 0.22')
         leave(stage)
         stage.expect_stop()
         stage.page.keyboard.up('w')
@@ -190,7 +302,7 @@ def test_whoever_leaves_stops_the_robot(stage):
 
 
 def test_closing_the_tab_stops_the_robot_and_leaves_no_subscription(stage, jupyter, browser):
-    stage.hold('w', 'linear.x = 0.11')
+    stage.hold('w', 'linear.x = 0.22')
     name = stage.page.evaluate('window.jupyterapp.shell.currentWidget.context.path')
     # It goes without a word, like one that has crashed: the kernel finds out.
     stage.page.close(run_before_unload=False)
@@ -207,7 +319,7 @@ def test_drives_while_a_cell_is_running(stage):
     for _ in range(6):
         stage.notebook.start_cell('busy')
         stage.notebook.wait_output('busy', 'busy')
-        stage.hold('w', 'linear.x = 0.11')
+        stage.hold('w', 'linear.x = 0.22')
         stage.notebook.wait_for_end('busy')
         stage.focus()
         stage.page.keyboard.up('w')
@@ -228,7 +340,7 @@ def test_closed_views_say_so(stage):
     stage.notebook.run_cell('arena')
     stage.notebook.run_cell('teleop')
     stage.look()
-    stage.hold('ArrowUp', 'linear.x = 0.11')
+    stage.hold('ArrowUp', 'linear.x = 0.22')
     stage.page.keyboard.up('ArrowUp')
     stage.expect_stop()
     stage.notebook.run_cell('stop')

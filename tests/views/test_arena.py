@@ -138,6 +138,46 @@ def test_robot_that_was_put_elsewhere_has_a_new_trail(kernel):
     assert float(kernel.run('print(max(x for x, _ in view._trail))').text) < -0.8
 
 
+def test_a_bump_is_told_until_the_robot_drives_on(kernel):
+    kernel.run(ROBOT)
+    kernel.run(f'view = lab.arena()\n{SPY}\ndisplay(view)\nrobot.place(x=2.2)')
+    for v, side in ((0.2, 'ahead'), (-0.2, 'behind')):
+        # First at a distance: the scanner is blind to what is near behind it.
+        kernel.run(f'robot.place(x={"2.2" if v > 0 else "2.1"}, yaw={0 if v > 0 else math.pi})')
+        kernel.run('drive(0.0, 0.0, 3)\nsent.clear()')
+        kernel.run(f'drive({v}, 0.0, 20)')
+        kernel.run('lab.wait_until(lambda: "It bumped into something" in view.text)')
+        assert f'bumped into something, {side}.' in kernel.run('print(view)').text
+        kernel.run('lab.wait_until(lambda: any(c.get("bump") for c, _ in sent))')
+        bump = eval(kernel.run('print([c["bump"] for c, _ in sent if c.get("bump")][-1])').text)
+        assert bump == pytest.approx((2.5, 0.0), abs=0.03)
+        data = shown(kernel.run('view'))
+        assert 'It bumped' in data['text/plain'] and 'polygon' in data['image/svg+xml']
+        kernel.run(f'drive({-v}, 0.0, 3)')
+        kernel.run('lab.wait_until(lambda: "bumped" not in view.text)')
+    # To stop where nothing is near is none.
+    kernel.run('robot.place()\ndrive(0.2, 0.0, 5)\ndrive(0.0, 0.0, 3)')
+    kernel.run('lab.wait_until(lambda: view.scene.twist.v == 0 and view.scene.pose.x > 0.05)')
+    assert 'bumped' not in kernel.run('print(view)').text
+
+
+def test_page_that_comes_later_learns_what_was_seen_before(kernel):
+    kernel.run(ROBOT)
+    kernel.run(f'view = lab.arena()\n{SPY}\ndisplay(view)\nsay("seen")')
+    kernel.run('drive(0.2, 0.0, 3)\nrobot.place(x=-1.0, y=-0.5)\ndrive(0.2, 0.0, 3)')
+    kernel.run('lab.wait_until(lambda: view.scene.pose.x > -0.99)\nsent.clear()\nsay("seen")')
+    kernel.run(
+        'import numpy as np\n'
+        'news, buffers = next((c, b) for c, b in sent if c.get("met"))\n'
+        'met = np.frombuffer(buffers[-1], "<f4").reshape(-1, 2)'
+    )
+    # More than the 360 beams of a scan, each at a wall or a post.
+    assert int(kernel.run('print(len(met))').text) > 400
+    assert kernel.run('print(bool((abs(met) < 2.51).all()))').text == 'True\n'
+    # The page scrolls there once, and not when it is loaded again.
+    assert kernel.run('print(news["fresh"])').text == 'False\n'
+
+
 def test_says_why_nothing_comes(kernel):
     kernel.run(ROBOT)
     # In one process, a publisher of another type would keep it from subscribing.
@@ -173,6 +213,10 @@ def test_goals_that_are_none_are_refused(kernel):
             'Robot at x = 0.00 m, y = 2.00 m, heading 180°. It stands.',
         ),
         (Scene(pose=Pose(), twist=Twist2(-0.1, 0.5)), 'It drives at -0.10 m/s and turns at 0.50'),
+        (
+            Scene(pose=Pose(1.0, 0.0, math.pi / 2), bump=(0.9, 0.0)),
+            'It stands. It bumped into something, 90° to the left.',
+        ),
         (Scene(pose=Pose(), reach=3.5), 'Nothing within 3.5 m.'),
         (Scene(pose=Pose(), reach=3.5, nearest=(1.0, 0.05)), '1.00 m away, ahead.'),
         (Scene(pose=Pose(), reach=3.5, nearest=(1.0, -3.14)), '1.00 m away, behind.'),

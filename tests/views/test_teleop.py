@@ -131,18 +131,41 @@ def test_closing_stops_the_robot_and_ends_the_node(pilot):
     assert 'This teleop has ended' in pilot('print(heard[-1] == (0.0, 0.0) and told[-1]["ended"])')
 
 
-def test_a_second_one_takes_the_place_of_the_first(pilot):
-    pilot('page(v=1, w=0)\nwait_for((0.2, 0.0))\nfirst = pilot\npilot = lab.teleop()')
-    assert pilot('print(heard[-1])') == '(0.0, 0.0)'
+def test_two_drive_the_same_robot_with_one_node(pilot):
+    pilot('page(v=1, w=0)\nwait_for((0.2, 0.0))\nfirst = pilot\npilot = lab.teleop(max_speed=0.1)')
     assert pilot('print([e.name for e in runtime.nodes()])') == "['/ear', '/teleop']"
-    pilot("first._widget._handle_custom_msg({'v': 1, 'w': 0}, [])\npage(v=-1, w=0)")
-    pilot('wait_for((-0.22, 0.0))')
-    assert pilot('print(heard.count((0.2, 0.0)) < len(heard))') == 'True'
+    pilot('page(v=-1, w=0)\nwait_for((-0.1, 0.0))')
+    # The end of one is not that of the other, which goes on to be heard.
+    pilot('first.close()\nheard.clear()\npage(v=-0.5, w=0)\nwait_for((-0.05, 0.0))')
+    pilot("first._widget._handle_custom_msg({'v': 1, 'w': 0}, [])\npage(stop=True)")
+    pilot('wait_for((0.0, 0.0))')
+    assert pilot('print((0.2, 0.0) in heard)') == 'False'
+    topics = pilot('print([each.topic_name for each in pilot.node.publishers])')
+    assert topics.count('/cmd_vel') == 1
     # Another name is another robot's.
     pilot("other = lab.teleop(namespace='robot1')\nprint(other.topic)")
     assert pilot('print([e.name for e in runtime.nodes()][1:])') == (
         "['/teleop', '/robot1/teleop']"
     )
+    pilot('pilot.close()\nother.close()')
+    assert pilot('print([e.name for e in runtime.nodes()])') == "['/ear']"
+
+
+def test_a_new_way_does_not_wait_for_the_timer(pilot):
+    pilot("""
+from types import SimpleNamespace
+lab.wait_until(lambda: pilot._publisher.get_subscription_count() == 1)
+pilot.node.destroy_timer(pilot._repeat)
+pilot._repeat = SimpleNamespace(reset=lambda: None)
+for way in (0.1, 0.2, 0.3):
+    page(v=way, w=0.0)
+    page(v=way, w=0.0)
+    wait_for((round(0.2 * way, 3), 0.0))
+page(stop=True)
+wait_for((0.0, 0.0))
+""")
+    # Only what is new: what is said again is left to the timer.
+    assert pilot('print(heard)') == '[(0.02, 0.0), (0.04, 0.0), (0.06, 0.0), (0.0, 0.0)]'
 
 
 def test_after_the_end_of_its_node_it_says_so(pilot):
@@ -187,7 +210,7 @@ def test_headless_it_is_text(start_kernel):
     data = kernel.run('lab.teleop()').outputs[-1]['data']
     assert set(data) == {'text/plain'}
     assert 'w or ↑   forward' in data['text/plain']
-    assert 'at first 50% of full speed: 0.11 m/s, 1.42 rad/s' in data['text/plain']
+    assert 'at first 100% of full speed: 0.22 m/s, 1.42 rad/s' in data['text/plain']
 
 
 def test_speeds_that_make_no_sense_are_refused(kernel):
