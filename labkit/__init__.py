@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from labkit.views.arena import arena
     from labkit.views.bag import bag
     from labkit.views.graph import graph
+    from labkit.views.image import image
     from labkit.views.monitor import monitor
     from labkit.views.plot import plot
     from labkit.views.teleop import teleop
@@ -52,6 +53,7 @@ __all__ = [
     'doctor',
     'export',
     'graph',
+    'image',
     'join',
     'lesson',
     'listen',
@@ -81,6 +83,7 @@ _HOMES = {
     'doctor': 'labkit.checkup.report',
     'export': 'labkit.packages.export',
     'graph': 'labkit.views.graph',
+    'image': 'labkit.views.image',
     'join': 'labkit.background.joining',
     'lesson': 'labkit.exercises.lesson',
     'listen': 'labkit.background.waiting',

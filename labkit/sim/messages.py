@@ -14,13 +14,16 @@ import numpy as np
 from builtin_interfaces.msg import Time
 from nav_msgs.msg import Odometry
 from numpy.typing import NDArray
-from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan
+from sensor_msgs.msg import BatteryState, CameraInfo, Image, Imu, JointState, LaserScan
 
+from labkit.sim.camera import PI_CAMERA, picture
 from labkit.sim.kinematics import yaw_to_quaternion
 from labkit.sim.simulator import Simulator
 
 __all__ = [
     'battery_message',
+    'camera_info_message',
+    'image_message',
     'imu_message',
     'joint_state_message',
     'odometry_message',
@@ -38,6 +41,9 @@ BATTERY_CAPACITY = 1.8
 # Voltage of the full and of the empty battery, V. Source: ROBOTIS-GIT/OpenCR, turtlebot3_ros2/src/
 # turtlebot3/turtlebot3.cpp, update_battery_status_to_table: three cells of 4.1 V and of 3.5 V.
 BATTERY_FULL, BATTERY_EMPTY = 12.3, 10.5
+# The frame of pictures: x to the right, y down, z ahead (REP 103, "Suffix Frames"). Source:
+# ROBOTIS-GIT/turtlebot3, turtlebot3_description/urdf/turtlebot3_waffle_pi.urdf.
+CAMERA_FRAME = 'camera_rgb_optical_frame'
 
 
 def _diagonal(*values: float) -> NDArray[np.float64]:
@@ -164,4 +170,43 @@ def scan_message(robot: Simulator, stamp: Time, prefix: str = '') -> LaserScan:
     message.range_min = spec.range_min
     message.range_max = spec.range_max
     message.ranges = array('f', robot.scan())
+    return message
+
+
+def image_message(robot: Simulator, stamp: Time, prefix: str = '') -> Image:
+    """Return what the camera sees.
+
+    Args:
+        robot: The robot.
+        stamp: When.
+        prefix: What comes before the name of its frame.
+    """
+    pixels = picture(robot.world, robot.pose, but=robot.name)
+    message = Image()
+    message.header.stamp = stamp
+    message.header.frame_id = prefix + CAMERA_FRAME
+    message.height, message.width, depth = pixels.shape
+    message.encoding = 'rgb8'
+    message.step = message.width * depth
+    message.data = array('B', pixels.tobytes())
+    return message
+
+
+def camera_info_message(stamp: Time, prefix: str = '') -> CameraInfo:
+    """Return how the camera makes a picture: a pinhole without distortion.
+
+    Args:
+        stamp: When.
+        prefix: What comes before the name of its frame.
+    """
+    focal, middle_x, middle_y = PI_CAMERA.focal_length, PI_CAMERA.width / 2, PI_CAMERA.height / 2
+    message = CameraInfo()
+    message.header.stamp = stamp
+    message.header.frame_id = prefix + CAMERA_FRAME
+    message.height, message.width = PI_CAMERA.height, PI_CAMERA.width
+    message.distortion_model = 'plumb_bob'
+    message.d = [0.0] * 5
+    message.k = [focal, 0.0, middle_x, 0.0, focal, middle_y, 0.0, 0.0, 1.0]
+    message.r = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
+    message.p = [focal, 0.0, middle_x, 0.0, 0.0, focal, middle_y, 0.0, 0.0, 0.0, 1.0, 0.0]
     return message

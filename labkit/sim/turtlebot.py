@@ -26,19 +26,23 @@ from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_sensor_data
 from rclpy.timer import Timer
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan
+from sensor_msgs.msg import BatteryState, CameraInfo, Image, Imu, JointState, LaserScan
 
 from labkit.background import runtime
 from labkit.errors import LabError
+from labkit.sim.camera import PI_CAMERA
 from labkit.sim.kinematics import Pose, Twist2
 from labkit.sim.messages import (
     battery_message,
+    camera_info_message,
+    image_message,
     imu_message,
     joint_state_message,
     odometry_message,
     scan_message,
     time_message,
 )
+from labkit.sim.pace import Beat, Stopwatch
 from labkit.sim.simulator import COMMAND_TIMEOUT, Simulator
 from labkit.sim.world import Contact, Wall, World
 
@@ -48,6 +52,8 @@ __all__ = ['ODOM_RATE', 'Turtlebot']
 # real robot, too, publishes them in one round; it has 20 of them in a second.
 ODOM_RATE = 30.0
 QUEUE_DEPTH = 10
+# Only the newest picture is of use, as the driver of the real camera has it (camera_ros).
+PICTURES = 1
 # Beyond this rclpy can't keep up with the messages, simulated seconds in a second.
 MAX_SPEED = 100.0
 # A timer is not called more often than this, s: when time runs fast, a call does several rounds.
@@ -63,9 +69,12 @@ class Turtlebot(Node):
     `joint_states` (sensor_msgs/msg/JointState) 30 times a second, and `scan`
     (sensor_msgs/msg/LaserScan) 5 times a second. To whoever subscribes it publishes `imu`
     (sensor_msgs/msg/Imu) and `battery_state` (sensor_msgs/msg/BatteryState) 30 times a second;
-    the battery is a plain model, which falls from 100 % to 0 % in 2.5 h of simulated time. There
-    is no `/tf`. The robot stops when commands stop coming, and where it touches a wall. The
-    origin of the frame `odom` is that of the world, wherever it starts.
+    the battery is a plain model, which falls from 100 % to 0 % in 2.5 h of simulated time. Its
+    camera, a Raspberry Pi camera v2 that looks ahead, publishes `camera/image_raw`
+    (sensor_msgs/msg/Image: rgb8, 320 by 240 pixels, 62.2 degrees wide) and `camera/camera_info`
+    (sensor_msgs/msg/CameraInfo) 10 times a second, to whoever subscribes. There is no `/tf`. The
+    robot stops when commands stop coming, and where it touches a wall. The origin of the frame
+    `odom` is that of the world, wherever it starts.
 
     There are three ways for time to pass. By default it is real time. With `speed` it runs faster
     or slower, and `/clock` tells it to nodes that have the parameter `use_sim_time`. With
@@ -144,7 +153,10 @@ class Turtlebot(Node):
         )
         self._prefix = f'{space}/' if space else ''
         self._lock = threading.RLock()
-        self._scan_due = 0.0
+        early = 0.5 / ODOM_RATE
+        self._scan_beat = Beat(1 / self.simulator.robot.scan_rate, early)
+        # However fast time runs, no more pictures are made in a real second.
+        self._camera_beat = Beat(max(1.0, speed) / PI_CAMERA.rate, early)
         self._owed = 0.0
         self._said: set[str] = set()
         self._reported = 0
@@ -153,7 +165,7 @@ class Turtlebot(Node):
         if lockstep is not None or speed != 1.0:
             self._clock_publisher = self.create_publisher(Clock, '/clock', QUEUE_DEPTH)
         self._open_topics()
-        self._stopwatch = _Stopwatch(cast(ROSClock, self.get_clock()))
+        self._stopwatch = Stopwatch(cast(ROSClock, self.get_clock()))
         self._speed = speed
         self._timer: Timer | None = None
         if lockstep is None:
@@ -172,6 +184,8 @@ class Turtlebot(Node):
         self._joints = self.create_publisher(JointState, 'joint_states', QUEUE_DEPTH)
         self._imu = self.create_publisher(Imu, 'imu', QUEUE_DEPTH)
         self._battery = self.create_publisher(BatteryState, 'battery_state', QUEUE_DEPTH)
+        self._image = self.create_publisher(Image, 'camera/image_raw', PICTURES)
+        self._camera_info = self.create_publisher(CameraInfo, 'camera/camera_info', PICTURES)
         self.create_subscription(Twist, 'cmd_vel', self._on_command, QUEUE_DEPTH)
 
     def _on_join(self, publish: Callable[[], None]) -> PublisherEventCallbacks | None:
@@ -229,7 +243,8 @@ class Turtlebot(Node):
         The robot does not move for the time since its last round. Its speed and its command stay.
         """
         with self._lock:
-            self._scan_due = self.simulator.time
+            for beat in (self._scan_beat, self._camera_beat):
+                beat.restart(self.simulator.time)
             self._owed = 0.0
             self._stopwatch.restart()
             if self._timer is not None:
@@ -347,13 +362,10 @@ class Turtlebot(Node):
             self._imu.publish(imu_message(self.simulator, stamp, self._prefix))
         if self._battery.get_subscription_count():
             self._battery.publish(battery_message(self.simulator, stamp))
-        # Half a round early is on time: real rounds are a little shorter or longer.
-        time, turn = self.simulator.time, 1 / self.simulator.robot.scan_rate
-        if time > self._scan_due - 0.5 / ODOM_RATE:
-            self._scan_due += turn
-            if self._scan_due < time:
-                self._scan_due = time + turn
+        if self._scan_beat.is_due(self.simulator.time):
             self._publish_scan()
+        if self._camera_beat.is_due(self.simulator.time):
+            self._publish_picture()
 
     def _publish_odometry(self) -> None:
         self._odom.publish(odometry_message(self.simulator, self._stamp(), self._prefix))
@@ -361,44 +373,17 @@ class Turtlebot(Node):
     def _publish_scan(self) -> None:
         self._scan.publish(scan_message(self.simulator, self._stamp(), self._prefix))
 
+    def _publish_picture(self) -> None:
+        stamp = self._stamp()
+        if self._image.get_subscription_count():
+            self._image.publish(image_message(self.simulator, stamp, self._prefix))
+        if self._camera_info.get_subscription_count():
+            self._camera_info.publish(camera_info_message(stamp, self._prefix))
+
     def _stamp(self) -> Any:
         if self._clock_publisher is None:
             return self.get_clock().now().to_msg()
         return time_message(self.simulator.time)
-
-
-class _Stopwatch:
-    """How much time of a node's clock passes.
-
-    ROS time may be switched on or off at any moment (the parameter `use_sim_time`). What lies
-    between the times of two sources has not passed.
-    """
-
-    def __init__(self, clock: ROSClock) -> None:
-        self._clock = clock
-        self.restart()
-
-    def restart(self) -> None:
-        """Count from now."""
-        self._source, self._last = self._look()
-
-    def passed(self) -> float:
-        """Return the time since this was asked last, s.
-
-        0 if the time comes from another source now, or was set back.
-        """
-        source, last = self._source, self._last
-        self.restart()
-        return max(0, self._last - last) * 1e-9 if self._source == source else 0.0
-
-    def _look(self) -> tuple[tuple[bool, bool], int]:
-        """Return what the time comes from, and the time, ns."""
-        while True:
-            active, now = self._clock.ros_time_is_active, self._clock.now().nanoseconds
-            # Another thread may switch the source between the two.
-            if active == self._clock.ros_time_is_active:
-                # ROS time is 0 until somebody tells it.
-                return (active, now == 0), now
 
 
 def _check_time(speed: float, lockstep: float | None, use_sim_time: bool) -> None:

@@ -64,7 +64,11 @@ class Seen {
       if (next) this.meetAlong(ax, ay, ...next);
       else this.mark(ax, ay, HIT);
     });
-    eachEnd(scan, [x, y], (ax, ay) => this.pass(x, y, ax, ay));
+    eachEnd(scan, [x, y], (ax, ay, next) => {
+      this.pass(x, y, ax, ay);
+      // Far away the next beam may be more than a square away.
+      if (next) this.pass(x, y, (ax + next[0]) / 2, (ay + next[1]) / 2);
+    });
   }
 
   // Walls that were met before this page was there: pairs of numbers.

@@ -19,6 +19,8 @@ CELLS = {
     'both': 'display(lab.arena(), lab.teleop())',
     'other-arena': 'lab.arena()',
     'other-teleop': 'lab.teleop()',
+    'camera': "display(lab.image('/camera/image_raw'), lab.teleop())",
+    'close-camera': 'lab.remove(robot)',
     'busy': """
 print('busy')
 try:
@@ -208,6 +210,41 @@ def test_map_and_keys_are_beside_each_other_where_there_is_room(stage):
     assert stage.page.evaluate("document.fullscreenElement.querySelector('.labkit-teleop')")
     stage.page.evaluate('document.exitFullscreen()')
     stage.page.wait_for_function('!document.fullscreenElement')
+
+
+# The colour in the middle of a picture.
+MIDDLE = """picture => {
+  const canvas = Object.assign(document.createElement('canvas'), { width: 1, height: 1 });
+  const { naturalWidth: width, naturalHeight: height } = picture;
+  const context = canvas.getContext('2d');
+  context.drawImage(picture, width / 2, height / 2, 1, 1, 0, 0, 1, 1);
+  return [...context.getImageData(0, 0, 1, 1).data].slice(0, 3);
+}"""
+
+
+def test_one_drives_by_what_the_camera_sees(stage):
+    stage.notebook.run_cell('camera')
+    area = stage.notebook.output('camera')
+    view, picture = area.locator('.labkit-image'), area.locator('.labkit-image img')
+    expect(picture).to_have_attribute(
+        'alt', 'Picture of /camera/image_raw: 320 x 240 pixels, rgb8.'
+    )
+    expect(view).to_contain_text('/camera/image_raw')
+    assert picture.evaluate('p => [p.naturalWidth, p.naturalHeight]') == [320, 240]
+    # The wall ahead is yellow. To the left of it stands a red one.
+    _, green, blue = picture.evaluate(MIDDLE)
+    assert green - blue > 60
+    area.locator('.labkit-teleop').click(position={'x': 4, 'y': 4})
+    stage.page.keyboard.down('a')
+    stage.page.wait_for_function(
+        f'p => {{ const [r, g, b] = ({MIDDLE})(p); return r - g > 50 && g - b < 50; }}',
+        arg=picture.element_handle(),
+    )
+    stage.page.keyboard.up('a')
+    stage.notebook.run_cell('close-camera')
+    expect(view.locator('.labkit-live-note')).to_contain_text(
+        'Nobody publishes on /camera/image_raw'
+    )
 
 
 def test_two_maps_and_two_sets_of_keys_work(stage):

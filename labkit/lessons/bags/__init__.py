@@ -27,6 +27,8 @@ LESSON = Lesson(
         '/joint_states',
         '/imu',
         '/battery_state',
+        '/camera/image_raw',
+        '/camera/camera_info',
         '/clock',
         '/temperature',
         '/wind',

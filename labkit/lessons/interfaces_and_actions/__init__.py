@@ -21,7 +21,16 @@ LESSON = Lesson(
     ),
     exercises=[squares, stairs, countdown, asker],
     quizzes=[QUIZ],
-    topics=['/odom', '/scan', '/joint_states', '/imu', '/battery_state', '/cmd_vel'],
+    topics=[
+        '/odom',
+        '/scan',
+        '/joint_states',
+        '/imu',
+        '/battery_state',
+        '/camera/image_raw',
+        '/camera/camera_info',
+        '/cmd_vel',
+    ],
     given={
         '/turtlebot': '*',
         '/fibonacci': 'server choosy',

@@ -21,7 +21,16 @@ LESSON = Lesson(
     ),
     exercises=[lamp, porter, metronome, pilot],
     quizzes=[QUIZ],
-    topics=['/odom', '/scan', '/joint_states', '/imu', '/battery_state', '/knock'],
+    topics=[
+        '/odom',
+        '/scan',
+        '/joint_states',
+        '/imu',
+        '/battery_state',
+        '/camera/image_raw',
+        '/camera/camera_info',
+        '/knock',
+    ],
     given={
         '/turtlebot': '*',
         '/gate': 'gate',

@@ -19,6 +19,13 @@ LESSON = Lesson(
     teaches='a robot on real topics: drive it, read its odometry, write its controller',
     exercises=[stop, bot, wall, go_to, square],
     quizzes=[QUIZ],
-    topics=['/scan', '/joint_states', '/imu', '/battery_state'],
+    topics=[
+        '/scan',
+        '/joint_states',
+        '/imu',
+        '/battery_state',
+        '/camera/image_raw',
+        '/camera/camera_info',
+    ],
     given={'/turtlebot': '*', '/teleop': '*', '/bot': 'bot-run', '/speedometer': 'speedometer'},
 )
