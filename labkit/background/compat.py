@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rclpy.clock import ROSClock
     from rclpy.executors import Executor
     from rclpy.node import Node
+    from rclpy.subscription import Subscription
     from rclpy.task import Task
     from rclpy.timer import Timer
     from rclpy.waitable import NumberOfEntities
@@ -42,6 +43,7 @@ __all__ = [
     'running_request',
     'set_ros_time_is_active',
     'set_thread_request',
+    'take_all',
     'take_logs',
     'takers',
 ]
@@ -148,6 +150,23 @@ def rate_sleepers(timer: Timer) -> set[int]:
                 found.add(ident)
             frame = frame.f_back
     return found
+
+
+def take_all(subscription: Subscription, most: int) -> int:
+    """Take the messages that wait for a subscription which no executor serves, as bytes.
+
+    Args:
+        subscription: The subscription.
+        most: How many to take at most.
+
+    Returns:
+        How many there were.
+    """
+    count = 0
+    with subscription.handle:
+        while count < most and subscription.handle.take_message(subscription.msg_type, True):
+            count += 1
+    return count
 
 
 def take_logs(show: Callable[[int, str, str], None]) -> Callable[[], None]:

@@ -162,6 +162,7 @@ def read_graph(
     *,
     include_hidden: bool = False,
     include_services: bool = False,
+    include_actions: bool = True,
 ) -> Graph:
     """Take a picture of the graph.
 
@@ -170,6 +171,7 @@ def read_graph(
         include_hidden: Whether to include hidden nodes and topics (a part of the name starts with
             `_`), and the two topics and the parameter services that every node has.
         include_services: Whether to include services.
+        include_actions: Whether to include actions.
 
     Returns:
         The graph, sorted by name.
@@ -186,7 +188,7 @@ def read_graph(
             if senders or hearers:
                 topics += [GraphTopic(topic, tuple(types), senders, hearers)]
     services = _services(node, names, include_hidden) if include_services else ()
-    found = _actions(node, names, include_hidden)
+    found = _actions(node, names, include_hidden) if include_actions else ()
     return Graph(nodes, tuple(topics), services, found)
 
 

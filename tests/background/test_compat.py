@@ -289,3 +289,24 @@ print(compat.node_of_action(server) is node)
 """
     )
     assert result.stdout == 'True\n', result.stderr
+
+
+def test_messages_that_wait_for_a_subscription_are_taken(script):
+    result = script(
+        """
+import rclpy
+from labkit.background import compat
+from rclpy.node import Node
+from std_msgs.msg import String
+
+rclpy.init()
+node = Node('node')
+subscription = node.create_subscription(String, '/topic', print, 3, raw=True)
+publisher = node.create_publisher(String, '/topic', 10)
+print(compat.take_all(subscription, 10))
+for _ in range(5):
+    publisher.publish(String(data=''))
+print(compat.take_all(subscription, 2), compat.take_all(subscription, 10))
+"""
+    )
+    assert result.stdout == '0\n2 1\n', result.stderr

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import re
+from xml.etree import ElementTree
+
 import pytest
-from rclpy.qos import QoSProfile
 
-from labkit.rosgraph.endpoints import Endpoint
-from labkit.rosgraph.snapshot import Graph, GraphNode, GraphTopic
-from labkit.views.graph import to_mermaid
+from labkit.rosgraph.snapshot import Graph
+from labkit.views.graph import GraphView
+from labkit.views.graph_picture import Picture
+from labkit.views.graph_words import description, in_lines
+from tests.views.graphs import ALL, APART, EYES, INT16, OFFERS, STRING, graph, topic
 
+SVG = '{http://www.w3.org/2000/svg}'
 NODES = """
 import labkit as lab
 from rclpy.node import Node
@@ -18,11 +23,33 @@ talker, listener = lab.spin(Node('talker')), lab.spin(Node('listener'))
 talker.create_publisher(String, 'chatter', 10)
 listener.create_subscription(String, 'chatter', lambda msg: None, 10)
 """
+# Each part of an SVG that is an arrow: kind, node, name of the other end.
+ARROWS = """
+from labkit.views.graph_picture import Picture
+def arrows(data):
+    lines = Picture(data).lines
+    return sorted((line.kind, line.node, line.other, ' '.join(line.words)) for line in lines)
+"""
 
 
 def shown(result):
     assert not result.error, result.traceback
     return result.outputs[-1]['data']
+
+
+def lines(data: Graph) -> list[tuple[str, str, str]]:
+    return [(line.kind, line.node, line.other) for line in Picture(data).lines]
+
+
+def parsed(data: Graph) -> ElementTree.Element:
+    return ElementTree.fromstring(Picture(data).svg())
+
+
+def words(root: ElementTree.Element) -> list[str]:
+    return [''.join(text.itertext()) for text in root.iter(f'{SVG}text')]
+
+
+# -- real nodes ---------------------------------------------------------------------------------
 
 
 def test_nodes_and_topics_are_drawn_and_told(kernel):
@@ -41,14 +68,16 @@ def test_nodes_and_topics_are_drawn_and_told(kernel):
         '    published by /talker',
         '    subscribed by /listener',
     ]
-    picture = data['text/vnd.mermaid'].splitlines()
-    assert '  n1 --> t0' in picture
-    assert '  t0 --> n0' in picture
-    assert 'accDescr: Nodes /listener, /talker. Topics /chatter.' in data['text/vnd.mermaid']
+    root = ElementTree.fromstring(data['image/svg+xml'])
+    assert words(root) == ['/listener', '/talker', '/chatter', 'std_msgs/msg/String']
+    told = root.find(f'{SVG}desc').text
+    assert told == (
+        'Nodes: /listener, /talker. /talker → /chatter [std_msgs/msg/String] → /listener.'
+    )
 
 
 def test_a_pair_that_does_not_match_has_a_cross_and_words(kernel):
-    kernel.run(NODES + 'from rclpy.qos import qos_profile_sensor_data')
+    kernel.run(NODES + ARROWS + 'from rclpy.qos import qos_profile_sensor_data')
     kernel.run(
         'sonar = Node("sonar")\nsonar.create_publisher(String, "b", qos_profile_sensor_data)'
     )
@@ -56,82 +85,164 @@ def test_a_pair_that_does_not_match_has_a_cross_and_words(kernel):
     data = shown(kernel.run('lab.graph()'))
     reason = 'Best effort publisher and reliable subscription'
     assert f'    no match between /sonar and /listener: {reason}' in data['text/plain']
-    picture = data['text/vnd.mermaid'].splitlines()
-    # n0 is /listener, n1 is /sonar, t0 is /b.
-    assert f'  t0 -. "does not hear /sonar: {reason}" .-x n0' in picture
-    assert '  n1 --> t0' in picture
-    assert '  t0 --> n0' not in picture
-    assert f' /listener does not hear /sonar on /b: {reason}.' in data['text/vnd.mermaid']
+    assert data['image/svg+xml'].count('class="cross"') == 1
+    assert f'/listener does not hear /sonar on /b: {reason}' in data['image/svg+xml']
+    on_b = 'print(*[each for each in arrows(lab.graph().data) if each[2] == "/b"], sep="\\n")'
+    apart = f"('apart', '/listener', '/b', 'does not hear /sonar: {reason}')"
+    assert kernel.run(on_b).text.splitlines() == [apart, "('publishes', '/sonar', '/b', '')"]
     # Somebody else is heard: both are to be seen.
     kernel.run('talker.create_publisher(String, "b", 10)')
-    picture = shown(kernel.run('lab.graph()'))['text/vnd.mermaid'].splitlines()
-    assert '  t0 --> n0' in picture
-    assert f'  t0 -. "does not hear /sonar: {reason}" .-x n0' in picture
+    heard = kernel.run(on_b).text.splitlines()
+    assert apart in heard and "('hears', '/listener', '/b', '')" in heard
     # And who hears them both, beside one that does not, has no cross.
     kernel.run('ear = lab.spin(Node("ear"))')
     kernel.run('ear.create_subscription(String, "b", print, qos_profile_sensor_data)')
-    crosses = [
-        line
-        for line in shown(kernel.run('lab.graph()'))['text/vnd.mermaid'].splitlines()
-        if '.-x' in line
-    ]
-    assert len(crosses) == 1
+    assert shown(kernel.run('lab.graph()'))['image/svg+xml'].count('class="cross"') == 1
 
 
 def test_services_and_hidden_names_are_shown_on_demand(kernel):
     kernel.run(NODES + 'from std_srvs.srv import Trigger\nimport rclpy')
     kernel.run('talker.create_service(Trigger, "fire", lambda request, response: response)')
     assert 'Services' not in shown(kernel.run('lab.graph()'))['text/plain']
-    assert (
-        '  /fire [std_srvs/srv/Trigger]\n    offered by /talker'
-        in (shown(kernel.run('lab.graph(services=True)'))['text/plain'])
-    )
+    data = shown(kernel.run('lab.graph(services=True)'))
+    assert '  /fire [std_srvs/srv/Trigger]\n    offered by /talker' in data['text/plain']
+    assert '<g class="service"' in data['image/svg+xml']
     assert '/rosout' in shown(kernel.run('lab.graph(hidden=True)'))['text/plain']
     assert 'live must be True or False' in kernel.run('lab.graph(live=1)').error
 
 
-def test_live_picture_follows_and_ends_when_closed(kernel):
-    kernel.run(NODES)
-    kernel.run('view = lab.graph(live=True)\nview')
-    assert kernel.run('view').error == ''
-    timers = (
-        'from labkit.background.runtime import runtime\nprint(len(list(runtime.helper.timers)))'
-    )
-    before = int(kernel.run(timers).text)
-    kernel.run('lab.spin(Node("extra"))\nlab.wait_until(lambda: "/extra" in repr(view))')
-    assert 'extra' in kernel.run('print(view)').text
-    kernel.run('view.close()')
-    assert int(kernel.run(timers).text) == before - 1
+def test_a_program_that_runs_the_lesson_gets_the_picture_alone(run_kernel_still):
+    data = shown(run_kernel_still(NODES + 'lab.graph()'))
+    assert sorted(data) == ['image/svg+xml', 'text/plain']
+    again = shown(run_kernel_still('lab.graph(live=True)'))
+    assert again == data == shown(run_kernel_still('lab.graph(live=False)'))
 
 
-def test_live_picture_says_that_ros_was_stopped(kernel):
-    kernel.run(NODES)
-    cell = kernel.run('view = lab.graph(live=True)\nview')
-    assert '/talker' in shown(cell)['text/vnd.mermaid']
-    # Else it would go on showing nodes that are gone.
-    result = kernel.run('lab.stop()')
-    assert not result.error
-    updates = [
-        message['content']['data']
-        for message in kernel._messages[result.msg_id]
-        if message['msg_type'] == 'update_display_data'
+def test_a_script_prints_the_words(script):
+    result = script(NODES + 'print(lab.graph())')
+    assert result.stdout.startswith('Nodes:\n  /listener\n  /talker\nTopics:\n'), result.stderr
+
+
+@pytest.fixture
+def run_kernel_still(start_kernel):
+    return start_kernel(LABKIT_HEADLESS='1').run
+
+
+# -- the drawing --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize('data', ALL.values(), ids=ALL)
+def test_it_is_an_svg_that_tells_what_it_shows(data: Graph):
+    text = Picture(data).svg()
+    assert text == Picture(data).svg()
+    root = parsed(data)
+    assert root.get('role') == 'img'
+    ids = {element.get('id') for element in root.iter()} - {None}
+    assert set(root.get('aria-labelledby').split()) < ids
+    assert root.find(f'{SVG}title').text and root.find(f'{SVG}desc').text
+    for element in root.iter():
+        assert element.tag.removeprefix(SVG) in (
+            *('svg', 'title', 'desc', 'defs', 'marker', 'g', 'path', 'rect', 'text'),
+        )
+        assert not [name for name in element.attrib if name.startswith('on') or 'href' in name]
+    # A ground of its own, on which it can be read whatever the page's is.
+    ground = root.find(f'{SVG}rect')
+    assert (ground.get('class'), ground.get('fill')) == ('ground', '#ffffff')
+    assert float(ground.get('width', '')) == float(root.get('width', '')) - 1
+    # What leads where is told in arrows.
+    told = root.find(f'{SVG}desc').text
+    for each in data.topics:
+        assert f' → {each.name} [' in told or f'{each.name} [' in told
+
+
+def test_nothing_is_told_by_colour_alone():
+    root = parsed(OFFERS)
+    outlines = {
+        part.get('class'): [(child.tag.removeprefix(SVG), child.get('rx')) for child in part][:2]
+        for part in root.iter(f'{SVG}g')
+        if part.get('data-part', 'a').startswith('b')
+    }
+    assert outlines['node'][0] == ('rect', '24')
+    assert outlines['topic'][0] == ('rect', '4')
+    assert outlines['service'][0] == ('path', None)
+    assert outlines['action'] == [('rect', '4'), ('path', None)]
+    widths = {
+        part.get('class'): part[0].get('stroke-width')
+        for part in root.iter(f'{SVG}g')
+        if 'arrow' in (part.get('class') or '')
+    }
+    assert widths['arrow action'] > widths['arrow publishes']
+    dashed = [shape.name for shape in Picture(APART).shapes if not shape.own]
+    assert dashed == ['/referee']
+    assert Picture(APART).svg().count('stroke-dasharray="6 4"') == 1
+
+
+def test_an_action_is_one_thing():
+    assert [each for each in lines(OFFERS) if each[0] == 'action'] == [
+        ('action', '/watcher', '/walk'),
+        ('action', '/leg', '/walk'),
     ]
-    assert updates == [{'text/plain': 'ROS was stopped. Run this cell to start it again.'}]
-    # Shown again, it is the picture of then; ROS is not started by it.
-    assert '/talker' in shown(kernel.run('view'))['text/vnd.mermaid']
-    started = 'from labkit.background.runtime import runtime\nprint(runtime.started)'
-    assert kernel.run(started).text == 'False\n'
+
+
+def test_crosses_say_whom_and_why():
+    found = {line.node: line.words for line in Picture(APART).lines if line.words}
+    assert found == {
+        '/pilot': ['does not hear /sonar:', 'Best effort publisher and', 'reliable subscription'],
+        '/announcer': ['does not hear /referee:', f'{INT16} is not', STRING],
+    }
+    # The pilot hears somebody else; the announcer hears nobody.
+    heard = [line for line in lines(APART) if line[0] == 'hears']
+    assert heard == [('hears', '/pilot', '/range')]
+
+
+def test_of_many_that_are_not_heard_some_are_named():
+    many = topic('/a', [(f'/n{number}', INT16) for number in range(9)], [('/ear', STRING)])
+    (line,) = [line for line in Picture(graph(many)).lines if line.words]
+    assert 'and 7 more:' in ' '.join(line.words)
+    assert all(f'/n{number}' in description(graph(many)) for number in range(9))
 
 
 @pytest.mark.parametrize(
-    'name', ['/a"]); click n0 "javascript:1"', '/<img onerror=1>', '/x#quot;']
+    ('text', 'limit', 'expected'),
+    [
+        ('/chatter', 10, ['/chatter']),
+        ('std_msgs/msg/Float64', 12, ['std_msgs/', 'msg/Float64']),
+        ('one two three', 8, ['one two', 'three']),
+        ('/a_long_name/of_parts', 8, ['/a_long_', 'name/of_', 'parts']),
+        ('x' * 20, 8, ['x' * 12, 'x' * 8]),
+        ('Fibonacci', 6, ['Fibonacci']),
+    ],
 )
-def test_names_have_no_power_over_the_picture(name):
-    end = Endpoint(name, '/topic', 'std_msgs/msg/String', QoSProfile(depth=1), bytes(16))
-    topic = GraphTopic(name, (name,), (end,), (end,))
-    text = to_mermaid(Graph((GraphNode(name, own=False),), (topic,)))
-    for line in text.splitlines():
-        if 'img' in line or 'javascript' in line or 'quot' in line:
-            assert '<img' not in line
-            assert line.count('"') in (0, 2)
-            assert 'quot;' not in line.replace('#59;', '')
+def test_a_word_is_not_broken(text: str, limit: int, expected: list[str]):
+    assert in_lines(text, limit) == expected
+
+
+HOSTILE = [
+    '/a"]); alert(1)',
+    '/<img onerror=1>',
+    '/x&quot;',
+    '/]]><script>alert(1)</script>',
+    '/\x00\x1b',
+]
+
+
+@pytest.mark.parametrize('name', HOSTILE)
+def test_names_have_no_power_over_the_picture(name: str):
+    data = graph(topic(name, [(name, name)], [(name, STRING)]))
+    root = parsed(data)
+    told = words(root)
+    plain = ''.join(char if char.isprintable() else '\ufffd' for char in name)
+    assert plain in told or ''.join(told).startswith(plain.replace(' ', ''))
+    assert not list(root.iter(f'{SVG}script')) and not list(root.iter(f'{SVG}img'))
+
+
+def test_no_picture_of_nothing():
+    assert GraphView(graph())._repr_mimebundle_() == {
+        'text/plain': 'No node is running. Start one with lab.spin(node) and look again.'
+    }
+    assert 'image/svg+xml' in GraphView(graph(alone=['/a']))._repr_mimebundle_()
+
+
+def test_two_pictures_in_one_page_share_no_names():
+    ids = [set(re.findall(r' id="([^"]+)"', Picture(data).svg())) for data in (EYES, APART)]
+    assert ids[0] and not ids[0] & ids[1]

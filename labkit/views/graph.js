@@ -1,0 +1,295 @@
+// The graph as the kernel has drawn it. Dots show messages that pass; each part can be asked.
+
+const SVG = 'http://www.w3.org/2000/svg';
+const NAME_PX = 15; // see graph_picture.py
+const TRAVEL_MS = 650;
+// Dots of an arrow are apart: faster than that, one stands for several messages.
+const APART_MS = 200;
+const MOST_DOTS = 80;
+const TICK_MS = 100; // see graph_live.py
+const STILL = window.matchMedia('(prefers-reduced-motion: reduce)');
+
+function svgElement(tag, attributes) {
+  const made = document.createElementNS(SVG, tag);
+  Object.entries(attributes).forEach(([name, value]) => made.setAttribute(name, value));
+  return made;
+}
+
+// Dots on their way along arrows. They rest as long as there are none.
+class Dots {
+  constructor() {
+    this.layer = null;
+    this.dots = [];
+    this.frame = 0;
+  }
+
+  restart(layer) {
+    this.layer = layer;
+    this.dots = [];
+  }
+
+  start(path, at) {
+    if (!this.layer || this.dots.length >= MOST_DOTS) return;
+    const dot = svgElement('circle', { r: 5, class: 'dot', visibility: 'hidden' });
+    this.layer.append(dot);
+    this.dots.push({ dot, path, length: path.getTotalLength(), at });
+    if (!this.frame) this.frame = requestAnimationFrame((now) => this.move(now));
+  }
+
+  move(now) {
+    this.dots = this.dots.filter(({ dot, path, length, at }) => {
+      const part = (now - at) / TRAVEL_MS;
+      if (part >= 1) {
+        dot.remove();
+        return false;
+      }
+      if (part >= 0) {
+        const { x, y } = path.getPointAtLength(part * length);
+        dot.setAttribute('cx', x);
+        dot.setAttribute('cy', y);
+        dot.setAttribute('visibility', 'visible');
+      }
+      return true;
+    });
+    this.frame = this.dots.length ? requestAnimationFrame((next) => this.move(next)) : 0;
+  }
+
+  end() {
+    cancelAnimationFrame(this.frame);
+  }
+}
+
+// The drawing, and what is known of each of its parts by the part's name.
+class Drawing {
+  constructor(tell) {
+    this.place = element('div', { className: 'labkit-graph-drawing' });
+    this.tell = tell;
+    this.dots = new Dots();
+    this.parts = {};
+    this.rates = {};
+    this.chosen = '';
+    // Part -> when its last dot starts.
+    this.startedAt = {};
+    this.place.addEventListener('keydown', (event) => this.onKey(event));
+    this.place.addEventListener('pointerover', (event) => this.choose(this.partAt(event.target)));
+    this.place.addEventListener('pointerleave', () => {
+      this.choose(this.partAt(document.activeElement));
+    });
+    this.place.addEventListener('focusin', (event) => this.choose(this.partAt(event.target)));
+    this.place.addEventListener('focusout', () => this.choose(''));
+  }
+
+  partAt(target) {
+    const part = this.place.contains(target) ? target.closest('[data-part]') : null;
+    return part?.dataset.part ?? '';
+  }
+
+  get all() {
+    return [...this.place.querySelectorAll('[data-part]')];
+  }
+
+  find(name) {
+    return this.place.querySelector(`[data-part="${name}"]`);
+  }
+
+  // Text of others comes in as text: the parser of XML runs nothing, and no script is in it.
+  draw(text, parts) {
+    const had = this.parts[this.partAt(document.activeElement)]?.[0];
+    this.parts = parts;
+    this.place.replaceChildren();
+    this.chosen = '';
+    this.tell([]);
+    if (!text) return;
+    const svg = document.importNode(
+      new DOMParser().parseFromString(text, 'image/svg+xml').documentElement, true);
+    svg.querySelectorAll('title, desc').forEach((each) => each.remove());
+    svg.removeAttribute('aria-labelledby');
+    svg.setAttribute('role', 'group');
+    svg.setAttribute('aria-label', 'Nodes and topics');
+    // As large as the letters of the page.
+    svg.style.width = `${svg.getAttribute('width') / NAME_PX}em`;
+    svg.style.height = '';
+    const layer = svgElement('g', { 'aria-hidden': 'true' });
+    svg.lastElementChild.append(layer);
+    this.place.append(svg);
+    this.dots.restart(layer);
+    this.all.forEach((part, index) => {
+      part.setAttribute('role', 'img');
+      part.setAttribute('tabindex', index ? -1 : 0);
+      const way = part.querySelector('.way');
+      // Wide enough to be pointed at.
+      if (way) part.prepend(svgElement('path', { d: way.getAttribute('d'), class: 'hit' }));
+    });
+    this.label();
+    const again = this.all.find((part) => parts[part.dataset.part]?.[0] === had);
+    if (had) (again ?? this.all[0])?.focus({ preventScroll: true });
+  }
+
+  lines(name) {
+    const rate = this.rates[name];
+    return [...(this.parts[name] ?? []), ...(rate ? [`${rate}`] : [])];
+  }
+
+  label() {
+    this.all.forEach((part) => {
+      part.setAttribute('aria-label', this.lines(part.dataset.part).join('. '));
+    });
+  }
+
+  setRates(rates) {
+    this.rates = rates;
+    this.label();
+    if (this.chosen) this.tell(this.lines(this.chosen));
+  }
+
+  choose(name) {
+    if (name === this.chosen) return;
+    this.find(this.chosen)?.classList.remove('chosen');
+    this.chosen = name;
+    this.find(name)?.classList.add('chosen');
+    this.tell(name ? this.lines(name) : []);
+  }
+
+  onKey(event) {
+    if (event.key === 'Escape') {
+      this.place.closest('.jp-Notebook')?.focus({ preventScroll: true });
+      return;
+    }
+    const parts = this.all;
+    const here = parts.indexOf(document.activeElement);
+    const steps = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 };
+    const to = { Home: 0, End: parts.length - 1 }[event.key] ?? here + (steps[event.key] ?? 0);
+    if (here < 0 || (to === here && !(event.key in steps))) return;
+    event.preventDefault();
+    const next = parts[Math.max(0, Math.min(parts.length - 1, to))];
+    parts[here].setAttribute('tabindex', -1);
+    next.setAttribute('tabindex', 0);
+    next.focus();
+  }
+
+  // Show messages that have passed: a dot for each, as far as they can be told apart.
+  pass(passed) {
+    Object.entries(passed).forEach(([name, count]) => {
+      const part = this.find(name);
+      const way = part?.querySelector('.way');
+      if (!way) return;
+      part.dataset.passed = Number(part.dataset.passed ?? 0) + count;
+      // What is handed on comes after what has come in.
+      const wait = part.classList.contains('hears') ? TRAVEL_MS : 0;
+      const now = performance.now();
+      for (let index = 0; index < count && !STILL.matches; index += 1) {
+        const at = Math.max(now + (index * TICK_MS) / count, (this.startedAt[name] ?? 0) + APART_MS);
+        if (at > now + TICK_MS) break;
+        this.startedAt[name] = at;
+        this.dots.start(way, at + wait);
+      }
+    });
+  }
+}
+
+// Switches for what is there besides topics.
+function makeSwitches(send) {
+  const place = element('div', { className: 'labkit-graph-switches' });
+  const inputs = {};
+  const show = (states) => {
+    Object.entries(states).forEach(([name, on]) => {
+      if (!inputs[name]) {
+        inputs[name] = element('input', { type: 'checkbox' });
+        inputs[name].addEventListener('change', () => send({ [name]: inputs[name].checked }));
+        place.append(element('label', {}, inputs[name], `${name[0].toUpperCase()}${name.slice(1)}`));
+      }
+      inputs[name].checked = on;
+    });
+    Object.entries(inputs).forEach(([name, input]) => {
+      input.parentElement.hidden = !(name in states);
+    });
+  };
+  return { place, show };
+}
+
+function render({ model, el }) {
+  el.classList.add('labkit-live', 'labkit-graph');
+  el.setAttribute('role', 'group');
+  el.setAttribute('aria-label', 'Graph of nodes and topics, live');
+  const told = element('p', { className: 'labkit-graph-told' });
+  const empty = element('p', {
+    className: 'labkit-graph-empty',
+    textContent: 'No node is running. Start one with lab.spin(node): it appears here.',
+  });
+  const name = element('strong');
+  const about = element('span');
+  const details = element('p', { className: 'labkit-graph-details' }, name, about);
+  const hint = 'Point at a part, or press Tab and the arrow keys, to know more of it.';
+  const drawing = new Drawing(([first, ...lines]) => {
+    setText(name, first ?? '');
+    setText(about, first ? lines.join(' · ') : hint);
+  });
+  const send = (content) => model.send(content);
+  const switches = makeSwitches(send);
+  const back = element('button', { type: 'button', textContent: 'Show it' });
+  const since = element('span');
+  const changed = element('p', { className: 'labkit-graph-changed', hidden: true }, since, back);
+  const known = { then: false, changed: false };
+  const showChanged = () => {
+    changed.hidden = !known.changed && !known.then;
+    setText(since, known.then
+      ? 'This is how it was when the cell was run.'
+      : 'This has changed since the cell was run.');
+    setText(back, known.then ? 'Show it as it is' : 'Show it as it was');
+  };
+  back.addEventListener('click', () => send({ then: !known.then }));
+
+  const { note, end } = follow(model, el, (news) => {
+    Object.keys(known).forEach((key) => {
+      known[key] = news[key] ?? known[key];
+    });
+    if (news.svg !== undefined || news.parts) {
+      known.svg = news.svg ?? known.svg;
+      drawing.draw(known.svg, news.parts ?? drawing.parts);
+      empty.hidden = Boolean(known.svg);
+      details.hidden = !known.svg;
+    }
+    if (news.told !== undefined) setText(told, news.told);
+    if (news.switches) switches.show(news.switches);
+    if (news.rates) drawing.setRates(news.rates);
+    if (news.passed) drawing.pass(news.passed);
+    if (news.ended) el.classList.add('labkit-graph-ended');
+    showChanged();
+  });
+  drawing.tell([]);
+  el.append(told, drawing.place, empty, note, changed,
+    element('div', { className: 'labkit-graph-foot' }, details, switches.place));
+
+  // Only what can be seen is counted.
+  let inView = false;
+  let seen = null;
+  const look = () => {
+    const visible = inView && document.visibilityState === 'visible';
+    if (visible !== seen) send({ visible });
+    seen = visible;
+  };
+  const views = new IntersectionObserver((entries) => {
+    inView = entries.at(-1).isIntersecting;
+    look();
+  });
+  views.observe(el);
+  document.addEventListener('visibilitychange', look);
+  let width = 0;
+  const sizes = new ResizeObserver(() => {
+    const letters = Number.parseFloat(getComputedStyle(el).fontSize);
+    // In steps, so that a page that is being resized asks now and then.
+    const fits = Math.floor(((drawing.place.clientWidth / letters) * NAME_PX) / 20) * 20;
+    if (fits && fits !== width) send({ width: fits });
+    width = fits || width;
+  });
+  sizes.observe(el);
+  return () => {
+    views.disconnect();
+    sizes.disconnect();
+    document.removeEventListener('visibilitychange', look);
+    drawing.dots.end();
+    end();
+  };
+}
+
+export default { render };

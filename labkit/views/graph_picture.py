@@ -1,0 +1,310 @@
+"""The computation graph as a drawing, in the shapes and colours of the course's pictures.
+
+One drawing serves all: it is stored with a lesson, printed, and what moves in JupyterLab. A node
+is round, a topic is a box, a service has six corners, and an action has double sides, so nothing
+is told by colour alone. It has a ground of its own: where it is shown as an image, it does not
+know whether the page is dark.
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from labkit.rosgraph.snapshot import Graph, GraphNode
+from labkit.views.graph_layout import arrange
+from labkit.views.graph_part import TO_WORDS, Arrow, Box
+from labkit.views.graph_words import (
+    description,
+    hearing,
+    in_lines,
+    safe,
+    text_width,
+    unheard,
+)
+
+__all__ = ['WIDTH', 'Line', 'Picture', 'Shape']
+
+# As wide as a page of a notebook shows in full size, px.
+WIDTH = 900.0
+MARGIN = 24.0
+# Sizes of letters and from line to line, px.
+NAME, SMALL, ROW = 15, 13, 18
+# Letters in a line.
+IN_NAME, IN_TYPE, IN_REASON = 28, 36, 30
+# Of a box: its least height, and what is added to its words, px.
+HEIGHT, PADDING = 48.0, 32.0
+# A box grows with its arrows: for each one, and up to, px.
+FOR_ARROW, HIGHEST = 14.0, 132.0
+# Half the size of a cross, px.
+CROSS = 11
+# Of many publishers that are not heard, so many are named.
+NAMED = 2
+
+INK, LINE, WRONG = '#1f2933', '#52606d', '#c62828'
+# kind -> colour of the ground, of the edge
+COLOURS = {
+    'node': ('#e3f0fb', '#1f6fb2'),
+    'topic': ('#fdf3d7', '#a8730a'),
+    'service': ('#e3f6e8', '#1b7f3b'),
+    'action': ('#f1eafa', '#6b3fa0'),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A box of the drawing.
+
+    Attributes:
+        kind: `'node'`, `'topic'`, `'service'` or `'action'`.
+        name: What it is called in the graph.
+        names: Its name in lines.
+        small: Lines under the name.
+        own: Whether it belongs to this process, for a node.
+        box: Where it is.
+    """
+
+    kind: str
+    name: str
+    names: list[str]
+    small: list[str]
+    own: bool
+    box: Box
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """An arrow of the drawing.
+
+    Attributes:
+        kind: `'publishes'`, `'hears'`, `'apart'`, `'service'` or `'action'`.
+        node: The node at one of its ends.
+        other: What is at the other end.
+        words: Lines beside it.
+        arrow: Where it is.
+    """
+
+    kind: str
+    node: str
+    other: str
+    words: list[str]
+    arrow: Arrow
+
+
+class Picture:
+    """A drawing of a graph.
+
+    Args:
+        data: The graph.
+        width: It should not be wider, px.
+
+    Attributes:
+        shapes: Its boxes.
+        lines: Its arrows.
+        width: Its size, px.
+        height: Its size, px.
+    """
+
+    def __init__(self, data: Graph, width: float = WIDTH) -> None:
+        self._data = data
+        self.lines = list(_lines(data))
+        self.shapes = [*map(_of_node, data.nodes)]
+        for kind, found in (
+            ('topic', data.topics),
+            ('service', data.services),
+            ('action', data.actions),
+        ):
+            self.shapes += [_shape(kind, each.name, each.types) for each in found]
+        for shape in self.shapes:
+            ends = [
+                sum(getattr(line.arrow, end) == shape.box.name for line in self.lines)
+                for end in ('tail', 'head')
+            ]
+            shape.box.height = max(shape.box.height, min(12 + FOR_ARROW * max(ends), HIGHEST))
+        layout = arrange(
+            [shape.box for shape in self.shapes],
+            [line.arrow for line in self.lines],
+            width - 2 * MARGIN,
+        )
+        self.width, self.height = layout.width + 2 * MARGIN, layout.height + 2 * MARGIN
+
+    def svg(self) -> str:
+        """Return the drawing as SVG, without scripts, and the same for the same graph."""
+        named = [(f'a{number}', line) for number, line in enumerate(self.lines)]
+        parts = [
+            # Those with words last: no line leads over words.
+            *(_line_svg(*each) for each in sorted(named, key=lambda each: bool(each[1].words))),
+            *(_shape_svg(f'b{number}', shape) for number, shape in enumerate(self.shapes)),
+        ]
+        drawn = '\n'.join(parts)
+        told = safe(description(self._data))
+        # Several pictures in one page must not share the names of their parts.
+        name = f'graph-{zlib.crc32((drawn + told).encode()):08x}'
+        width, height = round(self.width), round(self.height)
+        return f"""\
+<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" \
+height="{height}" role="img" aria-labelledby="{name}-title {name}-desc" font-family="sans-serif" \
+font-size="{NAME}" fill="{INK}" style="max-width: 100%; height: auto">
+<title id="{name}-title">Computation graph</title>
+<desc id="{name}-desc">{told}</desc>
+<defs><marker id="{name}-tip" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="14" \
+markerHeight="14" markerUnits="userSpaceOnUse" orient="auto"><path class="tip" \
+d="M0 0 L10 5 L0 10 z" fill="{LINE}"/></marker></defs>
+<rect class="ground" x="0.5" y="0.5" width="{width - 1}" height="{height - 1}" rx="10" \
+fill="#ffffff" stroke="#9aa5b1"/>
+<g transform="translate({MARGIN:g} {MARGIN:g})">
+{drawn.replace('url(#tip)', f'url(#{name}-tip)')}
+</g>
+</svg>"""
+
+
+# -- from the graph -----------------------------------------------------------------------------
+
+
+def _of_node(node: GraphNode) -> Shape:
+    small = [] if node.own else ['another process']
+    if node.count > 1:
+        small += [f'{node.count} nodes of this name']
+    return _shape('node', node.name, (), small=small, own=node.own)
+
+
+def _shape(
+    kind: str,
+    name: str,
+    types: tuple[str, ...],
+    *,
+    small: Sequence[str] = (),
+    own: bool = True,
+) -> Shape:
+    names = in_lines(name, IN_NAME)
+    under = [*small, *(line for each in types for line in in_lines(each, IN_TYPE))]
+    wide = max(
+        *(text_width(line, NAME, bold=True) for line in names),
+        *(text_width(line, SMALL) for line in under or ['']),
+    )
+    high = ROW * (len(names) + len(under)) + 18
+    box = Box(_box_name(kind, name), wide + PADDING, max(HEIGHT, high), kind == 'node')
+    return Shape(kind, name, names, under, own, box)
+
+
+def _box_name(kind: str, name: str) -> str:
+    """Return a name for a box: a node and a topic may be called the same."""
+    return f'{kind} {name}'
+
+
+def _lines(data: Graph) -> list[Line]:
+    nodes = {node.name for node in data.nodes}
+    found = []
+    for topic in data.topics:
+        publishing = dict.fromkeys(end.node for end in topic.publishers)
+        found += [_line('publishes', node, topic.name) for node in publishing]
+        found += [_line('hears', node, topic.name) for node in hearing(topic)]
+        for node, reasons in unheard(topic).items():
+            for reason, whom in reasons.items():
+                found.append(_line('apart', node, topic.name, _why(whom, reason)))
+    for kind, ends in (('service', data.services), ('action', data.actions)):
+        for each in ends:
+            found += [_line(kind, node, each.name) for node in each.clients]
+            found += [_line(kind, node, each.name, serves=True) for node in each.servers]
+    return [line for line in found if line.node in nodes]
+
+
+def _line(
+    kind: str, node: str, other: str, words: list[str] | None = None, *, serves: bool = False
+) -> Line:
+    where = kind if kind in COLOURS else 'topic'
+    tail, head = _box_name('node', node), _box_name(where, other)
+    if kind in ('hears', 'apart') or serves:
+        tail, head = head, tail
+    size = None
+    if words:
+        size = (max(text_width(line, SMALL) for line in words), ROW * float(len(words)))
+    return Line(kind, node, other, words or [], Arrow(tail, head, size))
+
+
+def _why(whom: list[str], reason: str) -> list[str]:
+    more = len(whom) - NAMED
+    others = f' and {more} more' if more > 0 else ''
+    first = f'does not hear {", ".join(whom[:NAMED])}{others}:'
+    return [*in_lines(first, IN_REASON), *in_lines(reason, IN_REASON)]
+
+
+# -- as SVG -------------------------------------------------------------------------------------
+
+
+def _shape_svg(name: str, shape: Shape) -> str:
+    box = shape.box
+    fill, edge = COLOURS[shape.kind]
+    x, y, width, height = box.x - box.width / 2, box.y - box.height / 2, box.width, box.height
+    look = f'class="body" fill="{fill}" stroke="{edge}" stroke-width="2"'
+    if not shape.own:
+        look += ' stroke-dasharray="6 4"'
+    place = f'x="{x:.1f}" y="{y:.1f}" width="{width:.1f}" height="{height:.1f}"'
+    if shape.kind == 'node':
+        body = f'<rect {place} rx="24" {look}/>'
+    elif shape.kind == 'service':
+        left, right = x + 14, x + width - 14
+        body = (
+            f'<path d="M{left:.1f} {y:.1f} H{right:.1f} L{x + width:.1f} {box.y:.1f} '
+            f'L{right:.1f} {y + height:.1f} H{left:.1f} L{x:.1f} {box.y:.1f} z" {look}/>'
+        )
+    else:
+        body = f'<rect {place} rx="4" {look}/>'
+    if shape.kind == 'action':
+        for side in (x + 7, x + width - 7):
+            body += (
+                f'<path class="side" d="M{side:.1f} {y:.1f} V{y + height:.1f}" stroke="{edge}" '
+                'stroke-width="2"/>'
+            )
+    # Letters stand on their line: their middle is a third of their size above it.
+    down = box.y + 5 - ROW * (len(shape.names) + len(shape.small) - 1) / 2
+    text = ''
+    for number, line in enumerate([*shape.names, *shape.small]):
+        bold = number < len(shape.names)
+        style = 'font-weight="bold"' if bold else f'class="small" font-size="{SMALL}"'
+        text += (
+            f'<text x="{box.x:.1f}" y="{down + number * ROW:.1f}" text-anchor="middle" {style}>'
+            f'{safe(line)}</text>'
+        )
+    return f'<g class="{shape.kind}" data-part="{name}">{body}{text}</g>'
+
+
+def _line_svg(name: str, line: Line) -> str:
+    arrow = line.arrow
+    way = f'M{_at(arrow.begin)}' + ''.join(
+        f' {kind}{" ".join(_at(point) for point in points)}' for kind, points in arrow.steps
+    )
+    width = 4 if line.kind == 'action' else 2
+    dashes = ' stroke-dasharray="5 4"' if line.kind == 'apart' else ''
+    drawn = (
+        f'<path class="way" d="{way}" fill="none" stroke="{LINE}" stroke-width="{width}"{dashes} '
+        'marker-end="url(#tip)"/>'
+    )
+    if line.words:
+        drawn += _cross_svg(line)
+    return f'<g class="arrow {line.kind}" data-part="{name}">{drawn}</g>'
+
+
+def _cross_svg(line: Line) -> str:
+    (x, y), upright = line.arrow.mark, line.arrow.upright
+    a, b, c, d = x - CROSS, x + CROSS, y - CROSS, y + CROSS
+    drawn = (
+        f'<path class="cross" d="M{a:.1f} {c:.1f} L{b:.1f} {d:.1f} M{b:.1f} {c:.1f} '
+        f'L{a:.1f} {d:.1f}" stroke="{WRONG}" stroke-width="3" fill="none"/>'
+    )
+    if upright:
+        left, first, anchor = x + TO_WORDS, y + 5 - ROW * (len(line.words) - 1) / 2, 'start'
+    else:
+        left, first, anchor = x, y + TO_WORDS + 13, 'middle'
+    for number, words in enumerate(line.words):
+        drawn += (
+            f'<text class="small beside" x="{left:.1f}" y="{first + number * ROW:.1f}" '
+            f'text-anchor="{anchor}" font-size="{SMALL}" stroke="#ffffff" stroke-width="4" '
+            f'paint-order="stroke">{safe(words)}</text>'
+        )
+    return drawn
+
+
+def _at(point: tuple[float, float]) -> str:
+    return f'{point[0]:.1f} {point[1]:.1f}'

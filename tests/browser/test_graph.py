@@ -1,0 +1,197 @@
+"""The live graph in the browser: messages pass, keys tell more, and nothing is cut off."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import Locator, expect
+
+from tests.browser.page import Notebook
+
+CELLS = {
+    'setup': """
+import labkit as lab
+from labkit.background import traffic
+from rclpy.node import Node
+from rclpy.qos import qos_profile_sensor_data
+from std_msgs.msg import Int16, String
+from std_srvs.srv import Trigger
+
+class Talker(Node):
+    def __init__(self, period):
+        super().__init__('talker')
+        self.publisher = self.create_publisher(String, 'chatter', 10)
+        self.create_timer(period, lambda: self.publisher.publish(String(data='hello')))
+
+class Listener(Node):
+    def __init__(self, name='listener', qos=10):
+        super().__init__(name)
+        self.create_subscription(String, 'chatter', lambda msg: None, qos)
+""",
+    'nodes': 'talker, listener = lab.spin(Talker(0.2)), lab.spin(Listener())',
+    'graph': 'lab.graph()',
+    'more': 'lab.spin(Listener("another_listener_with_a_long_name"))',
+    'service': 'talker.create_service(Trigger, "fire", lambda request, response: response)',
+    'apart': """
+sonar = lab.spin(Node('sonar'))
+sonar.create_publisher(Int16, 'range', qos_profile_sensor_data)
+listener.create_subscription(Int16, 'range', print, 10)
+""",
+    'many': '[lab.spin(Node(f"node_{number}")) for number in range(12)]',
+    'still': 'lab.graph(live=False)',
+    'ways': 'print(len(traffic._open))',
+    'remove': 'lab.remove("listener")',
+    'stop': 'lab.stop()',
+}
+# The parts of words and boxes that do not fit, as they are drawn with the fonts of this machine.
+CUT_OFF = """svg => {
+  const cut = [];
+  const all = svg.getBoundingClientRect();
+  svg.querySelectorAll('text').forEach((text) => {
+    const { left, right, top, bottom } = text.getBoundingClientRect();
+    const body = text.parentElement.querySelector('.body')?.getBoundingClientRect() ?? all;
+    if (left < body.left || right > body.right || top < body.top || bottom > body.bottom) {
+      cut.push(text.textContent);
+    }
+  });
+  return cut;
+}"""
+SCROLLS = """view => {
+  const wide = (element) => element.scrollWidth > element.clientWidth + 1;
+  return [view, ...view.querySelectorAll('div, p')].filter((each) => wide(each)
+    && !each.classList.contains('labkit-graph-told')).map((each) => each.className);
+}"""
+
+
+@pytest.fixture
+def notebook(open_cells: Callable[..., Notebook]) -> Notebook:
+    notebook = open_cells(**CELLS)
+    notebook.run_cell('setup')
+    return notebook
+
+
+def live(notebook: Notebook) -> Locator:
+    return notebook.output('graph').locator('.labkit-graph')
+
+
+def part(view: Locator, name: str) -> Locator:
+    return view.locator(f'[data-part][aria-label^="{name}"]')
+
+
+def passed(place: Locator) -> int:
+    return int(place.get_attribute('data-passed') or 0)
+
+
+def test_messages_pass_and_nodes_come_and_go(notebook: Notebook):
+    notebook.run_cell('nodes')
+    notebook.run_cell('graph')
+    view = live(notebook)
+    for name in ('/talker publishes on /chatter', '/listener subscribes to /chatter'):
+        arrow = part(view, name)
+        expect(arrow).to_have_attribute('data-passed', re.compile(r'^[3-9]$|^\d\d'))
+        expect(arrow).to_have_attribute('aria-label', re.compile(r'reliable, volatile\. \d'))
+    expect(view.locator('.dot').first).to_be_attached()
+    notebook.run_cell('remove')
+    expect(part(live(notebook), 'Node /listener')).to_have_count(0)
+    # It says so, and shows what it was.
+    button = live(notebook).get_by_role('button', name='Show it as it was')
+    button.click()
+    expect(part(live(notebook), 'Node /listener')).to_have_count(1)
+    live(notebook).get_by_role('button', name='Show it as it is').click()
+    expect(part(live(notebook), 'Node /listener')).to_have_count(0)
+    # Dots end: where nothing passes, nothing moves.
+    notebook.run_cell('stop')
+    expect(live(notebook)).to_contain_text('ROS was stopped')
+    expect(live(notebook).locator('.dot')).to_have_count(0)
+
+
+def test_keys_and_the_pointer_tell_more(notebook: Notebook):
+    notebook.run_cell('nodes')
+    notebook.run_cell('service')
+    notebook.run_cell('graph')
+    view = live(notebook)
+    details = view.locator('.labkit-graph-details')
+    expect(details).to_contain_text('Point at a part')
+    part(view, 'Topic /chatter').hover()
+    expect(details).to_contain_text('Type: std_msgs/msg/String · Published by: /talker')
+    notebook.page.mouse.move(0, 0)
+    expect(details).to_contain_text('Point at a part')
+    # One stop of Tab; arrow keys go on from there.
+    stops = view.locator('[data-part][tabindex="0"]')
+    expect(stops).to_have_count(1)
+    stops.focus()
+    names = []
+    for _ in range(view.locator('[data-part]').count()):
+        names.append(details.locator('strong').inner_text())
+        notebook.page.keyboard.press('ArrowRight')
+    assert sorted(names) == [
+        '/listener subscribes to /chatter',
+        '/talker publishes on /chatter',
+        'Node /listener',
+        'Node /talker',
+        'Topic /chatter',
+    ]
+    # Whoever has come to a part stays there when the picture is another one.
+    notebook.page.keyboard.press('Home')
+    first = details.locator('strong').inner_text()
+    view.get_by_label('Services').check()
+    expect(part(view, 'Service /fire')).to_have_count(1)
+    part(view, first).focus()
+    view.get_by_label('Services').evaluate('box => box.click()')
+    expect(part(view, 'Service /fire')).to_have_count(0)
+    expect(part(view, first)).to_be_focused()
+    notebook.page.keyboard.press('Escape')
+    assert not view.evaluate('view => view.contains(document.activeElement)')
+    # What is told to those who listen.
+    expect(view.locator('.labkit-graph-told')).to_contain_text(
+        '/talker → /chatter [std_msgs/msg/String] → /listener'
+    )
+
+
+def test_nothing_is_cut_off_and_nothing_scrolls(notebook: Notebook):
+    for cell in ('nodes', 'more', 'service', 'apart', 'many', 'graph'):
+        notebook.run_cell(cell)
+    view = live(notebook)
+    view.get_by_label('Services').check()
+    expect(part(view, 'Service /fire')).to_have_count(1)
+    for width in (1400, 800):
+        notebook.page.set_viewport_size({'width': width, 'height': 900})
+        notebook.page.wait_for_function(
+            'view => view.querySelector("svg").clientWidth <= view.clientWidth',
+            arg=live(notebook).element_handle(),
+        )
+        assert live(notebook).locator('svg').evaluate(CUT_OFF) == []
+        assert live(notebook).evaluate(SCROLLS) == []
+    assert live(notebook).locator('.cross').count() == 1
+    expect(live(notebook)).to_contain_text('Best effort publisher and')
+
+
+def test_it_counts_only_while_it_can_be_seen(notebook: Notebook):
+    notebook.run_cell('nodes')
+    notebook.run_cell('graph')
+    expect(part(live(notebook), '/talker')).to_have_attribute('data-passed', re.compile(r'\d'))
+    assert notebook.run_cell('ways') == '1'
+    notebook.page.evaluate("""() => {
+      Object.defineProperty(document, 'visibilityState', { value: 'hidden', configurable: true });
+      document.dispatchEvent(new Event('visibilitychange'));
+    }""")
+    while notebook.run_cell('ways') != '0':
+        pass
+    notebook.page.evaluate("""() => {
+      delete document.visibilityState;
+      document.dispatchEvent(new Event('visibilitychange'));
+    }""")
+    while notebook.run_cell('ways') != '1':
+        pass
+
+
+def test_without_a_kernel_it_is_a_picture(notebook: Notebook):
+    notebook.run_cell('nodes')
+    notebook.run_cell('still')
+    picture = notebook.output('still').locator('img')
+    assert picture.evaluate('img => img.decode().then(() => img.naturalWidth)') > 400
+    # What a viewer gets that knows nothing of widgets is the same drawing.
+    shown = notebook.cells()[notebook._index('still')]['outputs'][0]['data']
+    assert sorted(shown) == ['image/svg+xml', 'text/plain']

@@ -1,0 +1,163 @@
+"""The live picture of the graph: what it tells a page, and when it counts what passes."""
+
+from __future__ import annotations
+
+STAGE = """
+import labkit as lab
+from labkit.background import traffic
+from labkit.background.runtime import runtime
+from rclpy.node import Node
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+
+class Talker(Node):
+    def __init__(self, name='talker'):
+        super().__init__(name)
+        self.publisher = self.create_publisher(String, 'chatter', 10)
+
+    def say(self, times=1):
+        for _ in range(times):
+            self.publisher.publish(String(data='hello'))
+
+class Listener(Node):
+    def __init__(self, name='listener'):
+        super().__init__(name)
+        self.create_subscription(String, 'chatter', lambda msg: None, 10)
+
+class Page:
+    # What a page would get, and what it would say.
+    def __init__(self, view):
+        self.widget, self.known, self.passed = view._widget, {}, {}
+        self.widget.send = self.take
+        self.say(view='seen')
+        self.say(visible=True, width=900)
+
+    def take(self, content, buffers=None):
+        self.known.update(content)
+        for part, count in content.get('passed', {}).items():
+            name = self.known['parts'][part][0]
+            self.passed[name] = self.passed.get(name, 0) + count
+
+    def say(self, **content):
+        self.widget._handle_custom_msg(content, [])
+
+    def wait(self, condition):
+        lab.wait_until(lambda: condition(self.known), timeout_sec=20)
+
+    def parts(self):
+        return [lines[0] for lines in self.known['parts'].values()]
+"""
+
+
+def test_follows_what_comes_and_goes(run):
+    run('view = lab.graph()\npage = Page(view)')
+    assert run('print(page.known["svg"] == "", page.known["changed"])') == 'True False'
+    run('talker = lab.spin(Talker())\npage.wait(lambda known: "/talker" in known["svg"])')
+    assert run('print(page.known["changed"], page.known["told"])') == (
+        'True Nodes: /talker. /talker → /chatter [std_msgs/msg/String].'
+    )
+    assert run('print(view)').startswith('Nodes:\n  /talker\nTopics:')
+    run('lab.remove("talker")\npage.wait(lambda known: not known["svg"])')
+    assert run('print(page.known["changed"], view)').startswith('False No node is running.')
+
+
+def test_shows_how_it_was_when_the_cell_was_run(run):
+    run('lab.spin(Talker())\npage = Page(lab.graph())\nlab.spin(Listener())')
+    run('page.wait(lambda known: known["changed"])')
+    run('page.say(then=True)')
+    assert run('print(page.known["then"], "/listener" in page.known["svg"])') == 'True False'
+    run('page.say(then=False)')
+    assert run('print(page.known["then"], "/listener" in page.known["svg"])') == 'False True'
+
+
+def test_tells_of_each_part_what_it_is(run):
+    run('from rclpy.qos import qos_profile_sensor_data')
+    run('lab.spin(Talker())\nlab.spin(Listener())\nlab.spin(Node("alone"))')
+    run('lab.spin(Node("sonar")).create_publisher(String, "chatter", qos_profile_sensor_data)')
+    run('page = Page(lab.graph())\nprint(*page.known["parts"].values(), sep="\\n")')
+    told = run('print(*sorted(page.known["parts"].values()), sep="\\n")').splitlines()
+    assert told == [
+        "['/listener hears nothing of /sonar on /chatter', "
+        "'Best effort publisher and reliable subscription', 'Give the subscription of /listener "
+        "reliability BEST_EFFORT, or the publisher of /sonar RELIABLE.']",
+        "['/listener subscribes to /chatter', 'std_msgs/msg/String, reliable, volatile']",
+        "['/sonar publishes on /chatter', 'std_msgs/msg/String, best effort, volatile']",
+        "['/talker publishes on /chatter', 'std_msgs/msg/String, reliable, volatile']",
+        "['Node /alone', 'It neither publishes nor subscribes']",
+        "['Node /listener', 'Subscribes to: /chatter']",
+        "['Node /sonar', 'Publishes: /chatter']",
+        "['Node /talker', 'Publishes: /chatter']",
+        "['Topic /chatter', 'Type: std_msgs/msg/String', 'Published by: /sonar, /talker', "
+        "'Subscribed by: /listener']",
+    ]
+
+
+def test_tells_which_messages_pass_and_how_often(run):
+    run('talker = lab.spin(Talker())\nlab.spin(Listener())\npage = Page(lab.graph())')
+    run('talker.say(5)')
+    both = '{"/talker publishes on /chatter": 5, "/listener subscribes to /chatter": 5}'
+    run(f'lab.wait_until(lambda: page.passed == {both}, timeout_sec=20)')
+    run('timer = talker.create_timer(0.05, talker.say)')
+    run('page.wait(lambda known: len([r for r in known.get("rates", {}).values() if r]) == 2)')
+    assert (
+        run('print(all(rate.endswith(" Hz") for rate in page.known["rates"].values()))') == 'True'
+    )
+    run('timer.cancel()\npage.wait(lambda known: not any(known["rates"].values()))')
+
+
+def test_counts_only_while_it_is_seen(run):
+    run('talker = lab.spin(Talker())\nview = lab.graph()')
+    assert run('print(len(traffic._open))') == '0'
+    run('page = Page(view)')
+    assert run('print(len(traffic._open))') == '1'
+    run('page.say(visible=False)\ntalker.say()')
+    assert run('print(len(traffic._open), page.passed)') == '0 {}'
+    # Who looks away and comes back is not told what has passed meanwhile.
+    run('page.say(visible=True)\ntalker.say(2)')
+    run('lab.wait_until(lambda: page.passed)')
+    assert run('print(page.passed)') == "{'/talker publishes on /chatter': 2}"
+    for end in ('page.say(view="gone")', 'page.say(view="there")\nview.close()'):
+        run(end)
+        assert run('print(len(traffic._open))') == '0'
+
+
+def test_services_and_actions_are_offered_where_there_are_any(run):
+    run('talker = lab.spin(Talker())\npage = Page(lab.graph())')
+    assert run('print(page.known["switches"])') == '{}'
+    run('talker.create_service(Trigger, "fire", lambda request, response: response)')
+    run('page.wait(lambda known: known["switches"] == {"services": False})')
+    assert run('print("/fire" in page.known["svg"])') == 'False'
+    run('page.say(services=True)')
+    assert run('print("/fire" in page.known["svg"], page.known["switches"])') == (
+        "True {'services': True}"
+    )
+    assert 'Service /fire' in run('print(page.parts())')
+
+
+def test_a_narrow_page_gets_a_narrow_picture(run):
+    run('lab.spin(Talker())\nlab.spin(Listener())\npage = Page(lab.graph())')
+    width = 'import re\nprint(re.search(r\'width="(\\d+)"\', page.known["svg"])[1])'
+    assert int(run(width)) > 400
+    run('page.say(width=360)')
+    assert int(run(width)) <= 360
+    # Whatever a page says.
+    run('page.say(width=float("nan"))\npage.say(width=-5)\npage.say(services="x", then=[])')
+    assert int(run(width)) > 0
+
+
+def test_what_was_stored_is_a_picture(run):
+    run('lab.spin(Talker())\nview = lab.graph()')
+    kinds = run('print(sorted(view._still()))')
+    assert kinds == "['image/svg+xml', 'text/plain']"
+    run('still = lab.graph(live=False)\nlab.remove("talker")')
+    assert run('print(still)').startswith('Nodes:\n  /talker')
+    assert run('print(view)').startswith('No node is running.')
+
+
+def test_after_the_end_of_ros_it_is_what_it_was(run):
+    run('lab.spin(Talker())\nview = lab.graph()\npage = Page(view)\nlab.stop()')
+    assert run('print(page.known["ended"])') == (
+        'ROS was stopped. Run this cell to start it again.'
+    )
+    assert run('print(view)').startswith('Nodes:\n  /talker')
+    assert run('print(len(traffic._open), runtime.started)') == '0 False'
