@@ -131,5 +131,5 @@ def __dir__() -> list[str]:
 
 prepare_environment()
 if 'IPython' in sys.modules:
-    for _home in ('labkit.ros2.magic', 'labkit.views.node_card'):
+    for _home in ('labkit.ros2.magic', 'labkit.views.node_card', 'labkit.views.figure'):
         importlib.import_module(_home).register()

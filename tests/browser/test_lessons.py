@@ -1,4 +1,4 @@
-"""Every lesson runs from top to bottom in the browser, and all that it shows can be seen."""
+"""Every lesson runs from top to bottom in the browser, and all that it shows can be perceived."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
+from tests.browser.accessibility import violations
 from tests.browser.jupyter import ROOT, JupyterLab
 from tests.browser.page import Notebook, open_notebook
 
@@ -89,6 +90,10 @@ def test_lesson_runs_from_top_to_bottom(run, name):
         wrong += [f'{cell["id"]}: the picture {text!r} is missing' for text in pictures]
         text = notebook.cell(cell['id']).inner_text()
         wrong += [f'{cell["id"]}: {sign}' for sign in BROKEN if sign in text]
+    assert wrong == []
+    for cell in notebook.cells():
+        if cell['cell_type'] == 'code':
+            wrong += [f'{cell["id"]}: {fault}' for fault in violations(notebook, cell['id'])]
     assert wrong == []
     assert lesson.faults == []
     notebook.close()
