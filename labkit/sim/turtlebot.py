@@ -356,8 +356,9 @@ class Turtlebot(Node):
             self._clock_publisher.publish(Clock(clock=self._stamp()))
         self._publish_odometry()
         stamp = self._stamp()
-        self._joints.publish(joint_state_message(self.simulator, stamp, self._prefix))
         # These are seldom heard, and not made for nobody.
+        if self._joints.get_subscription_count():
+            self._joints.publish(joint_state_message(self.simulator, stamp, self._prefix))
         if self._imu.get_subscription_count():
             self._imu.publish(imu_message(self.simulator, stamp, self._prefix))
         if self._battery.get_subscription_count():

@@ -8,7 +8,7 @@ const PAN = 0.15; // of the width of the map
 const ZOOM = 1.3;
 const SCALES = [4, 3000]; // pixels in a metre
 const FOLLOWED = 2; // times what the whole map has
-const AHEAD_MS = 200; // the robot goes on so long without a word of it
+const AHEAD_MS = 250; // the robot goes on so long without a word of it; see arena.py
 const SMOOTH_MS = 80;
 const BUMP_MS = 2500;
 

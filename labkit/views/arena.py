@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from labkit.errors import LabError
-from labkit.sim.kinematics import BURGER, Pose, wrap_angle
+from labkit.sim.kinematics import BURGER, Pose, Twist2, wrap_angle
 from labkit.views.arena_picture import Scene, to_svg
 from labkit.views.feed import Feed, heard
 from labkit.views.live import helper
@@ -34,6 +34,8 @@ WORDS_SEC = 1.0
 # A point of the trail, m from the one before. A longer way at once is none that was driven.
 TRAIL_STEP, JUMP = 0.01, 0.5
 TRAIL_LENGTH = 5000
+# The page lets a robot glide as it was for no longer than this, s, when it hears nothing of it.
+GLIDE_SEC = 0.12
 # The robot touches what is so near to it, m: the scanner's noise, and what it moves in a round.
 TOUCH = 0.015
 # It was stopped by that if it is ahead by this angle or less, rad.
@@ -55,8 +57,8 @@ class Arena(LivePage):
     """
 
     _name = 'arena'
-    # Often enough: the page lets the robot glide from one place to the next.
-    _period = 1 / 15
+    # For what nobody tells; else news goes to the page with the odometry that brings it.
+    _period = 0.25
 
     def __init__(
         self, *, odom: str, scan: str, namespace: str, goals: Iterable[tuple[float, float]]
@@ -79,6 +81,7 @@ class Arena(LivePage):
         self._new_trail: list[float] = []
         self._new_scan = self._last_scan = b''
         self._eye: tuple[float, float] | None = None
+        self._told_twist: Twist2 | None = None
         self._worded_at = 0.0
 
     # -- for cells ------------------------------------------------------------------------------
@@ -145,6 +148,10 @@ class Arena(LivePage):
             if way >= TRAIL_STEP:
                 self._trail.append(point)
                 self._new_trail += point
+            # The page lets the robot go on as it did: it has to know when that is not so.
+            late = twist != Twist2() and time.monotonic() - self._sent_at >= GLIDE_SEC
+            if self._node is not None and (late or twist != self._told_twist):
+                self._send()
 
     def _on_scan(self, message: LaserScan) -> None:
         with self._lock:
@@ -203,6 +210,7 @@ class Arena(LivePage):
         state: dict[str, object] = {'goals': scene.goals, 'bump': scene.bump}
         if scene.pose is not None:
             state['pose'] = (*scene.pose, *scene.twist)
+            self._told_twist = scene.twist
         if everything or now - self._worded_at >= WORDS_SEC:
             self._worded_at = now
             silences = (feed.silence() for feed in self._feeds)
