@@ -52,13 +52,17 @@ class LiveGraph(LivePage):
     @property
     def data(self) -> Graph:
         """The graph as data, as it is now, see `labkit.rosgraph.snapshot.Graph`."""
-        return self._chosen(self._now if self._ended else self._read())
+        return self._chosen(self._read() if self._can_look() else self._now)
 
     def __repr__(self) -> str:
         return self._still()['text/plain']
 
     def _still(self) -> dict[str, str]:
         return bundle(self.data)
+
+    def _can_look(self) -> bool:
+        """Tell whether ROS is up: it is not started again from here."""
+        return not (self._ended or self._cut_off())
 
     def _read(self) -> Graph:
         return read_graph(helper(), include_hidden=self._hidden, include_services=True)
@@ -99,7 +103,8 @@ class LiveGraph(LivePage):
 
     def _news(self, everything: bool) -> News:
         now = time.monotonic()
-        if everything or (self._visible and now - self._read_at >= LOOK_SEC):
+        due = everything or (self._visible and now - self._read_at >= LOOK_SEC)
+        if due and self._can_look():
             self._read_at = now
             self._now = self._read()
             if self._visible:

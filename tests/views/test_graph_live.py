@@ -161,3 +161,11 @@ def test_after_the_end_of_ros_it_is_what_it_was(run):
     )
     assert run('print(view)').startswith('Nodes:\n  /talker')
     assert run('print(len(traffic._open), runtime.started)') == '0 False'
+
+
+def test_a_look_does_not_start_ros_again(run):
+    # Nothing tells a view that no page has shown yet.
+    run('lab.spin(Talker())\nview = lab.graph()\nlab.stop()\nview._ended = ""')
+    assert run('print(view)').startswith('Nodes:\n  /talker')
+    run('view._news(True)')
+    assert run('print(runtime.started)') == 'False'
