@@ -6,6 +6,7 @@ ones that were put there. A small record in the folder says which those are.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
@@ -22,6 +23,8 @@ __all__ = ['FIRST', 'WORK', 'copy_lessons', 'reset']
 LESSONS = ROOT / 'notebooks'
 WORK = ROOT / 'work'
 RECORD = '.labkit.json'
+# Where the old copies of lessons go, in the learner's folder.
+BACKUPS = 'backups'
 FIRST = '00_start_here.ipynb'
 # Files next to the lessons that are for their tests, or made by running them.
 _NOT_FOR_LEARNERS = re.compile(r'\.|__pycache__$|conftest\.py$')
@@ -55,6 +58,7 @@ def copy_lessons() -> list[str]:
                     f'is. For the new one: python3 -m labkit reset {_number(name)}'
                 )
         write_atomically(WORK / RECORD, json.dumps(record, indent=1).encode())
+        _gather_backups()
     except OSError as error:
         raise SetupError(
             f'{str(error.filename or WORK)!r} can not be written ({error.strerror}).',
@@ -64,7 +68,7 @@ def copy_lessons() -> list[str]:
 
 
 def reset(lesson: str) -> str:
-    """Put a fresh copy of a lesson into the learner's folder; keep the old one beside it.
+    """Put a fresh copy of a lesson into the learner's folder; keep the old one in `backups`.
 
     Args:
         lesson: The lesson's number or name: `'02'`, `'2'`, `'talker'`, `'02_talker_listener'`.
@@ -81,12 +85,12 @@ def reset(lesson: str) -> str:
     path = WORK / name
     if path.is_file() and path.read_bytes() == fresh:
         return f'{path} is a fresh copy already.'
-    backup = _back_up(path)
+    backup = _back_up(path, name)
     write_atomically(path, fresh)
     record = _read_record()
     record[name] = _digest(fresh)
     write_atomically(WORK / RECORD, json.dumps(record, indent=1).encode())
-    return f'{path} is a fresh copy. The old one is {backup.name}, beside it.'
+    return f'{path} is a fresh copy. The old one is {backup}.'
 
 
 # --- Lessons and copies --------------------------------------------------------------------------
@@ -135,16 +139,40 @@ def _place(name: str, fresh: bytes, record: dict[str, str]) -> bool:
     return True
 
 
-def _back_up(path: Path) -> Path:
-    """Rename what is there to the first free name for a backup."""
-    for number in range(1, 10_000):
-        backup = path.with_name(f'{path.stem}.backup-{number}{path.suffix}')
+def _back_up(path: Path, name: str, first: int = 1) -> Path:
+    """Rename what is there to the first free name for a backup of a lesson.
+
+    Args:
+        path: What is there.
+        name: File name of the lesson.
+        first: The number to begin with.
+    """
+    folder = WORK / BACKUPS
+    if folder.exists() and not folder.is_dir():
+        raise LabError(
+            f'{str(folder)!r} should be the folder for old copies, but it is a file.',
+            todo='Move it away, and repeat the command.',
+        )
+    folder.mkdir(exist_ok=True)
+    stem, ending = os.path.splitext(name)
+    for number in range(first, 10_000):
+        backup = folder / f'{stem}.backup-{number}{ending}'
         try:
             rename_to_free(path, backup)
         except FileExistsError:
             continue
         return backup
-    raise LabError(f'{path} has 9999 backups.', todo='Delete some, and repeat the command.')
+    raise LabError(f'{name} has 9999 backups.', todo='Delete some, and repeat the command.')
+
+
+def _gather_backups() -> None:
+    """Put the backups that lie among the lessons, as they once did, to the others."""
+    for path in sorted(WORK.glob('*.backup-*')):
+        stem, _, number = path.stem.rpartition('.backup-')
+        name = f'{stem}{path.suffix}'
+        if number.isdecimal() and (LESSONS / name).is_file():
+            with contextlib.suppress(LabError):  # then they stay where they are
+                _back_up(path, name, int(number))
 
 
 def _read_record() -> dict[str, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import shutil
@@ -12,12 +13,15 @@ import time
 from collections import deque
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 from labkit.errors import SetupError
 from labkit.setup.machine import clean_environment
 
 __all__ = ['Progress', 'explain', 'install']
 
+# How often progress is looked at, s.
+TICK_SEC = 0.2
 _NO_NETWORK = re.compile(
     r'NewConnectionError|NameResolutionError|Temporary failure in name resolution|'
     r'Name or service not known|dns error|Network is unreachable|Connection (refused|reset)|'
@@ -79,7 +83,7 @@ class Progress:
             bar = '#' * done + '.' * (30 - done)
             seconds = time.monotonic() - self._start
             print(f'\r  [{bar}] {line}, {seconds:.0f} s ', end='', flush=True)
-        elif line != self._shown and count > 0:
+        elif line != self._shown and (count > 0 or not self._shown):
             print(f'  {line}', flush=True)
         self._shown = line
 
@@ -116,9 +120,9 @@ def install(
     for name in ('PIP_TARGET', 'PIP_PREFIX', 'PIP_ROOT', 'UV_SYSTEM_PYTHON'):
         variables.pop(name, None)
     variables.update(PIP_USER='0', PIP_NO_INPUT='1', UV_NO_PROGRESS='1')
-    progress.show('Fetching', 0)
+    progress.show('Preparing', 0)
     pip = _pip(python)
-    uv = shutil.which('uv') or (_fetch_uv(pip, python, root, variables) if pip else None)
+    uv = shutil.which('uv') or (_fetch_uv(pip, python, root, variables, progress) if pip else None)
     # pip does the last by itself. uv looks at the version and at pyproject.toml, not at the files
     # that are copied into the environment.
     own = ['--python', str(python), '--reinstall-package', 'labkit']
@@ -169,24 +173,38 @@ def _pip(python: Path) -> list[str]:
 
 
 def _fetch_uv(
-    pip: Sequence[str], python: Path, root: Path, variables: dict[str, str]
+    pip: Sequence[str],
+    python: Path,
+    root: Path,
+    variables: dict[str, str],
+    progress: Progress,
 ) -> str | None:
     """Let pip install the course's uv. Return its path, None if that is not possible here."""
     lock = root / LOCK
     found = _LOCKED_UV.search(lock.read_text(encoding='utf-8')) if lock.is_file() else None
     if found is None:
         return None
-    done = subprocess.run(
-        [*pip, 'install', '--quiet', '--no-deps', '--require-hashes', '-r', '/dev/stdin'],
+    command = [*pip, 'install', '--quiet', '--no-deps', '--require-hashes', '-r', '/dev/stdin']
+    process = subprocess.Popen(
+        command,
         cwd=root,
         env=variables,
-        input=found[0].encode(),
+        stdin=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         close_fds=False,  # it keeps the lock: see environment
     )
+    wanted: bytes | None = found[0].encode()
+    try:
+        while process.returncode is None:
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                process.communicate(wanted, timeout=TICK_SEC)
+            wanted = None
+            progress.show('Preparing', 0)
+    finally:
+        _end(process)
     uv = python.parent / 'uv'
-    return str(uv) if done.returncode == 0 and uv.exists() else None
+    return str(uv) if process.returncode == 0 and uv.exists() else None
 
 
 def _steps(root: Path, requirements: Sequence[str]) -> list[list[str]]:
@@ -244,15 +262,20 @@ def _follow(
             else:
                 progress.show('Fetching', len(fetched))
             try:
-                process.wait(timeout=0.2)
+                process.wait(timeout=TICK_SEC)
             except subprocess.TimeoutExpired:
                 pass
         reader.join()
     finally:
-        if process.poll() is None:
-            process.terminate()
-            process.wait()
+        _end(process)
     return process.returncode, list(output)
+
+
+def _end(process: subprocess.Popen[Any]) -> None:
+    """End a process that still runs, because waiting for it was interrupted."""
+    if process.poll() is None:
+        process.terminate()
+        process.wait()
 
 
 def explain(output: Sequence[str], root: Path) -> SetupError:

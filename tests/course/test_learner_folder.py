@@ -102,19 +102,50 @@ def test_folder_without_a_record_is_the_learners(lessons: Path) -> None:
 def test_reset_keeps_each_old_copy(work: Path, word: str) -> None:
     for number in (1, 2, 3):
         (work / TALKER).write_text(notebook(f'attempt {number}'))
-        assert f'02_talker_listener.backup-{number}.ipynb' in learner_folder.reset(word)
+        assert f'backups/02_talker_listener.backup-{number}.ipynb' in learner_folder.reset(word)
     assert source_of(work / TALKER) == '2 + 2'
-    backups = [work / f'02_talker_listener.backup-{number}.ipynb' for number in (1, 2, 3)]
+    folder = work / 'backups'
+    backups = [folder / f'02_talker_listener.backup-{number}.ipynb' for number in (1, 2, 3)]
     assert [source_of(path) for path in backups] == ['attempt 1', 'attempt 2', 'attempt 3']
     assert 'is a fresh copy already' in learner_folder.reset(word)
-    assert len(list(work.glob('*backup*'))) == 3
+    assert sorted(folder.iterdir()) == backups
+
+
+def test_backups_among_the_lessons_go_to_the_others(work: Path) -> None:
+    """As they were made before there was a folder for them."""
+    (work / 'backups').mkdir()
+    (work / 'backups' / '02_talker_listener.backup-1.ipynb').write_text('old')
+    names = ('02_talker_listener.backup-1.ipynb', '02_talker_listener.backup-12.ipynb')
+    for name in names:
+        (work / name).write_text(name)
+    mine = work / 'my.backup-1.ipynb'
+    mine.write_text('mine')
+    assert learner_folder.copy_lessons() == []
+    found = {path.name: path.read_text() for path in (work / 'backups').iterdir()}
+    assert found == {
+        names[0]: 'old',
+        '02_talker_listener.backup-2.ipynb': names[0],
+        names[1]: names[1],
+    }
+    assert [path.name for path in work.glob('*backup-*')] == [mine.name]
+
+
+def test_file_in_the_place_of_the_backups_loses_nothing(work: Path) -> None:
+    (work / 'backups').write_text('notes')
+    (work / '02_talker_listener.backup-1.ipynb').write_text('old')
+    assert learner_folder.copy_lessons() == []
+    (work / TALKER).write_text(notebook('mine'))
+    with pytest.raises(LabError, match='Move it away'):
+        learner_folder.reset('02')
+    assert (work / '02_talker_listener.backup-1.ipynb').read_text() == 'old'
+    assert source_of(work / TALKER) == 'mine'
 
 
 def test_reset_of_a_deleted_lesson(work: Path) -> None:
     (work / TALKER).unlink()
     learner_folder.reset('02')
     assert source_of(work / TALKER) == '2 + 2'
-    assert not list(work.glob('*backup*'))
+    assert not list(work.rglob('*backup*'))
 
 
 @pytest.mark.parametrize('word', ['7', '99', 'tlaker', '', '_'])
@@ -156,8 +187,8 @@ def test_file_systems_without_hard_links(work: Path, monkeypatch: pytest.MonkeyP
     for number in (1, 2):
         (work / TALKER).write_text(notebook(f'attempt {number}'))
         learner_folder.reset('02')
-    assert source_of(work / '02_talker_listener.backup-1.ipynb') == 'attempt 1'
-    assert source_of(work / '02_talker_listener.backup-2.ipynb') == 'attempt 2'
+    assert source_of(work / 'backups' / '02_talker_listener.backup-1.ipynb') == 'attempt 1'
+    assert source_of(work / 'backups' / '02_talker_listener.backup-2.ipynb') == 'attempt 2'
 
 
 def test_odd_things_in_the_way_stay(lessons: Path) -> None:
