@@ -6,14 +6,20 @@ import os
 import platform
 import re
 import socket
-from collections.abc import Sequence
+import subprocess
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import NoReturn
 
 from labkit.course import learner_folder
 from labkit.errors import SetupError
-from labkit.setup.environment import environment_variables, make_environment
+from labkit.settings import state_dir
+from labkit.setup.environment import ROOT, environment_variables, make_environment
 
-__all__ = ['start_lab']
+__all__ = ['HOME', 'start_lab']
+
+# The page with all lessons; see `labkit.exercises.home`.
+HOME = 'Home.md'
 
 
 def start_lab(arguments: Sequence[str]) -> NoReturn:
@@ -29,10 +35,18 @@ def start_lab(arguments: Sequence[str]) -> NoReturn:
     python = make_environment()
     for sentence in learner_folder.copy_lessons():
         print(sentence)
+    variables = environment_variables()
+    # A kernel that was installed for the user would belong to another Python, without ROS.
+    variables['JUPYTER_PREFER_ENV_PATH'] = '1'
+    variables['LABKIT_HOME_PAGE'] = str(learner_folder.WORK / HOME)
+    print('Starting JupyterLab. To stop it, press Ctrl+C here, twice. Its address:', flush=True)
+    first = _write_home(python, variables)
     options = [
         f'--ServerApp.root_dir={learner_folder.WORK}',
         '--ServerApp.ip=127.0.0.1',
-        f'--LabApp.default_url=/lab/tree/{learner_folder.FIRST}',
+        f'--LabApp.default_url=/lab/tree/{first}',
+        # Else each kernel warns that others on this machine could listen to it.
+        '--KernelManager.transport_encryption=auto',
         # Without it a server whose output is no terminal gives login shells, and those may set
         # PATH anew: the command `ros2` would be gone.
         f'--ServerApp.terminado_settings=shell_command={os.environ.get("SHELL") or "/bin/sh"}',
@@ -45,12 +59,25 @@ def start_lab(arguments: Sequence[str]) -> NoReturn:
         # A Windows browser, or Firefox as a snap, can't read the file through which JupyterLab
         # opens its page otherwise.
         options.append('--ServerApp.use_redirect_file=False')
-    variables = environment_variables()
-    # A kernel that was installed for the user would belong to another Python, without ROS.
-    variables['JUPYTER_PREFER_ENV_PATH'] = '1'
-    print('Starting JupyterLab. To stop it, press Ctrl+C here, twice.', flush=True)
     os.chdir(learner_folder.WORK)
-    os.execve(python, [str(python), '-m', 'jupyterlab', *options, *arguments], variables)
+    # Isolated: no module of the learner's takes the place of one that JupyterLab needs.
+    server = str(Path(__file__).with_name('server.py'))
+    os.execve(python, [str(python), '-I', server, *options, *arguments], variables)
+
+
+def _write_home(python: Path, variables: Mapping[str, str]) -> str:
+    """Write the page with all lessons. Return the file to open: the page, if it has news."""
+    page = variables['LABKIT_HOME_PAGE']
+    done = subprocess.run(
+        [str(python), '-m', 'labkit.exercises.home', page],
+        cwd=ROOT,
+        env=variables,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    begun = (state_dir() / 'progress.json').exists()
+    return HOME if done.returncode == 0 and begun else learner_folder.FIRST
 
 
 def _asked_port(arguments: Sequence[str]) -> int | None:

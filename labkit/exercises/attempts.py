@@ -19,10 +19,14 @@ class ProgressStore:
 
     Args:
         store: Where it is kept.
+
+    Attributes:
+        after_change: Called each time something has been noted.
     """
 
     def __init__(self, store: Store | None = None) -> None:
         self.store = store or Store()
+        self.after_change: list[Callable[[], None]] = []
 
     def note_check(self, lesson: str, name: str, outcome: str) -> str:
         """Note the outcome of a check; one that was not attempted is not counted."""
@@ -79,11 +83,14 @@ class ProgressStore:
     ) -> str:
         if not lesson:
             return ''
-        return self.store.update(
+        note = self.store.update(
             lambda data: change(
                 data['lessons'].setdefault(lesson, {}).setdefault(kind, {}).setdefault(name, {})
             )
         )
+        for action in self.after_change:
+            action()
+        return note
 
 
 def number_of(value: object) -> int:

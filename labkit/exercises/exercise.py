@@ -158,7 +158,7 @@ class Exercise:
 
     def __post_init__(self) -> None:
         self.lesson = ''
-        self.home: Lesson | None = None
+        self.belongs_to: Lesson | None = None
         self.scope = Scope(
             publishes=self.publishes,
             subscribes=self.subscribes,
@@ -209,7 +209,7 @@ class Exercise:
     def _check(self) -> Verdict:
         verdict = self._examine()
         note = progress_store.note_check(self.lesson, self.name, verdict.outcome.value)
-        if verdict.passed and self.home is not None:
+        if verdict.passed and self.belongs_to is not None:
             verdict = replace(verdict, standing=after(self, progress_store.store.read()[0]))
         return verdict if not note else verdict.with_note(note)
 

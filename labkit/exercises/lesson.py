@@ -65,7 +65,7 @@ class Lesson:
         for exercise in exercises:
             scope = exercise.scope
             exercise.lesson = name
-            exercise.home = self
+            exercise.belongs_to = self
             exercise.scope = replace(
                 scope,
                 known=known,
@@ -79,9 +79,12 @@ class Lesson:
 
     def begin(self) -> Lesson:
         """Get ready: called by `lab.lesson` in the setup cell."""
+        from labkit.exercises.home import follow_progress
+
         last_cell.follow()
         for exercise in self.exercises:
             exercise.begin()
+        follow_progress()
         return self
 
     @property

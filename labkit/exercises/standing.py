@@ -68,7 +68,7 @@ def after(exercise: Exercise, data: Data) -> tuple[Row, list[tuple[str, str]]]:
         The lesson, and pairs of a text and where it is: the next exercise that is not done; if
         all are, the quiz unless it is done, and the next lesson.
     """
-    lesson = exercise.home
+    lesson = exercise.belongs_to
     assert lesson is not None
     row = row_of(lesson, data, _own_file())
     exercises = row.of_kind('exercise')

@@ -10,10 +10,10 @@ import html
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-__all__ = ['Item', 'Row', 'link', 'marks', 'percent', 'picture', 'text_form']
+__all__ = ['Item', 'Row', 'link', 'marks', 'percent', 'picture', 'sign', 'text_form']
 
 # state -> (sign, colour, word)
-STATES = {
+_STATES = {
     'done': ('✔', 'var(--jp-success-color1, #2e7d32)', 'done'),
     'tried': ('…', 'var(--jp-warn-color1, #ef6c00)', 'tried'),
     'open': ('○', 'var(--jp-border-color1, #9e9e9e)', 'open'),
@@ -140,6 +140,11 @@ def marks(items: Sequence[Item]) -> str:
     return ' '.join(map(_mark, items))
 
 
+def sign(item: Item) -> str:
+    """Return the sign that says whether an item is done, tried or open."""
+    return _STATES[item.state][0]
+
+
 def link(text: str, href: str) -> str:
     """Return a link as HTML; only the text, if it leads nowhere."""
     if not href:
@@ -166,8 +171,8 @@ def _line(row: Row) -> str:
 
 
 def _mark(item: Item) -> str:
-    sign, colour, word = STATES[item.state]
-    text = f'<span aria-hidden="true">{sign}</span> {html.escape(item.name)}'
+    _, colour, word = _STATES[item.state]
+    text = f'<span aria-hidden="true">{sign(item)}</span> {html.escape(item.name)}'
     label = html.escape(f'{item.kind} {item.name}: {word}')
     # The colour is that of the edge: what is written can be read in any theme.
     style = f'style="{_MARK.format(colour=colour)}" title="{label}"'

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import socket
 import urllib.error
 import urllib.request
@@ -9,6 +10,7 @@ import urllib.request
 import pytest
 from playwright.sync_api import expect
 
+from labkit.course.jupyterlab import HOME
 from labkit.course.learner_folder import FIRST
 from tests.browser.jupyter import JupyterLab
 from tests.browser.page import Notebook
@@ -20,6 +22,9 @@ def test_first_lesson_opens_ready_to_run(tmp_path, browser):
         notebook = Notebook(browser.new_page()).open(jupyter.url)
         _look_at_first_lesson(notebook)
         notebook.close()
+        # The terminal has the address, and no log; nor does each kernel warn there.
+        assert not re.search(r'\[[IW] |WARNING', jupyter.log)
+        assert len(re.findall('token=', jupyter.log)) == 1
 
 
 def _look_at_first_lesson(notebook: Notebook) -> None:
@@ -35,6 +40,20 @@ def _look_at_first_lesson(notebook: Notebook) -> None:
     assert notebook.error_of(first) == ''
     expect(page.locator('.jp-Dialog')).to_have_count(0)
     expect(page.locator('.Toastify__toast')).to_have_count(0)
+
+
+def test_page_with_all_lessons_leads_to_each_exercise(jupyter, browser):
+    page = browser.new_page()
+    page.goto(jupyter.address(f'lab/tree/{HOME}'))
+    shown = page.locator('.jp-MarkdownViewer')
+    expect(shown.get_by_role('heading', name='Learn ROS 2')).to_be_visible()
+    # Shown as a page: a heading of the table, and the lessons.
+    expect(shown.get_by_role('row')).to_have_count(14)
+    expect(shown.get_by_role('link', name='04 Odd numbers', exact=True)).to_be_visible()
+    shown.get_by_role('link', name='count_up').click()
+    expect(page.get_by_role('heading', name='Exercise 2: odd numbers')).to_be_in_viewport()
+    page.close()
+    jupyter.end_kernels()
 
 
 def test_listens_on_this_machine_only(jupyter):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from playwright.sync_api import expect
 
+from tests.browser.samples import SETUP, TALKER
+
 OPEN = "() => window.jupyterapp.shell.currentWidget?.context?.path ?? ''"
 
 
@@ -49,3 +51,14 @@ def test_solution_is_copied_without_a_kernel(open_cells, browser):
     copied = page.evaluate('() => navigator.clipboard.readText()')
     assert copied == output.locator('pre').text_content()
     assert 'class Ones(Node):' in copied
+
+
+def test_node_is_shown_as_a_card(open_cells):
+    notebook = open_cells(setup=SETUP, talker=TALKER, shown='lab.spin(Talker())')
+    for cell_id in ('setup', 'talker', 'shown'):
+        notebook.run_cell(cell_id)
+    # A screen reader says what comes: the card is a status.
+    card = notebook.output('shown').get_by_role('status')
+    expect(card).to_contain_text('NODE: /talker')
+    expect(card).to_contain_text('/chatter [std_msgs/msg/String]')
+    assert ' at 0x' not in notebook.output_text('shown')

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import re
+import shutil
 import signal
 import socket
 import subprocess
@@ -17,6 +19,8 @@ from typing import Any
 
 import pytest
 from courses import ROOT, START, TIMEOUT_SEC, Course, notebook, wait_for_line
+
+from labkit.course.jupyterlab import HOME
 
 
 @pytest.fixture
@@ -56,7 +60,7 @@ def test_lab_serves_the_copies_to_those_who_have_the_token(ready: Course) -> Non
     (spec / 'kernel.json').write_text(json.dumps({'argv': ['false'], 'display_name': 'wrong'}))
     process = ready.start(ready.command('lab', '--no-browser'))
     try:
-        line = wait_for_line(process, 'token=').split()[-1]
+        line = wait_for_line(process, 'token=').strip()
         base, _, token = line.partition(f'/lab/tree/{START}?')
         assert base.startswith('http://127.0.0.1:')
         wait_for_server(base, process)
@@ -65,6 +69,10 @@ def test_lab_serves_the_copies_to_those_who_have_the_token(ready: Course) -> Non
         defaults = answer(settings)['schema']['properties']
         assert defaults['fetchNews']['default'] == 'false'
         assert defaults['checkForUpdates']['default'] is False
+        # The page with all lessons is shown, not its source.
+        settings = f'{base}/lab/api/settings/@jupyterlab/docmanager-extension:plugin?{token}'
+        viewers = answer(settings)['schema']['properties']['defaultViewers']
+        assert viewers['default'] == {'markdown': 'Markdown Preview'}
         kernels = answer(f'{base}/api/kernelspecs?{token}')
         assert kernels['default'] == 'python3'
         assert kernels['kernelspecs']['python3']['spec']['display_name'] != 'wrong'
@@ -73,6 +81,34 @@ def test_lab_serves_the_copies_to_those_who_have_the_token(ready: Course) -> Non
     finally:
         os.killpg(process.pid, signal.SIGTERM)
         process.communicate(timeout=TIMEOUT_SEC)
+
+
+def test_terminal_has_the_address_alone_on_a_line_and_no_log(ready: Course) -> None:
+    process = ready.start(ready.command('lab', '--no-browser'))
+    try:
+        address = wait_for_line(process, 'token=')
+        assert re.fullmatch(r'    http://127\.0\.0\.1:\d+/lab/\S+\n', address)
+        wait_for_server(address.strip().partition('/lab/')[0], process)
+    finally:
+        os.killpg(process.pid, signal.SIGTERM)
+        output, _ = process.communicate(timeout=TIMEOUT_SEC)
+    assert '[I ' not in output and 'token=' not in output
+
+
+def test_page_with_all_lessons_opens_once_a_learner_has_begun(ready: Course) -> None:
+    for room in ('exercises', 'ros2'):
+        shutil.copytree(ROOT / 'labkit' / room, ready.folder / 'labkit' / room)
+    state = Path(ready.env['HOME'], 'state')
+    state.mkdir()
+    (state / 'progress.json').write_text(json.dumps({'version': 1, 'lessons': {}}))
+    process = ready.start(ready.command('lab', '--no-browser'), LABKIT_HOME=str(state))
+    try:
+        assert f'/lab/tree/{HOME}?token=' in wait_for_line(process, 'token=')
+    finally:
+        os.killpg(process.pid, signal.SIGTERM)
+        process.communicate(timeout=TIMEOUT_SEC)
+    page = (ready.folder / 'work' / HOME).read_text()
+    assert '[00 Start here](00_start_here.ipynb)' in page
 
 
 def test_port_in_use(ready: Course) -> None:
