@@ -73,10 +73,12 @@ class Quiz:
         return '\n'.join(lines)
 
     def _repr_mimebundle_(self, **_: object) -> dict[str, Any]:
-        bundle: dict[str, Any] = {'text/plain': repr(self)}
-        if settings.audience().live:
-            # Without ipywidgets and anywidget the text is shown.
-            with contextlib.suppress(ImportError):
+        return {'text/plain': repr(self)}
+
+    def _ipython_display_(self) -> None:
+        # Without ipywidgets and anywidget the text is shown.
+        with contextlib.suppress(ImportError):
+            if settings.audience().live:
                 from labkit.views.quiz import quiz_form
 
                 self._form = self._form or quiz_form(
@@ -84,8 +86,9 @@ class Quiz:
                     self.answer,
                     progress_store.answers(self.lesson, self.name),
                 )
-                bundle = {**self._form.bundle(), **bundle}
-        return bundle
+                self._form.show(repr(self))
+                return
+        raise NotImplementedError  # then IPython asks for the bundle
 
     def form_data(self) -> list[dict[str, Any]]:
         """Return the questions as a form needs them, without what is right."""

@@ -103,6 +103,9 @@ class Arena(LivePage):
             # Before the page asks for it: it can't while the cell goes on and lets a robot drive.
             self._open()
         self._wait_for_first()
+        return self._stored_form()
+
+    def _stored_form(self) -> dict[str, str]:
         with self._lock:
             self._look_at_scan()
             self.scene.trail = list(self._trail)

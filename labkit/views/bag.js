@@ -192,12 +192,11 @@ function showMessage(place, fields) {
 function render({ model, el }) {
   el.classList.add('labkit-live', 'labkit-bag');
   el.setAttribute('role', 'group');
-  keepKeys(el);
+  const unmake = makeView(model, el);
   const place = (tag, className, properties = {}) => element(tag, { className, ...properties });
   const title = place('span', 'labkit-bag-name');
   const about = place('span', 'labkit-bag-about', { textContent: 'The bag is being read.' });
-  const note = place('p', 'labkit-live-note', { hidden: true });
-  note.setAttribute('role', 'status');
+  const note = makeNote();
   const button = element('button', { type: 'button', textContent: 'Play' });
   const slider = element('input', { type: 'range', min: 0, max: 1, step: 0.01, value: 0 });
   slider.setAttribute('aria-label', 'Time in the bag');
@@ -212,7 +211,7 @@ function render({ model, el }) {
   chart.setAttribute('role', 'img');
   const legend = new Legend();
   const plot = element('div', { className: 'labkit-plot', hidden: true },
-    element('header', {}, legend.table), chart);
+    element('div', { className: 'labkit-live-header' }, legend.table), chart);
   const floor = element('canvas');
   floor.setAttribute('role', 'img');
   floor.setAttribute('aria-label', 'Map of the path of the robot, told in words below.');
@@ -248,10 +247,15 @@ function render({ model, el }) {
     redraw();
   });
 
+  const kernel = connect(model, () => {
+    state.ended = GONE;
+    play(false);
+    showNote();
+  });
   const send = (content) => {
     askedAt = performance.now();
     waiting = true;
-    model.send(content);
+    kernel.send(content);
   };
   const showNote = () => {
     const slow = waiting && performance.now() - askedAt > SLOW_MS;
@@ -383,8 +387,8 @@ function render({ model, el }) {
   });
   clear.addEventListener('click', () => takeLines([], []));
   model.on('msg:custom', onMessage);
-  el.append(element('header', {}, title, about), note, topics.table, controls, details, plot,
-    arena);
+  const header = element('div', { className: 'labkit-live-header' }, title, about);
+  el.append(header, note, topics.table, controls, details, plot, arena);
   const sizes = new ResizeObserver(() => {
     topics.draw();
     redraw();
@@ -399,6 +403,8 @@ function render({ model, el }) {
   send({ see: true });
   return () => {
     model.off('msg:custom', onMessage);
+    kernel.disconnect();
+    unmake();
     sizes.disconnect();
     themes.disconnect();
     clearInterval(watch);

@@ -41,12 +41,12 @@ from labkit.views.message_tree import rows
 from labkit.views.plot_fields import Source, parse
 from labkit.views.plot_picture import COLOURS, in_words, thin
 from labkit.views.robot_messages import beam_ends, motion_of
-from labkit.views.widget import widget_bundle, widget_class
+from labkit.views.stored import Stored
+from labkit.views.widget import widget_class
 
 if TYPE_CHECKING:
-    import anywidget
-
     from labkit.bags.reader import BagMessage, BagTopic
+    from labkit.views.widget import PageWidget
 
 __all__ = ['BagView', 'bag']
 
@@ -94,7 +94,7 @@ class BagView(Live):
             raise
         self.note = self._bag.note
         self._content: _Content | None = None
-        self._widget: anywidget.AnyWidget | None = None
+        self._widget: PageWidget | None = None
         if self._watched:
             self._widget = widget_class(self._name)()
             self._widget.on_msg(self._on_message)
@@ -136,12 +136,15 @@ class BagView(Live):
     def _repr_mimebundle_(self, **_: object) -> dict[str, object]:
         content = self._read()
         shown: dict[str, object] = {'text/plain': repr(self)}
-        if self._widget is not None and not self._ended:
-            return {**widget_bundle(self._widget), **shown}
         if self._bag.message_count:
             seconds = self._bag.duration_sec
             shown['image/png'] = to_png(content.strips, content.samples, content.track, seconds)
         return shown
+
+    def _ipython_display_(self) -> None:
+        if self._widget is None or self._ended:
+            raise NotImplementedError  # then IPython asks for the bundle
+        Stored(self._widget).show({'text/plain': repr(self)})
 
     # -- life: it listens to nothing, so it has no part in that of ROS ---------------------------
 

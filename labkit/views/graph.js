@@ -224,7 +224,7 @@ function render({ model, el }) {
     setText(name, first ?? '');
     setText(about, first ? lines.join(' · ') : hint);
   });
-  const send = (content) => model.send(content);
+  const send = (content) => kernel.send(content);
   const switches = makeSwitches(send);
   const back = element('button', { type: 'button', textContent: 'Show it' });
   const since = element('span');
@@ -239,7 +239,7 @@ function render({ model, el }) {
   };
   back.addEventListener('click', () => send({ then: !known.then }));
 
-  const { note, end } = follow(model, el, (news) => {
+  const kernel = follow(model, el, (news) => {
     Object.keys(known).forEach((key) => {
       known[key] = news[key] ?? known[key];
     });
@@ -257,7 +257,7 @@ function render({ model, el }) {
     showChanged();
   });
   drawing.tell([]);
-  el.append(told, drawing.place, empty, note, changed,
+  el.append(told, drawing.place, empty, kernel.note, changed,
     element('div', { className: 'labkit-graph-foot' }, details, switches.place));
 
   // Only what can be seen is counted.
@@ -288,7 +288,7 @@ function render({ model, el }) {
     sizes.disconnect();
     document.removeEventListener('visibilitychange', look);
     drawing.dots.end();
-    end();
+    kernel.end();
   };
 }
 

@@ -66,6 +66,9 @@ class ImageView(LivePage):
         if self._watched and not self._ended and self._node is None:
             self._open()
         self._wait_for_first()
+        return self._stored_form()
+
+    def _stored_form(self) -> dict[str, str]:
         shown = {'text/plain': self.text}
         if self._last is not None:
             try:

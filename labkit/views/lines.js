@@ -182,7 +182,7 @@ class Legend {
       // As exact as the greatest of them asks for, so that they can be compared.
       const size = Math.log10(Math.max(Math.abs(least), Math.abs(greatest)) || 1);
       const digits = Math.min(12, Math.max(0, 3 - Math.floor(size)));
-      [values.at(-1), least, greatest].forEach((number, column) => {
+      [finite.at(-1), least, greatest].forEach((number, column) => {
         const text = Number.isFinite(number) ? `${Number(number.toFixed(digits))}` : '–';
         setText(this.cells[row][column], text);
       });

@@ -1,7 +1,9 @@
 // What views share. It goes before their own code.
 
 const ALIVE_MS = 2000; // see live_page.py
+const AGAIN_MS = 500;
 const QUIET_MS = 4000;
+const GONE = 'The kernel says nothing. It may have been restarted or stopped: run this cell again.';
 
 function element(tag, properties = {}, ...children) {
   const made = Object.assign(document.createElement(tag), properties);
@@ -14,28 +16,71 @@ function setText(place, text) {
   if (place.textContent !== text) place.textContent = text;
 }
 
-// JupyterLab's own keys (a, b, x, arrows) stay out of a view.
-function keepKeys(el) {
-  el.setAttribute('data-lm-suppress-shortcuts', 'true');
-  el.addEventListener('keydown', (event) => event.stopPropagation());
+// What every view is. Its stored form hides while it is there (see stored.py). JupyterLab's own keys
+// (a, b, x, arrows) stay out of it, but for those that run its cell; Escape leaves it.
+function makeView(model, el) {
+  el.classList.add('labkit-view', model.get('mark'));
+  const suppress = 'data-lm-suppress-shortcuts';
+  el.setAttribute(suppress, 'true');
+  const runs = (event) => event.key === 'Enter' && (event.shiftKey || event.ctrlKey || event.altKey);
+  el.addEventListener('keydown', (event) => {
+    // The cell gets the keys then, as with Escape in its code.
+    if (event.key === 'Escape') el.closest('.jp-Cell')?.focus({ preventScroll: true });
+    if (!runs(event)) event.stopPropagation();
+  });
+  // JupyterLab hears a key before the view does.
+  const onWayDown = (event) => {
+    if (el.contains(event.target)) el.toggleAttribute(suppress, !runs(event));
+  };
+  window.addEventListener('keydown', onWayDown, true);
+  return () => window.removeEventListener('keydown', onWayDown, true);
+}
+
+// What sends to the kernel. When it can't be reached any more, for whatever reason, `lose` is
+// called, and nothing is sent from then on.
+function connect(model, lose) {
+  let lost = false;
+  const end = () => {
+    if (lost) return;
+    lost = true;
+    lose();
+  };
+  // From a kernel that is restarted, JupyterLab's widgets are cut off.
+  model.on('comm_live_update', end);
+  const send = (content) => {
+    if (lost) return;
+    try {
+      model.send(content);
+    } catch {
+      end();
+    }
+  };
+  const disconnect = () => model.off('comm_live_update', end);
+  return { send, disconnect };
+}
+
+// The place where a view says what is wrong.
+function makeNote() {
+  const note = element('p', { className: 'labkit-live-note', hidden: true });
+  note.setAttribute('role', 'status');
+  return note;
 }
 
 // Hand over what the kernel sends, and tell the kernel that somebody looks on, again and again.
-// Returns the place for what is wrong, what says it there, and what ends it all.
+// Returns the place for what is wrong, what says it there, what sends to the kernel, and what ends
+// it all. A kernel that is gone ends the view as one that says so does.
 function follow(model, el, take) {
-  keepKeys(el);
-  const note = element('p', { className: 'labkit-live-note', hidden: true });
-  note.setAttribute('role', 'status');
-  let [heardAt, toldAt, ended, why] = [performance.now(), 0, '', ''];
-  const tell = (view) => {
+  const unmake = makeView(model, el);
+  const note = makeNote();
+  let [heardAt, toldAt, complete, ended, why] = [performance.now(), 0, false, '', ''];
+  // All there is to know is asked for until it comes: while a page is loaded, messages get lost.
+  const tell = (view = complete ? 'there' : 'seen') => {
     toldAt = performance.now();
-    model.send({ view });
+    send({ view });
   };
   const show = () => {
     const quiet = performance.now() - heardAt > QUIET_MS;
-    setText(note, ended || (quiet
-      ? 'The kernel says nothing. It may have been restarted or stopped: run this cell again.'
-      : why));
+    setText(note, ended || (quiet ? GONE : why));
     note.hidden = !note.textContent;
   };
   const say = (words) => {
@@ -44,29 +89,43 @@ function follow(model, el, take) {
   };
   const onMessage = (news, buffers) => {
     heardAt = performance.now();
-    if (news.note !== undefined) why = news.note;
+    if (news.all) complete = true;
     if (news.ended) ended = news.ended;
+    // Before that, news say what has changed since another page was told.
+    if (!complete && !ended) {
+      if (heardAt - toldAt > AGAIN_MS) tell();
+      return;
+    }
+    if (news.note !== undefined) why = news.note;
     take(news, buffers);
     // For those who look on from outside, such as tests.
     el.dataset.updates = Number(el.dataset.updates ?? 0) + 1;
     show();
     // Not by the timer alone: in a tab that is not visible it may rest for a minute.
-    if (heardAt - toldAt > ALIVE_MS && !ended) tell('there');
+    if (heardAt - toldAt > ALIVE_MS && !ended) tell();
   };
+  const { send, disconnect } = connect(model, () => {
+    ended = GONE;
+    take({ ended });
+    show();
+  });
   const watch = setInterval(() => {
     if (ended) return;
-    if (performance.now() - toldAt > ALIVE_MS) tell('there');
+    if (performance.now() - toldAt > ALIVE_MS) tell();
     show();
   }, ALIVE_MS / 4);
   model.on('msg:custom', onMessage);
   // Several views may show the same.
   model.labkitViews = (model.labkitViews ?? 0) + 1;
-  tell('seen');
+  // When the view is complete.
+  queueMicrotask(tell);
   const end = () => {
-    model.off('msg:custom', onMessage);
-    clearInterval(watch);
     model.labkitViews -= 1;
-    if (!model.labkitViews) model.send({ view: 'gone' });
+    if (!model.labkitViews) tell('gone');
+    model.off('msg:custom', onMessage);
+    disconnect();
+    unmake();
+    clearInterval(watch);
   };
-  return { note, say, end };
+  return { note, say, send, end };
 }

@@ -11,12 +11,11 @@ import time
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
-import anywidget
-
 from labkit.background.compat import call_in_kernel
 from labkit.views.feed import Feed
 from labkit.views.live import Live, helper
-from labkit.views.widget import widget_bundle, widget_class
+from labkit.views.stored import Stored
+from labkit.views.widget import PageWidget, widget_class
 
 __all__ = ['LivePage', 'News']
 
@@ -27,6 +26,8 @@ News = tuple[dict[str, Any], list[bytes]]
 LOOK_SEC = 0.5
 # The page hears something at least this often, s, so that it knows that all is well.
 STATUS_SEC = 1.0
+# So often, s, what the notebook stores of a view is brought up to date.
+KEEP_SEC = 5.0
 # A page speaks up every 2 s. One that has not for so long is gone, s.
 GONE_SEC = 10.0
 # What a page has said while a cell was running is heard so long after its end, s.
@@ -46,23 +47,34 @@ class LivePage(Live):
     def __init__(self, feeds: Sequence[Feed] = ()) -> None:
         super().__init__()
         self._feeds = list(feeds)
-        self._seen_at = self._looked_at = self._sent_at = 0.0
+        self._seen_at = self._looked_at = self._sent_at = self._kept_at = 0.0
         # What the page has been told.
         self._told: dict[str, Any] = {}
-        self._widget: anywidget.AnyWidget | None = None
+        self._widget: PageWidget | None = None
+        self._stored: Stored | None = None
         if self._watched:
             self._widget = widget_class(self._name)()
+            self._stored = Stored(self._widget)
             self._widget.on_msg(self._on_message)
             self._take_place()
 
-    def _repr_mimebundle_(self, **_: object) -> dict[str, object]:
-        return {**widget_bundle(self._widget), **self._still()}
+    def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
+        return self._still()
+
+    def _ipython_display_(self) -> None:
+        if self._stored is None:
+            raise NotImplementedError  # then IPython asks for the bundle
+        self._stored.show(self._still())
 
     # -- for those that are made on it ----------------------------------------------------------
 
     def _still(self) -> dict[str, str]:
         """Return what is shown where nothing can be live: a text, and maybe a picture."""
         raise NotImplementedError
+
+    def _stored_form(self) -> dict[str, str]:
+        """Return what is stored: the same of what is known, at once."""
+        return self._still()
 
     def _news(self, everything: bool) -> News:
         """Return what the page does not know yet, or all there is to know."""
@@ -91,6 +103,7 @@ class LivePage(Live):
             for feed in self._feeds:
                 feed.close()
             super()._close()
+            self._keep()
 
     def _tick(self) -> None:
         now = time.monotonic()
@@ -103,6 +116,8 @@ class LivePage(Live):
                 feed.look()
         if due:
             self._looked_at = now
+        if now - self._kept_at >= KEEP_SEC:
+            self._keep()
         self._send()
 
     def _on_destroyed(self) -> None:
@@ -112,6 +127,12 @@ class LivePage(Live):
                 for feed in self._feeds:
                     feed.look()
 
+    def _keep(self) -> None:
+        """Store what is known in the notebook."""
+        self._kept_at = time.monotonic()
+        if self._stored is not None:
+            self._stored.keep(self._stored_form())
+
     # -- the page -------------------------------------------------------------------------------
 
     def _on_message(self, _: object, content: dict[str, Any], __: object) -> None:
@@ -120,6 +141,10 @@ class LivePage(Live):
             words = self._ended or self._cut_off()
             if not words:
                 self._obey(content)
+            elif content.get('view') == 'seen':
+                # What it showed last, to a page that is loaded again.
+                self._ended = words
+                self._send(everything=True)
         if words:
             self._end(words)
 
@@ -157,6 +182,8 @@ class LivePage(Live):
         elif since < self._least:
             return  # a timer that was late ticks again soon
         content, buffers = self._news(everything)
+        if everything:
+            content['all'] = True
         if content or buffers or since >= STATUS_SEC:
             self._tell(content, buffers)
             self._sent_at = time.monotonic()

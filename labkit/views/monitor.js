@@ -96,7 +96,8 @@ function render({ model, el }) {
     tree.hidden = !places.length;
     showAge();
   });
-  el.append(element('header', {}, topic, type), figures, note, tree, publishers.box);
+  const header = element('div', { className: 'labkit-live-header' }, topic, type);
+  el.append(header, figures, note, tree, publishers.box);
   const ageing = setInterval(showAge, AGE_MS);
   return () => {
     clearInterval(ageing);

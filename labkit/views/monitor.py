@@ -51,7 +51,7 @@ class Monitor(LivePage):
         self._msg_type, self._qos_profile = checked_type(msg_type), qos_profile
         self._feed = self._new_feed(topic, self._take)
         self.topic = self._feed.topic
-        self._last: tuple[type | None, bytes] | None = None
+        self._last_message: tuple[type | None, bytes] | None = None
         self._wanted = count
         super().__init__([self._feed])
         self._text = '' if self._watched else self._heard_text()
@@ -65,8 +65,20 @@ class Monitor(LivePage):
         return self._text or self._heard_text()
 
     def _still(self) -> dict[str, str]:
-        words = f'Monitor of {self.topic}: live, for as long as a page shows it.'
-        return {'text/plain': self._text or words}
+        return {'text/plain': self._text or self._known_text()}
+
+    def _known_text(self) -> str:
+        """Return the last message as text, and how many have come."""
+        feed = self._feed
+        if self._last_message is None:
+            return f'{self.topic}: no message has come.'
+        return '\n'.join(
+            [
+                f'{self.topic} [{type_name(feed.msg_type)}]',
+                f'message {feed.count}:',
+                as_text(rows(_message(*self._last_message))),
+            ]
+        )
 
     def _new_feed(self, topic: str, take: Callable[[bytes], None]) -> Feed:
         return Feed(
@@ -79,7 +91,7 @@ class Monitor(LivePage):
         )
 
     def _take(self, data: bytes) -> None:
-        self._last = (self._feed.msg_type, data)
+        self._last_message = (self._feed.msg_type, data)
 
     def _heard_text(self) -> str:
         """Wait for messages; return the last of them as text that is the same each time."""
@@ -107,9 +119,9 @@ class Monitor(LivePage):
             'publishers': _told(feed.publishers),
             'count': feed.count,
         }
-        if feed.count != self._told.get('count') and self._last is not None:
+        if feed.count != self._told.get('count') and self._last_message is not None:
             state['age'] = now - feed.heard_at
-            tree = rows(_message(*self._last))
+            tree = rows(_message(*self._last_message))
             state['fields'] = [row[:-1] for row in tree]
             state['values'] = [row.value for row in tree]
         return self._new_of(state), []

@@ -1,13 +1,21 @@
 // A plot that follows: the latest time is at the right.
 
+const ROOM = 0.2; // so much of the width may be empty, at the right
+
 // The lines, as they come from the kernel.
 class Lines {
   constructor() {
-    [this.lines, this.seconds, this.ahead] = [[], 10, null];
+    [this.lines, this.seconds, this.ahead, this.latest] = [[], 10, null, 0];
   }
 
   get now() {
     return this.ahead === null ? 0 : performance.now() / 1000 + this.ahead;
+  }
+
+  // The right edge. It does not run away from what came last: where nothing comes any more, most
+  // of the last window stays.
+  get end() {
+    return Math.max(Math.min(this.now, this.latest + this.seconds * ROOM), this.seconds);
   }
 
   take(news, buffers) {
@@ -24,7 +32,7 @@ class Lines {
     }
     news.parts?.forEach((number, index) => this.add(this.lines[number], buffers[index]));
     for (const line of this.lines) {
-      const first = line.times.findIndex((time) => time > this.now - this.seconds);
+      const first = line.times.findIndex((time) => time > this.end - this.seconds);
       // One before the window, so that its line begins at the edge.
       const old = first < 0 ? line.times.length - 1 : first - 1;
       if (old > 0) {
@@ -43,13 +51,18 @@ class Lines {
     // A copy: the bytes may lie anywhere in the message, numbers only at multiples of eight.
     const bytes = data.buffer.slice(data.byteOffset, data.byteOffset + data.byteLength);
     const numbers = new Float64Array(bytes);
-    line.times.push(...numbers.subarray(0, numbers.length / 2));
-    line.values.push(...numbers.subarray(numbers.length / 2));
+    const [times, values] = [0, 1].map((half) => [
+      ...numbers.subarray((half * numbers.length) / 2, ((half + 1) * numbers.length) / 2),
+    ]);
+    line.times.push(...times);
+    line.values.push(...values);
+    const last = values.findLastIndex(Number.isFinite);
+    if (last >= 0) this.latest = Math.max(this.latest, times[last]);
   }
 
   // A copy that stays as it is, for a pause.
   frozen() {
-    const end = Math.max(this.now, this.seconds);
+    const { end } = this;
     return [this.lines.map((line) => ({
       ...line, times: [...line.times], values: [...line.values],
     })), end - this.seconds, end];
@@ -71,7 +84,7 @@ function render({ model, el }) {
     frame = requestAnimationFrame(draw);
     if (moment - drawnAt < FRAME_MS || !data.lines.length || !canvas.clientWidth) return;
     drawnAt = moment;
-    const end = Math.max(data.now, data.seconds);
+    const { end } = data;
     sheet.draw(...(paused ?? [data.lines, end - data.seconds, end]));
     if (moment - toldAt > WORDS_MS) {
       toldAt = moment;
@@ -95,7 +108,7 @@ function render({ model, el }) {
       `Lines over the last ${data.seconds} s: ${names.join(', ')}. The table has the numbers.`);
     canvas.style.height = `${heightOf(data.lines)}px`;
   });
-  el.append(element('header', {}, legend.table, button), note, canvas);
+  el.append(element('div', { className: 'labkit-live-header' }, legend.table, button), note, canvas);
   frame = requestAnimationFrame(draw);
   return () => {
     cancelAnimationFrame(frame);

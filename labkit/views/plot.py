@@ -55,6 +55,7 @@ class Series:
         self._type: Any = None
         # What the page has been sent, for the next page.
         self._sent: deque[tuple[Floats, Floats]] = deque()
+        self._latest = -math.inf
 
     def add(self, moment: float, data: bytes, msg_type: Any) -> None:
         """Keep the field of a serialized message that came at a moment."""
@@ -86,13 +87,15 @@ class Series:
         samples = np.array([self.waiting.popleft() for _ in range(count)], dtype=np.float64)
         chunk = thin(samples[:, 0], samples[:, 1], window / COLUMNS)
         self._sent.append(chunk)
-        while self._sent[0][0][-1] < samples[-1, 0] - window:
+        # Not with the time that goes on: what came last is kept when nothing comes any more.
+        heard = samples[~np.isnan(samples[:, 1]), 0]
+        self._latest = max([self._latest, *heard[-1:]])
+        while self._sent[0][0][-1] < self._latest - window:
             self._sent.popleft()
         return chunk
 
-    def everything(self, window: float) -> tuple[Floats, Floats]:
-        """Return times and values of the whole window."""
-        self.take(window)
+    def kept(self, window: float) -> tuple[Floats, Floats]:
+        """Return times and values of the whole window, as far as they have been taken."""
         if not self._sent:
             return np.empty(0), np.empty(0)
         times, values = (np.concatenate(parts) for parts in zip(*self._sent, strict=True))
@@ -122,9 +125,21 @@ class Plot(LivePage):
         return (self._bundle or self._heard_bundle())['text/plain']
 
     def _still(self) -> dict[str, str]:
-        names = ', '.join(source.text for source in self._sources)
-        words = f'Plot of {names}: live, for as long as a page shows it.'
-        return self._bundle or {'text/plain': words}
+        return self._bundle or self._known_bundle()
+
+    def _known_bundle(self) -> dict[str, str]:
+        """Return text and picture of the last window."""
+        words, lines = [], []
+        for each in self._series:
+            times, values = each.kept(self._seconds)
+            known = values[~np.isnan(values)].tolist()
+            text = in_words(known, each.unit) if known else 'no number has come'
+            words.append(f'{each.source.text}: {text}')
+            seconds = (times - self._begin).tolist()
+            lines.append(Line(each.source.text, each.unit, values.tolist(), seconds))
+        text = '\n'.join(words)
+        drawn = any(math.isfinite(value) for line in lines for value in line.values)
+        return {'text/plain': text, **({'image/svg+xml': to_svg(lines, text)} if drawn else {})}
 
     def _heard_bundle(self) -> dict[str, str]:
         """Wait for messages; return text and picture that are the same each time."""
@@ -163,7 +178,9 @@ class Plot(LivePage):
     def _news(self, everything: bool) -> News:
         parts, buffers = [], []
         for number, each in enumerate(self._series):
-            chunk = each.everything(self._seconds) if everything else each.take(self._seconds)
+            chunk = each.take(self._seconds)
+            if everything:
+                chunk = each.kept(self._seconds)
             if chunk is not None and len(chunk[0]):
                 parts.append(number)
                 buffers.append(

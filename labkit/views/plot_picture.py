@@ -1,6 +1,6 @@
-"""Lines as a still picture: numbers over the number of their message, one panel a unit.
+"""Lines as a still picture, one panel a unit: numbers over time, or over the number of a message.
 
-Not over time: what is stored in a notebook has to be the same each time.
+The latter where what is stored in a notebook has to be the same each time.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ import html
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,11 +28,12 @@ WIDTH, PANEL, LEFT, RIGHT, TOP, BOTTOM = 640, 170, 64, 12, 14, 40
 
 @dataclass(frozen=True)
 class Line:
-    """One line: what it is called, its unit, and its values."""
+    """One line: what it is called, its unit, its values, and maybe when they came, s."""
 
     label: str
     unit: str
     values: Sequence[float]
+    times: Sequence[float] = ()
 
 
 def in_words(values: Sequence[float], unit: str) -> str:
@@ -99,7 +101,7 @@ def to_svg(lines: Sequence[Line], text: str) -> str:
     units = list(dict.fromkeys(line.unit for line in lines))
     legend = 18 * len(lines) + 8
     height = legend + len(units) * (PANEL + TOP) + BOTTOM
-    count = max([len(line.values) for line in lines] + [2])
+    span = _span(lines)
     parts: list[str] = []
     for number, line in enumerate(lines):
         y = 16 + 18 * number
@@ -108,9 +110,10 @@ def to_svg(lines: Sequence[Line], text: str) -> str:
         parts.append(f'<text x="{LEFT + 44}" y="{y + 4}">{html.escape(label)}</text>')
     for row, unit in enumerate(units):
         top = legend + TOP + row * (PANEL + TOP)
-        parts += _panel(lines, unit, top, count, row == len(units) - 1)
+        parts += _panel(lines, unit, top, span, row == len(units) - 1)
     middle = (LEFT + WIDTH - RIGHT) / 2
-    parts.append(f'<text x="{middle}" y="{height - 6}" text-anchor="middle">message</text>')
+    what = 'time [s]' if any(line.times for line in lines) else 'message'
+    parts.append(f'<text x="{middle}" y="{height - 6}" text-anchor="middle">{what}</text>')
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" '
         f'width="{WIDTH}" height="{height}" role="img" font-family="sans-serif" font-size="12" '
@@ -121,11 +124,21 @@ def to_svg(lines: Sequence[Line], text: str) -> str:
     )
 
 
-def _panel(lines: Sequence[Line], unit: str, top: float, count: int, is_last: bool) -> list[str]:
+def _span(lines: Sequence[Line]) -> tuple[float, float]:
+    """Return the first and the last time, or number of a message, that is drawn."""
+    times = [time for line in lines for time in line.times]
+    if not times:
+        return 1, max([len(line.values) for line in lines] + [2])
+    return min(times), max(max(times), min(times) + 1)
+
+
+def _panel(
+    lines: Sequence[Line], unit: str, top: float, span: tuple[float, float], is_last: bool
+) -> list[str]:
     low, high = limits([value for line in lines if line.unit == unit for value in line.values])
 
     def px(number: float) -> float:
-        return LEFT + 8 + (WIDTH - RIGHT - LEFT - 16) * (number - 1) / (count - 1)
+        return LEFT + 8 + (WIDTH - RIGHT - LEFT - 16) * (number - span[0]) / (span[1] - span[0])
 
     def py(value: float) -> float:
         return top + PANEL * (high - value) / (high - low)
@@ -137,7 +150,7 @@ def _panel(lines: Sequence[Line], unit: str, top: float, count: int, is_last: bo
         parts.append(
             f'<text x="{LEFT - 6}" y="{py(value) + 4:.1f}" text-anchor="end">{value:.4g}</text>'
         )
-    for number in ticks(1, count, 8):
+    for number in ticks(*span, 8):
         if number == round(number):
             x = f'{px(number):.1f}'
             parts.append(f'<path d="M{x} {top}v{PANEL}" stroke="#e0e0e0"/>')
@@ -157,12 +170,23 @@ def _panel(lines: Sequence[Line], unit: str, top: float, count: int, is_last: bo
     )
     for number, line in enumerate(lines):
         if line.unit == unit:
-            points = [(px(i), py(v)) for i, v in enumerate(line.values, 1) if math.isfinite(v)]
-            path = 'L'.join(f'{x:.1f} {y:.1f}' for x, y in points)
-            # A single value is a short line: one of no length can't be seen.
-            dash = 'h3' if len(points) == 1 else ''
-            parts.append(f'<path d="M{path}{dash}" {_stroke(number)}/>' if points else '')
+            places = line.times or range(1, len(line.values) + 1)
+            pairs = zip(places, line.values, strict=True)
+            points = [(px(i), py(v)) if math.isfinite(v) else None for i, v in pairs]
+            path = _path(points)
+            parts.append(f'<path d="{path}" {_stroke(number)}/>' if path else '')
     return parts
+
+
+def _path(points: Sequence[tuple[float, float] | None]) -> str:
+    """Return lines through points, with a gap where there is none."""
+    path = ''
+    for is_gap, group in groupby(points, key=lambda point: point is None):
+        if not is_gap:
+            part = [f'{point[0]:.1f} {point[1]:.1f}' for point in group if point is not None]
+            # A single value is a short line: one of no length can't be seen.
+            path += 'M' + 'L'.join(part) + 'h3' * (len(part) == 1)
+    return path
 
 
 def _stroke(number: int) -> str:

@@ -88,7 +88,14 @@ function questionForm(question, place, buttons) {
 
 function render({ model, el }) {
   el.classList.add('labkit-quiz');
-  keepKeys(el);
+  const unmake = makeView(model, el);
+  const note = makeNote();
+  const { send, disconnect } = connect(model, () => {
+    setText(note, GONE);
+    note.hidden = false;
+    stopWaiting();
+    mark();
+  });
   const questions = model.get('questions');
   const end = questions.length;
   const answerTo = (index) => model.get('answers')[String(index + 1)];
@@ -184,11 +191,7 @@ function render({ model, el }) {
       };
       waiting = setTimeout(giveUp, PATIENCE_MS);
       mark();
-      try {
-        model.send({ number: index + 1, answer });
-      } catch {
-        giveUp(); // the kernel is known to be gone
-      }
+      send({ number: index + 1, answer });
     }
   }
 
@@ -205,21 +208,19 @@ function render({ model, el }) {
     else mark();
   }
 
-  el.addEventListener('keydown', (event) => {
-    // The cell gets the keys then, as with Esc in its code.
-    if (event.key === 'Escape') el.closest('.jp-Cell')?.focus();
-  });
   const bar = element('div', { className: 'labkit-quiz-steps' }, ...steps, ending);
   bar.setAttribute('role', 'group');
   bar.setAttribute('aria-label', 'Questions of the quiz');
   const keys = 'Enter answers, and goes on. Esc leaves the quiz.';
-  el.append(bar, stage, element('p', { className: 'labkit-quiz-keys' }, keys));
+  el.append(note, bar, stage, element('p', { className: 'labkit-quiz-keys' }, keys));
   show();
   take();
   model.on('change:answers', take);
   return () => {
     stopWaiting();
     model.off('change:answers', take);
+    disconnect();
+    unmake();
   };
 }
 

@@ -10,17 +10,17 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-import anywidget
 import traitlets
 
 from labkit.errors import LabError
 from labkit.views.card import Card
-from labkit.views.widget import page_files, widget_bundle
+from labkit.views.stored import Stored
+from labkit.views.widget import PageWidget, page_files
 
 __all__ = ['QuizForm', 'quiz_form']
 
 
-class QuizForm(anywidget.AnyWidget):
+class QuizForm(PageWidget):
     """The form. It knows nothing of quizzes but what it is given.
 
     Attributes:
@@ -72,9 +72,9 @@ class QuizForm(anywidget.AnyWidget):
         }
         self.answers = {**self.answers, str(number): answer}
 
-    def bundle(self) -> dict[str, object]:
-        """Return the data that makes a notebook show the form."""
-        return widget_bundle(self)
+    def show(self, text: str) -> None:
+        """Show the form under the current cell, and this text where no kernel can judge."""
+        Stored(self).show({'text/plain': text})
 
 
 def quiz_form(
@@ -91,6 +91,6 @@ def quiz_form(
         earlier: What was answered before, by number, and whether it was right.
 
     Returns:
-        The form; `bundle()` gives what a cell shows.
+        The form; `show()` shows it under a cell.
     """
     return QuizForm(questions, answer, earlier)

@@ -183,7 +183,7 @@ function render({ model, el }) {
       // From the first question that has no answer yet.
       if (asked <= answered) asked = performance.now();
       else if (performance.now() - asked > PATIENCE_MS) say(SILENT);
-      model.send(content);
+      send(content);
     },
     () => {
       speed.share.textContent = `${driver.share * 100} %: ` +
@@ -202,7 +202,7 @@ function render({ model, el }) {
   const keys = keypad(driver);
   const round = roundPad(driver);
   const speed = speedControl(driver);
-  const { note, say, end } = follow(model, el, (news) => {
+  const { note, say, send, end } = follow(model, el, (news) => {
     if (news.topic) takeSettings(news);
     if (news.note !== undefined) fault = news.note;
     if (news.published) way = news.published;
@@ -215,6 +215,8 @@ function render({ model, el }) {
     if (news.ended) {
       ended = true;
       driver.stop();
+      setText(hint, '');
+      el.setAttribute('aria-label', 'Drive the robot. This has ended.');
     }
     driver.show();
   });
@@ -236,11 +238,11 @@ function render({ model, el }) {
     driver.release(name);
   });
   el.addEventListener('pointerdown', () => el.focus({ preventScroll: true }));
-  el.addEventListener('focusin', () => setText(hint, DRIVING));
+  el.addEventListener('focusin', () => setText(hint, ended ? '' : DRIVING));
   el.addEventListener('focusout', (event) => {
     if (el.contains(event.relatedTarget)) return;
     driver.stop();
-    setText(hint, HINT);
+    setText(hint, ended ? '' : HINT);
   });
   const leave = () => driver.stop();
   const hide = () => document.hidden && driver.stop();

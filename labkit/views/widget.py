@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import functools
+import uuid
 from pathlib import Path
 
 import anywidget
+import traitlets
 
-__all__ = ['page_files', 'widget_bundle', 'widget_class']
+__all__ = ['PageWidget', 'page_files', 'widget_class']
 
 # What else the page's part of a view is made of. It goes before its own.
 _SHARED = {'arena': ('map', 'seen'), 'bag': ('map', 'lines'), 'plot': ('lines',)}
@@ -28,8 +30,22 @@ def page_files(name: str) -> tuple[str, str]:
     return script, style
 
 
+class PageWidget(anywidget.AnyWidget):
+    """The part of a view in the page.
+
+    Attributes:
+        mark: A class of the view's place in the page, which no other one has.
+    """
+
+    mark = traitlets.Unicode().tag(sync=True)
+
+    @traitlets.default('mark')
+    def _new_mark(self) -> str:
+        return f'labkit-{uuid.uuid4().hex}'
+
+
 @functools.cache
-def widget_class(name: str) -> type[anywidget.AnyWidget]:
+def widget_class(name: str) -> type[PageWidget]:
     """Return the class of a view's part in the page.
 
     Args:
@@ -38,11 +54,4 @@ def widget_class(name: str) -> type[anywidget.AnyWidget]:
     script, style = page_files(name)
     files = {'_esm': script, '_css': style}
     # anywidget takes the name of the class for that of its style.
-    return type(f'{name.capitalize()}Page', (anywidget.AnyWidget,), files)
-
-
-def widget_bundle(widget: anywidget.AnyWidget | None) -> dict[str, object]:
-    """Return the data that makes a notebook show a widget; nothing for None."""
-    if widget is None:
-        return {}
-    return {'application/vnd.jupyter.widget-view+json': widget.get_view_spec()}
+    return type(f'{name.capitalize()}Page', (PageWidget,), files)

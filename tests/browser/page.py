@@ -35,7 +35,8 @@ _OPTIONS = [
 # The notebook in front, and its cells.
 _NOTEBOOK = 'window.jupyterapp.shell.currentWidget'
 _CELLS = f'{_NOTEBOOK}.content.widgets'
-_READY = """path => {
+# Whether the notebook of this path is in front, and its kernel idle.
+READY = """path => {
   const panel = window.jupyterapp?.shell.currentWidget;
   return panel?.context?.isReady && panel.context.path.endsWith(path)
     && panel.sessionContext?.session?.kernel?.status === 'idle';
@@ -91,13 +92,13 @@ class Notebook:
     def open(self, address: str) -> Notebook:
         """Load JupyterLab, which opens a notebook, and wait until its kernel is idle."""
         self.page.goto(address)
-        self.page.wait_for_function(_READY, arg='')
+        self.page.wait_for_function(READY, arg='')
         return self
 
     def open_beside(self, name: str) -> Notebook:
         """Open a notebook in the JupyterLab that is loaded, which is quicker than loading it."""
         self.execute('docmanager:open', path=f'{name}.ipynb')
-        self.page.wait_for_function(_READY, arg=f'{name}.ipynb')
+        self.page.wait_for_function(READY, arg=f'{name}.ipynb')
         return self
 
     def leave(self) -> None:

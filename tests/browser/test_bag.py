@@ -45,7 +45,9 @@ def stage(open_cells: Callable[..., Notebook], tmp_path: Path) -> Stage:
 
 def test_slider_goes_through_plot_and_map_by_keyboard(stage):
     view = stage.show('drive')
-    expect(view.locator('header').first).to_contain_text('drive10.0 s from 2023-11-14 22:13:20')
+    expect(view.locator('.labkit-live-header').first).to_contain_text(
+        'drive10.0 s from 2023-11-14 22:13:20'
+    )
     expect(view.locator('table').first.locator('tbody th button')).to_have_text(
         ['/cmd_vel', '/never', '/odom', '/scan']
     )
@@ -98,7 +100,7 @@ def test_play_moves_on_and_stops_at_the_end(stage):
 
 def test_topic_shows_its_messages_and_its_numbers_can_be_plotted(stage):
     view = stage.show('arm')
-    expect(view.locator('header').first).to_contain_text('<img src=x>')
+    expect(view.locator('.labkit-live-header').first).to_contain_text('<img src=x>')
     expect(view.locator('.labkit-plot')).to_be_hidden()
     expect(view.locator('.labkit-arena')).to_be_hidden()
     button = view.get_by_role('button', name='/arm')
@@ -136,7 +138,7 @@ def test_it_can_be_read_in_both_themes_and_fits_into_800_pixels(stage):
             view = stage.show('drive')
             view.get_by_role('button', name='/odom').click()
             expect(view.locator('.labkit-bag-message')).to_contain_text('frame_id')
-            places = view.locator('header span, th, td, button, select, output, .labkit-bag-row')
+            places = view.locator('span, th, td, button, select, output, .labkit-bag-row')
             ratios = [place.evaluate(CONTRAST) for place in places.all()[:60]]
             assert len(ratios) > 20 and min(ratios) >= 4.5, (theme, ratios)
             wide = view.evaluate('v => [v.scrollWidth, v.clientWidth]')

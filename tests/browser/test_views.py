@@ -239,7 +239,7 @@ def test_both_can_be_read_in_both_themes(stage):
                 arg=theme.endswith('Dark'),
             )
             for cell_id, parts in (
-                ('odom', 'header span, dt, dd, .labkit-monitor-tree span, th, td, summary'),
+                ('odom', '.labkit-monitor span, dt, dd, th, td, summary'),
                 ('plot', 'th, td, button'),
             ):
                 places = stage.view(cell_id).locator(parts)

@@ -33,10 +33,13 @@ def quiz() -> Quiz:
     )
 
 
-def test_page_gets_the_questions_and_not_the_answers(quiz: Quiz) -> None:
-    data = quiz._repr_mimebundle_()
-    assert 'application/vnd.jupyter.widget-view+json' in data
-    assert data['text/plain'] == repr(quiz)
+def test_page_gets_the_questions_and_not_the_answers(
+    quiz: Quiz, capsys: pytest.CaptureFixture[str]
+) -> None:
+    quiz._ipython_display_()
+    # Without IPython its text is printed.
+    assert 'Which is odd?' in capsys.readouterr().out
+    assert quiz._form is not None and len(quiz._form.questions) == 2
     assert 'Four is even.' not in str(quiz._form.get_state())
 
 
@@ -44,6 +47,8 @@ def test_where_a_program_runs_the_notebook_a_quiz_is_text(
     quiz: Quiz, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(settings, 'audience', lambda: settings.RECORDING)
+    with pytest.raises(NotImplementedError):
+        quiz._ipython_display_()
     assert quiz._repr_mimebundle_() == {'text/plain': repr(quiz)}
 
 

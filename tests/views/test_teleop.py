@@ -172,7 +172,7 @@ def test_after_the_end_of_its_node_it_says_so(pilot):
     # At once, not when the page asks.
     pilot(SPY + "lab.remove('teleop')")
     assert 'The node of this teleop has ended' in pilot('print(told[-1]["ended"])')
-    pilot('told.clear()\npage(v=1, w=0)\nlab.stop()\npage(view="seen")')
+    pilot('told.clear()\npage(v=1, w=0)\nlab.stop()\npage(view="there")')
     assert pilot('print(len(told), all("ended" in each for each in told))') == '2 True'
 
 

@@ -1,0 +1,237 @@
+"""What a page says of views whose kernel is gone, and of those that are loaded again."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import ConsoleMessage, Page, expect
+
+from tests.browser.page import READY, Notebook
+
+CELLS = {
+    'setup': """
+import labkit as lab
+from labkit.views import live_page
+from rclpy.node import Node
+from std_msgs.msg import Int16
+
+live_page.KEEP_SEC = 0.2
+
+class Talker(Node):
+    def __init__(self):
+        super().__init__('talker')
+        self.count = 0
+        self.numbers = self.create_publisher(Int16, 'odds', 10)
+        self.create_timer(0.02, self.tick)
+
+    def tick(self):
+        self.count += 1
+        self.numbers.publish(Int16(data=7000 + self.count % 100))
+
+talker = lab.spin(Talker())
+robot = lab.spin(lab.Turtlebot())
+with lab.record('drive', ['/odom'], overwrite=True) as recording:
+    recording.wait_for(5)
+""",
+    'monitor': "lab.monitor('/odds')",
+    'plot': "lab.plot('/odds.data', seconds=2)",
+    'arena': 'lab.arena()',
+    'teleop': 'lab.teleop()',
+    'bag': "lab.bag('drive')",
+    'quiz': "lab.lesson('talker_listener').quiz()",
+    'two': "lab.spin(Talker())\ndisplay(lab.monitor('/odds'))\nlab.monitor('/odom')",
+    'remove': "lab.remove('talker')",
+}
+VIEWS = ('monitor', 'plot', 'arena', 'teleop', 'bag', 'quiz')
+# What each of them leaves in the notebook.
+LEFT = {
+    'monitor': 'data: 70',
+    'plot': '/odds.data',
+    'arena': '0 m',
+    'teleop': 'turn left',
+    'bag': 'drive: ',
+    'quiz': 'What is create_publisher',
+}
+# How many pixels have the colour of the first line.
+DRAWN = """canvas => {
+  const { width, height } = canvas;
+  const pixels = canvas.getContext('2d').getImageData(0, 0, width, height).data;
+  let count = 0;
+  for (let i = 0; i < pixels.length; i += 4) {
+    count += pixels[i] === 0 && pixels[i + 1] === 114 && pixels[i + 2] === 178;
+  }
+  return count;
+}"""
+GONE = 'It may have been restarted or stopped: run this cell again.'
+
+
+class Complaints:
+    """What pages write on their consoles as errors."""
+
+    def __init__(self) -> None:
+        self.said: list[str] = []
+
+    def hear(self, page: Page) -> None:
+        def on_line(line: ConsoleMessage) -> None:
+            if line.type == 'error':
+                self.said.append(line.text)
+
+        page.on('pageerror', lambda error: self.said.append(str(error)))
+        page.on('console', on_line)
+
+
+@pytest.fixture
+def run_views(open_cells: Callable[..., Notebook]) -> Callable[[], Notebook]:
+    """Give a function that opens a notebook and runs all of the views in it."""
+
+    def run() -> Notebook:
+        notebook = open_cells(**CELLS)
+        notebook.run_cell('setup')
+        for cell_id in VIEWS:
+            notebook.run_cell(cell_id)
+            assert notebook.error_of(cell_id) == '', cell_id
+            expect_live(notebook, cell_id)
+        return notebook
+
+    return run
+
+
+def expect_live(notebook: Notebook, cell_id: str) -> None:
+    expect(notebook.output(cell_id).locator('.labkit-view')).to_be_visible()
+    expect(notebook.output(cell_id).locator('.labkit-stored')).to_be_hidden()
+
+
+def expect_stored(notebook: Notebook, cell_id: str, text: str) -> None:
+    output = notebook.output(cell_id)
+    expect(output.locator('.labkit-stored')).to_contain_text(text)
+    expect(output.locator('.labkit-stored > p')).to_contain_text('Run this cell again.')
+    expect(output.locator('.labkit-stored')).to_be_visible()
+    expect(output.get_by_text('Error displaying widget')).to_be_hidden()
+
+
+def wait_for_stored(notebook: Notebook, text: str) -> None:
+    """Wait until the notebook, as it would be saved, has a text in some output."""
+    notebook.page.wait_for_function(
+        """text => JSON.stringify(window.jupyterapp.shell.currentWidget.content.widgets
+          .map(cell => cell.model.toJSON().outputs)).includes(text)""",
+        arg=text,
+    )
+
+
+def reload(notebook: Notebook) -> None:
+    """Load the page again, as it was saved; the kernel goes on."""
+    notebook.execute('docmanager:save')
+    name = notebook.page.evaluate('window.jupyterapp.shell.currentWidget.context.path')
+    notebook.page.reload()
+    notebook.page.wait_for_function(READY, arg=name)
+
+
+def test_next_day_there_is_what_was_stored(run_views, jupyter):
+    notebook = run_views()
+    wait_for_stored(notebook, LEFT['monitor'])
+    wait_for_stored(notebook, 'time [s]')
+    for _ in range(2):
+        notebook.execute('docmanager:save')
+        name = notebook.page.evaluate('window.jupyterapp.shell.currentWidget.context.path')
+        notebook.leave()
+        jupyter.end_kernels()
+        # Nor is it lost when the notebook is saved without the kernel that made it.
+        notebook.open_beside(name.removesuffix('.ipynb'))
+        for cell_id in VIEWS:
+            expect_stored(notebook, cell_id, LEFT[cell_id])
+    for cell_id in ('setup', *VIEWS):
+        notebook.run_cell(cell_id)
+    for cell_id in VIEWS:
+        expect_live(notebook, cell_id)
+
+
+def test_after_a_restart_all_views_say_so(run_views):
+    notebook = run_views()
+    complaints = Complaints()
+    complaints.hear(notebook.page)
+    notebook.restart_kernel()
+    for cell_id in VIEWS:
+        note = notebook.output(cell_id).locator('.labkit-live-note')
+        expect(note).to_contain_text(GONE)
+        assert 'Nothing new' not in notebook.output_text(cell_id)
+    teleop = notebook.output('teleop').locator('.labkit-teleop')
+    teleop.focus()
+    notebook.page.keyboard.press('w')
+    expect(teleop).not_to_contain_text('keys drive')
+    expect(teleop).not_to_contain_text('Click here')
+    for button in notebook.output('quiz').get_by_role('button').all():
+        expect(button).to_be_disabled()
+    assert complaints.said == []
+
+
+def test_after_the_end_of_the_kernel_all_views_say_so(run_views, jupyter):
+    notebook = run_views()
+    jupyter.end_kernels()
+    for cell_id in VIEWS[:-1]:
+        note = notebook.output(cell_id).locator('.labkit-live-note')
+        expect(note).to_contain_text(re.compile('[Rr]un this cell'))
+    notebook.output('quiz').get_by_role('radio').first.check()
+    notebook.output('quiz').get_by_role('button').first.click()
+    expect(notebook.output('quiz').locator('.labkit-live-note')).to_contain_text(GONE)
+
+
+def test_loaded_again_they_go_on_and_a_plot_has_its_lines(run_views):
+    notebook = run_views()
+    reload(notebook)
+    for cell_id in VIEWS:
+        expect_live(notebook, cell_id)
+    for cell_id in ('monitor', 'plot', 'arena'):
+        view = notebook.output(cell_id).locator('.labkit-view').element_handle()
+        notebook.page.wait_for_function('v => Number(v.dataset.updates) > 5', arg=view)
+    plot = notebook.output('plot')
+    expect(plot.locator('td').first).to_contain_text('70')
+    # The topic ends. What came last is there, however long that is ago, and loaded again too.
+    notebook.run_cell('remove')
+    expect(plot.get_by_role('status')).to_contain_text('Nobody publishes on /odds.')
+    canvas = plot.locator('.labkit-plot canvas').first
+    later = int(canvas.get_attribute('data-frames') or 0) + 80
+    notebook.page.wait_for_function(
+        'canvas => Number(canvas.dataset.frames) > ' + str(later), arg=canvas.element_handle()
+    )
+    expect(plot.locator('td').first).to_contain_text('70')
+    assert plot.locator('canvas').evaluate(DRAWN) > 100
+    reload(notebook)
+    plot = notebook.output('plot')
+    expect(plot.get_by_role('status')).to_contain_text('Nobody publishes on /odds.')
+    expect(plot.locator('td').first).to_contain_text('70')
+    assert plot.locator('canvas').evaluate(DRAWN) > 100
+
+
+def test_two_views_of_one_cell(run_views):
+    notebook = run_views()
+    notebook.run_cell('two')
+    views = notebook.output('two').locator('.labkit-view')
+    expect(views).to_have_count(2)
+    for stored in notebook.output('two').locator('.labkit-stored').all():
+        expect(stored).to_be_hidden()
+    wait_for_stored(notebook, '/odom [nav_msgs/msg/Odometry]')
+
+
+def test_escape_leaves_a_view_and_shift_enter_runs_its_cell(run_views):
+    notebook = run_views()
+    page, count = notebook.page, len(notebook.cells())
+    button = notebook.output('plot').get_by_role('button', name='Pause')
+    button.focus()
+    page.keyboard.press('a')
+    assert len(notebook.cells()) == count
+    page.keyboard.press('Escape')
+    expect(button).not_to_be_focused()
+    # Now it is JupyterLab's key again: a cell above.
+    page.keyboard.press('a')
+    page.wait_for_function(
+        'count => window.jupyterapp.shell.currentWidget.content.widgets.length === count',
+        arg=count + 1,
+    )
+    for cell_id, focused in (('plot', 'button'), ('teleop', '.labkit-teleop')):
+        old = notebook.output(cell_id).locator('.labkit-view').element_handle()
+        notebook.output(cell_id).locator(focused).first.focus()
+        page.keyboard.press('Shift+Enter')
+        page.wait_for_function('view => !view.isConnected', arg=old)
+        expect_live(notebook, cell_id)
