@@ -97,10 +97,11 @@ class Result:
 
 
 def _text(outputs: list[dict[str, Any]]) -> str:
+    texts = [output.get('text', output.get('data', {}).get('text/plain')) for output in outputs]
     return ''.join(
-        output['text'] if 'text' in output else output['data'].get('text/plain', '') + '\n'
-        for output in outputs
-        if output['output_type'] != 'error'
+        text if 'text' in output else f'{text}\n'
+        for output, text in zip(outputs, texts, strict=True)
+        if text is not None
     )
 
 

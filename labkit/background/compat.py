@@ -31,6 +31,7 @@ __all__ = [
     'answer_input',
     'call_in_kernel',
     'callback_of',
+    'display_under',
     'forget_executor',
     'handler_of',
     'is_kernel_stream',
@@ -210,6 +211,29 @@ def set_thread_request(request: dict[str, Any]) -> None:
     for name in ('stdout', 'stderr'):
         stream: Any = getattr(sys, name)
         getattr(stream, 'target', stream)._parent_header.set(request['header'])
+
+
+def display_under(
+    request: dict[str, Any], data: dict[str, str], display_id: str, *, update: bool
+) -> None:
+    """Display something under the cell of a request, in any thread, after what is printed so far.
+
+    Args:
+        request: The kernel's request that runs the cell, or has run it.
+        data: What to display, by types.
+        display_id: What it is called when it is updated.
+        update: Whether it is shown already.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        stream.flush()
+    publisher = _shell().display_pub
+    publisher.session.send(
+        publisher.pub_socket,
+        'update_display_data' if update else 'display_data',
+        {'data': data, 'metadata': {}, 'transient': {'display_id': display_id}},
+        parent=request,
+        ident=publisher.topic,
+    )
 
 
 def is_kernel_stream(stream: object) -> bool:

@@ -23,6 +23,7 @@ from typing import Any, TextIO
 
 from labkit import settings
 from labkit.background import compat, tracebacks
+from labkit.background.log_box import LogBox
 from labkit.background.tracebacks import short_traceback
 
 __all__ = ['MAX_LINES', 'CallbackError', 'Cell', 'Console']
@@ -40,12 +41,16 @@ class Cell:
     Attributes:
         parent: The kernel's request that runs the cell; empty outside a kernel.
         lines: How many lines callbacks have shown under it.
+        box: What they are shown in; None until there are some, and where no page shows them.
+        stream: What they have written to last.
         held: Text that waits until the cell waits (only when nobody watches, see `Console`).
         ended: Whether a later cell has been run since.
     """
 
     parent: dict[str, Any] = field(default_factory=dict)
     lines: int = 0
+    box: LogBox | None = None
+    stream: TextIO | None = None
     held: list[tuple[TextIO, str]] = field(default_factory=list)
     ended: bool = False
 
@@ -275,6 +280,12 @@ class Console:
         print(f'{words}\n{seen.text}', file=sys.stderr)
 
     def _write_bounded(self, cell: Cell, stream: TextIO, text: str) -> None:
+        if cell.parent and settings.audience().live:
+            cell.box = cell.box or LogBox(cell.parent, MAX_LINES)
+            cell.box.add(text)
+        if stream is not cell.stream and cell.stream is not None:
+            cell.stream.flush()  # or it may be overtaken by what another stream gets later
+        cell.stream = stream
         if cell.lines >= MAX_LINES:
             return
         lines = text.splitlines(keepends=True)[: MAX_LINES - cell.lines]

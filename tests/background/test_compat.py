@@ -310,3 +310,21 @@ print(compat.take_all(subscription, 2), compat.take_all(subscription, 10))
 """
     )
     assert result.stdout == '0\n2 1\n', result.stderr
+
+
+def test_a_thread_displays_under_an_earlier_cell_and_updates_it(kernel):
+    first = kernel.run('from labkit.background import compat\nrequest = compat.running_request()')
+    later = kernel.run(
+        """
+import threading
+def show():
+    compat.display_under(request, {'text/plain': 'first'}, 'its name', update=False)
+    compat.display_under(request, {'text/plain': 'second'}, 'its name', update=True)
+    compat.display_under(request, {'text/plain': 'third'}, 'other name', update=False)
+thread = threading.Thread(target=show)
+thread.start()
+thread.join()
+"""
+    )
+    assert (later.error, later.text) == ('', '')
+    assert kernel.wait_for_output(first.msg_id, 'third') == 'first\nthird\n'

@@ -72,6 +72,36 @@ def test_logs_appear_live_while_another_cell_runs(jupyter, open_cells):
     assert notebook.wait_for_end('other') == ''
 
 
+def test_logs_are_in_a_box_that_shows_the_last_ones(open_cells):
+    notebook = open_cells(
+        setup=SETUP,
+        talker=TALKER.replace('0.1', '0.01'),
+        plain='for number in range(40): print(number)',
+    )
+    for cell_id in ('setup', 'talker', 'plain'):
+        notebook.run_cell(cell_id)
+    notebook.wait_output('talker', '200 lines are shown')
+    output = notebook.output('talker')
+    expect(output.locator('.labkit-log')).to_contain_text('lines, the first 200 below.')
+    box = output.locator('[data-mime-type="application/vnd.jupyter.stdout"]')
+    expect(box).to_have_count(1)
+    high, all_of_it = box.evaluate('box => [box.clientHeight, box.scrollHeight]')
+    assert high < 300 < 2000 < all_of_it
+    # The last line is in sight; the first one is there to be scrolled to, and to be copied.
+    expect(box).to_contain_text('Hello World: 0"')
+    seen = box.evaluate(
+        """box => {
+          const range = document.createRange();
+          range.selectNodeContents(box);
+          const edges = [...range.getClientRects()].map((line) => line.bottom);
+          return Math.max(...edges) <= box.getBoundingClientRect().bottom + 10;
+        }"""
+    )
+    assert seen
+    # What a cell itself prints is left alone.
+    assert notebook.output('plain').evaluate('output => output.clientHeight') > 500
+
+
 def test_class_cells_run_again_leave_one_node(open_cells):
     notebook = open_cells(
         setup=SETUP,
