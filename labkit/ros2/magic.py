@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from typing import Any
 
@@ -27,7 +28,22 @@ def _ros2(line: str) -> None:
     """Run a `ros2` command: `%ros2 topic list`; `%ros2 -h` shows all of them."""
     from labkit.ros2.shell import run_line
 
+    if _is_one_of_several():
+        # As in a terminal: or else nobody could tell where the next one's output begins.
+        print(f'$ ros2 {line}', flush=True)
     run_line(line)
+
+
+def _is_one_of_several() -> bool:
+    """Tell whether the running cell has more such lines."""
+    from labkit import settings
+
+    if not settings.in_kernel():
+        return False
+    from labkit.background.compat import running_request
+
+    code = running_request().get('content', {}).get('code', '')
+    return len(re.findall(r'^[ \t]*%ros2[ \t]', code, re.MULTILINE)) > 1
 
 
 # Braces and dollar signs belong to YAML; IPython would take them for Python variables.

@@ -6,6 +6,7 @@ import sys
 import xml.etree.ElementTree as ET
 from argparse import Namespace
 
+from labkit import settings
 from labkit.errors import LabError
 from labkit.ros2.parser import Command, Parser, Verb
 from labkit.ros2.pkg_create import CREATE
@@ -55,7 +56,9 @@ def list_executables(args: Namespace) -> None:
             stand_ins = stand_ins or one.stand_in
             print(' '.join(one.command) if args.full_path else f'{package} {one.path.name}')
     if stand_ins:
-        print(f'({DEMO} is not installed; labkit has its talker and listener.)', file=sys.stderr)
+        # In a notebook, what goes there is shown as an error.
+        place = sys.stdout if settings.in_kernel() else sys.stderr
+        print(f'({DEMO} is not installed; labkit has its talker and listener.)', file=place)
 
 
 def _package_argument(parser: Parser) -> None:

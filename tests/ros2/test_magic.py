@@ -57,6 +57,14 @@ def test_words_use_the_running_context(cell):
     assert cell('threads = {t.name for t in __import__("threading").enumerate()}') == ''
 
 
+def test_each_of_several_commands_is_told_before_its_output(cell):
+    assert cell('%ros2 node list\n\n%ros2 topic type /chatter  # a comment') == (
+        '$ ros2 node list\n/talker\n$ ros2 topic type /chatter  # a comment\nstd_msgs/msg/String\n'
+    )
+    # Told before what is wrong with it, too.
+    assert cell('%ros2 node lst\n%ros2 node list').startswith('$ ros2 node lst\nros2 node has no')
+
+
 def test_yaml_braces_and_dollars_are_left_alone(cell):
     cell("""
 data = 5
