@@ -228,8 +228,9 @@ class Arena(LivePage):
             # Its cell was run just now: only then the page scrolls there.
             news |= {'fresh': self._fresh, 'met': True}
             buffers.append(np.array([*self._met.values()], '<f4').tobytes())
+            self._fresh = False
         self._last_scan = self._new_scan or self._last_scan
-        self._fresh, self._lifted, self._new_trail, self._new_scan = False, False, [], b''
+        self._lifted, self._new_trail, self._new_scan = False, [], b''
         return news, buffers
 
 

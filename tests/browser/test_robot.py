@@ -17,6 +17,7 @@ CELLS = {
     'place': 'robot.place()',
     'before-a-wall': 'robot.place(x=2.2)',
     'both': 'display(lab.arena(), lab.teleop())',
+    'to-a-corner': 'robot.place(x=2.0, y=-2.0)',
     'other-arena': 'lab.arena()',
     'other-teleop': 'lab.teleop()',
     'camera': "display(lab.image('/camera/image_raw'), lab.teleop())",
@@ -167,6 +168,51 @@ def test_map_is_moved_by_mouse_keys_and_buttons(stage):
     expect(stage.canvas).to_have_attribute('data-view', re.compile(r'^2\.20 0\.00 '))
     press('ArrowLeft')
     expect(follow).to_have_attribute('aria-pressed', 'false')
+
+
+# How many pixels have the colour of walls that were seen before.
+MET = """canvas => {
+  const context = canvas.getContext('2d');
+  const one = new OffscreenCanvas(1, 1).getContext('2d');
+  one.fillStyle = getComputedStyle(canvas).getPropertyValue('--labkit-met').trim();
+  one.fillRect(0, 0, 1, 1);
+  const wanted = one.getImageData(0, 0, 1, 1).data;
+  const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
+  let count = 0;
+  for (let i = 0; i < data.length; i += 4) {
+    count += data[i] === wanted[0] && data[i + 1] === wanted[1] && data[i + 2] === wanted[2];
+  }
+  return count;
+}"""
+
+
+def test_walls_that_were_seen_stay_on_the_map(stage):
+    before = stage.canvas.evaluate(MET)
+    # From there the scanner does not reach the walls on the other side.
+    stage.notebook.run_cell('to-a-corner')
+    stage.page.wait_for_function(
+        f'([canvas, before]) => canvas.dataset.pose.startsWith("2.000 -2.000")'
+        f' && ({MET})(canvas) > before + 500',
+        arg=[stage.canvas.element_handle(), before],
+    )
+
+
+def test_map_comes_into_view_when_its_cell_is_run(stage):
+    place = stage.notebook.cell('other-arena')
+    stage.notebook.wait_for_pictures()
+    # The cell is the last thing that one sees: its map would lie below.
+    place.evaluate('cell => cell.scrollIntoView({ block: "end" })')
+    place.locator('.cm-content').click()
+    stage.page.keyboard.press('Control+Enter')
+    canvas = place.locator('.labkit-arena canvas')
+    canvas.wait_for()
+    stage.page.wait_for_function(
+        """canvas => {
+          const { top, bottom } = canvas.getBoundingClientRect();
+          return canvas.dataset.frames && top >= 0 && bottom <= window.innerHeight;
+        }""",
+        arg=canvas.element_handle(),
+    )
 
 
 def test_a_bump_is_shown_and_told(stage):
