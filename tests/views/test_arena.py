@@ -157,7 +157,7 @@ def test_a_bump_is_told_until_the_robot_drives_on(kernel):
         bump = eval(kernel.run('print([c["bump"] for c, _ in sent if c.get("bump")][-1])').text)
         assert bump == pytest.approx((2.5, 0.0), abs=0.03)
         data = shown(kernel.run('view'))
-        assert 'It bumped' in data['text/plain'] and 'polygon' in data['image/svg+xml']
+        assert 'It bumped' in data['text/plain'] and 'polygon' in picture_of(data)
         kernel.run(f'drive({-v}, 0.0, 3)')
         kernel.run('lab.wait_until(lambda: "bumped" not in view.text)')
     # To stop where nothing is near is none.
