@@ -151,10 +151,6 @@ class Drawing {
   }
 
   onKey(event) {
-    if (event.key === 'Escape') {
-      this.place.closest('.jp-Notebook')?.focus({ preventScroll: true });
-      return;
-    }
     const parts = this.all;
     const here = parts.indexOf(document.activeElement);
     const steps = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 };
