@@ -28,10 +28,14 @@ def _ros2(line: str) -> None:
     """Run a `ros2` command: `%ros2 topic list`; `%ros2 -h` shows all of them."""
     from labkit.ros2.shell import run_line
 
-    if _is_one_of_several():
+    several = _is_one_of_several()
+    if several:
         # As in a terminal: or else nobody could tell where the next one's output begins.
         print(f'$ ros2 {line}', flush=True)
     run_line(line)
+    if several:
+        sys.stdout.flush()
+        sys.stderr.flush()  # or the next one's would overtake a complaint
 
 
 def _is_one_of_several() -> bool:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import functools
 import html
+from base64 import b64encode
 from collections.abc import Mapping
 from datetime import datetime
 from pathlib import Path
@@ -62,17 +63,20 @@ class Stored:
     def _bundle(self) -> dict[str, str]:
         assert self._kept is not None
         text = self._kept['text/plain']
-        body = self._kept.get('image/svg+xml') or f'<pre>{html.escape(text)}</pre>'
-        if 'image/png' in self._kept:
-            source = f'data:image/png;base64,{self._kept["image/png"]}'
-            body = f'<img src="{source}" alt="{html.escape(text)}">'
+        body = f'<pre>{html.escape(text)}</pre>'
+        for kind, data in self._kept.items():
+            if kind.startswith('image/'):
+                # As a picture of its own: names inside do not meet those of the live one.
+                source = data if kind == 'image/png' else b64encode(data.encode()).decode()
+                words = html.escape(text)
+                body = f'<img src="data:{kind};base64,{source}" alt="{words}">'
         now = datetime.now()
         words = f'Stored on {now.day} {now:%B %Y} at {now:%H:%M:%S}. {TODO}'
         page = (
             f'<style>{_style(self._mark)}</style><div class="labkit-stored {self._mark}-stored">'
             f'<p>{words}</p>{body}</div>'
         )
-        return {'text/plain': text, 'text/html': page}
+        return {**self._kept, 'text/html': page}
 
 
 @functools.lru_cache(maxsize=1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import math
 import re
 from xml.etree import ElementTree
@@ -47,7 +48,7 @@ def shown(result):
 
 
 def picture_of(data):
-    return '<svg' + data['text/html'].partition('<svg')[2].partition('</svg>')[0] + '</svg>'
+    return base64.b64decode(data['text/html'].partition('base64,')[2].partition('"')[0]).decode()
 
 
 def test_words_and_picture_of_a_robot(kernel):

@@ -34,7 +34,7 @@ def arrows(data):
 
 def shown(result):
     assert not result.error, result.traceback
-    return result.outputs[-1]['data']
+    return result.outputs[0]['data']
 
 
 def lines(data: Graph) -> list[tuple[str, str, str]]:

@@ -91,11 +91,11 @@ def test_no_answer_and_a_graph_that_cannot_be_asked_are_said(quiz: Quiz) -> None
 
 def test_answers_of_an_earlier_session_come_back(quiz: Quiz) -> None:
     quiz.lesson = 'counting'
-    quiz._repr_mimebundle_()
+    quiz._ipython_display_()
     send(quiz._form, 1, 'a')
     again = Quiz(quiz.name, *quiz.questions)
     again.lesson = quiz.lesson
-    again._repr_mimebundle_()
+    again._ipython_display_()
     assert set(again._form.answers) == {'1'}
     answer = again._form.answers['1']
     assert (answer['given'], answer['tone']) == ('a', quiz._form.answers['1']['tone'])

@@ -207,7 +207,7 @@ def test_page_is_told_what_is_published_and_who_listens(pilot):
 def test_headless_it_is_text(start_kernel):
     kernel = start_kernel(LABKIT_HEADLESS='1')
     kernel.run('import labkit as lab')
-    data = kernel.run('lab.teleop()').outputs[-1]['data']
+    data = kernel.run('lab.teleop()').outputs[0]['data']
     assert set(data) == {'text/plain'}
     assert 'w or ↑   forward' in data['text/plain']
     assert 'at first 100% of full speed: 0.22 m/s, 1.42 rad/s' in data['text/plain']
