@@ -11,6 +11,7 @@ import subprocess
 import sys
 import threading
 import time
+import urllib.error
 import urllib.request
 from pathlib import Path
 from types import TracebackType
@@ -132,8 +133,12 @@ class JupyterLab:
     def request(self, path: str, method: str = 'GET') -> Any:
         """Ask the server's interface (`api/sessions`) and return its answer."""
         request = urllib.request.Request(self.address(path), method=method)
-        with urllib.request.urlopen(request, timeout=START_SEC) as answer:
-            return json.loads(answer.read() or 'null')
+        try:
+            with urllib.request.urlopen(request, timeout=START_SEC) as answer:
+                return json.loads(answer.read() or 'null')
+        except urllib.error.HTTPError as error:
+            said = error.read().decode(errors='replace')
+            raise RuntimeError(f'{method} {path}: {error}\n{said}\n{self.log}') from error
 
     def write_notebook(self, name: str, cells: dict[str, str]) -> None:
         """Write a notebook of code cells into the learner's folder.

@@ -173,12 +173,17 @@ def test_after_a_restart_all_views_say_so(run_views):
 def test_after_the_end_of_the_kernel_all_views_say_so(run_views, jupyter):
     notebook = run_views()
     jupyter.end_kernels()
-    for cell_id in VIEWS[:-1]:
+    for cell_id in set(VIEWS) - {'bag', 'quiz'}:
         note = notebook.output(cell_id).locator('.labkit-live-note')
-        expect(note).to_contain_text(re.compile('[Rr]un this cell'))
-    notebook.output('quiz').get_by_role('radio').first.check()
-    notebook.output('quiz').get_by_role('button', name='Check this answer').click()
-    expect(notebook.output('quiz').locator('.labkit-live-note')).to_contain_text(GONE)
+        expect(note, cell_id).to_contain_text(re.compile('[Rr]un this cell'))
+    # What these show is true without a kernel, until it is asked. JupyterLab may keep a question
+    # for a kernel that could come back: then it is the missing answer that tells.
+    bag, quiz = notebook.output('bag'), notebook.output('quiz')
+    bag.get_by_role('button', name='/odom').click()
+    expect(bag.locator('.labkit-live-note')).to_contain_text('run this cell again')
+    quiz.get_by_role('radio').first.check()
+    quiz.get_by_role('button', name='Check this answer').click()
+    expect(quiz).to_contain_text('The kernel says nothing.')
 
 
 def test_loaded_again_they_go_on_and_a_plot_has_its_lines(run_views):
