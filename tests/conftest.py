@@ -28,6 +28,7 @@ _FOREIGN = (
     'PYTEST_',
     'ROS_',
     'AMENT_',
+    'FASTRTPS_',
     'RCUTILS_',
     'RMW_',
     'JPY_',

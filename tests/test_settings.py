@@ -11,7 +11,7 @@ from labkit import settings
 from labkit.errors import LabError
 
 
-@pytest.mark.parametrize('value', ['seven', '-1', '233', '7.0', ' 7', '1e2'])
+@pytest.mark.parametrize('value', ['seven', '-1', '233', '7.0', ' 7', '1e2', '9' * 5000])
 def test_bad_domain_in_the_environment(monkeypatch: pytest.MonkeyPatch, value: str) -> None:
     monkeypatch.setenv('ROS_DOMAIN_ID', value)
     with pytest.raises(LabError) as caught:
@@ -21,7 +21,7 @@ def test_bad_domain_in_the_environment(monkeypatch: pytest.MonkeyPatch, value: s
     assert 'unset it' in caught.value.todo
 
 
-@pytest.mark.parametrize('value', [-1, 102, 7.0, '7'])
+@pytest.mark.parametrize('value', [-1, 102, 7.0, '7', float(settings.BETWEEN[0])])
 def test_bad_domain_as_an_argument(value: object) -> None:
     with pytest.raises(LabError, match='must be a whole number from 0 to 101'):
         settings.check_domain_id(value)
@@ -31,8 +31,22 @@ def test_good_domains(monkeypatch: pytest.MonkeyPatch) -> None:
     for value, expected in (('', None), ('0', 0), ('101', 101)):
         monkeypatch.setenv('ROS_DOMAIN_ID', value)
         assert settings.read_domain_id() == expected
-    for domain_id in (None, 0, 101):
+    for domain_id in (None, 0, 101, settings.BETWEEN[0]):
         settings.check_domain_id(domain_id)
+    # All computers know those up to 232, and only this machine those between.
+    for domain_id in (None, 0, 101, 102, 232):
+        settings.check_shared_domain_id(domain_id)
+
+
+def test_a_domain_between_is_not_shared(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv('ROS_DOMAIN_ID', str(settings.BETWEEN[0]))
+    monkeypatch.setenv('LABKIT_SHARED_DOMAIN_ID', str(settings.BETWEEN[0]))
+    assert settings.read_domain_id() == settings.BETWEEN[0]
+    with pytest.raises(LabError, match='LABKIT_SHARED_DOMAIN_ID must be a number from 0 to 101'):
+        settings.read_shared_domain_id()
+    for bad in (settings.BETWEEN[0], 233, -1, 7.0):
+        with pytest.raises(LabError, match='must be a whole number from 0 to 101, but it is'):
+            settings.check_shared_domain_id(bad)
 
 
 WHO = 'import labkit as lab; from labkit import settings; print(settings.audience())'

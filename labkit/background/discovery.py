@@ -14,6 +14,7 @@ from labkit.background.runtime import runtime
 from labkit.rosgraph.endpoints import publishers
 from labkit.rosgraph.snapshot import is_whole, node_names
 from labkit.rosgraph.whose import participant_of
+from labkit.settings import first_port
 
 __all__ = [
     'DISCOVERY_SEC',
@@ -47,10 +48,10 @@ PARAMETER_SERVICES = (
 # And this one after those, unless its parameter start_type_description_service says otherwise.
 LAST_SERVICE = 'get_type_description'
 
-# Ports of participants, DDSI-RTPS 2.5, 9.6.2.3: 7400 + 250 * domain + 10 + 2 * participant.
-_FIRST_PORT = 7400
-_PORTS_OF_DOMAIN = 250
+# Ports of participants, DDSI-RTPS 2.5, 9.6.2.3: that of the domain + 10 + 2 * participant. Fast
+# DDS looks for so many on this machine; behind them the ports of another domain begin.
 _FIRST_PARTICIPANT = 10
+_LOOKED_FOR = 32
 
 
 def asking_node(spin_time: float = DISCOVERY_SEC) -> Node:
@@ -127,14 +128,14 @@ def _discover(node: Node, until: float) -> None:
 def _participants_here() -> int:
     """Return how many participants of this domain have opened their port on this machine."""
     ports = set()
-    first = _FIRST_PORT + _PORTS_OF_DOMAIN * (runtime.domain_id or 0) + _FIRST_PARTICIPANT
+    first = first_port(runtime.domain_id or 0) + _FIRST_PARTICIPANT
     try:
         table = Path('/proc/net/udp').read_text(encoding='ascii')
     except OSError:
         return 0
     for line in table.splitlines()[1:]:
         offset = int(line.split()[1].rpartition(':')[2], 16) - first
-        if 0 <= offset < _PORTS_OF_DOMAIN - _FIRST_PARTICIPANT and offset % 2 == 0:
+        if 0 <= offset < 2 * _LOOKED_FOR and offset % 2 == 0:
             ports.add(offset)
     return len(ports)
 

@@ -1,4 +1,7 @@
-"""A ROS domain for each notebook: claimed while its kernel lives, found by its terminals."""
+"""A ROS domain for each notebook: claimed while its kernel lives, found by its terminals.
+
+The first hundred take domains that every program knows, the others those of `settings.BETWEEN`.
+"""
 
 from __future__ import annotations
 
@@ -9,18 +12,38 @@ import zlib
 from pathlib import Path
 
 from labkit.errors import LabError
-from labkit.settings import LAST_DOMAIN_ID, notebook_name
+from labkit.settings import (
+    BETWEEN,
+    LAST_DOMAIN_ID,
+    PORT_BETWEEN,
+    between_is_possible,
+    counts_ports,
+    first_port,
+    notebook_name,
+)
 
-__all__ = ['DomainClaim', 'claim_domain', 'claimed_domains']
+__all__ = [
+    'DomainClaim',
+    'claim_domain',
+    'claimed_domains',
+    'first_node_is_made',
+    'number_for_ros',
+]
 
 # Domain 0 is everybody's default, so a notebook takes one of the others.
-FIRST_DOMAIN_ID = 1
+_KNOWN = range(1, LAST_DOMAIN_ID + 1)
+# Domains that notebooks leave to what they share with other computers. Of those from 102 on, the
+# system may have given a port to another program: then Fast DDS takes the next one.
+_FOR_SHARING = (*range(215, 233), *range(LAST_DOMAIN_ID + 1, 215))
 # Names of sockets, see `DomainClaim`. The first holds for all users of the machine, the second
 # tells terminals of one user which of the notebooks are theirs.
 _CLAIM = 'labkit/ros-domain/{domain_id}'
 _NOTEBOOK = 'labkit/notebook/{user_id}/{domain_id}/'
 # Bytes in the name of a socket, the zero at its start included (unix(7), sun_path).
 _LONGEST = 108
+
+# Whether Fast DDS counts ports in this process, None before it has read a profile.
+_counts_ports: bool | None = None
 
 
 class DomainClaim:
@@ -61,28 +84,33 @@ class DomainClaim:
             claim.close()
 
 
-def claim_domain(*, listed: bool = True, other_than: int | None = None) -> DomainClaim:
+def claim_domain(*, shared: bool = False, other_than: int | None = None) -> DomainClaim:
     """Claim a domain that no other notebook has.
 
-    The search starts from a number made from the notebook's name, so that a notebook whose kernel
-    is restarted mostly meets its own domain again.
+    The first hundred notebooks have domains that every program knows, the others have one between
+    two of those (`settings.BETWEEN`). The search starts from a number made from the notebook's
+    name, so that a notebook whose kernel is restarted mostly meets its own domain again.
 
     Args:
-        listed: Whether terminals find it as the domain of this notebook.
+        shared: Whether it is to be shared with other computers, which know domains up to 232. It
+            is not listed as the domain of this notebook.
         other_than: A domain that is not wanted, though nobody may have claimed it.
 
     Raises:
         LabError: All domains are taken, or the system lets none be claimed.
     """
     name = notebook_name() or str(os.getpid())
-    count = LAST_DOMAIN_ID - FIRST_DOMAIN_ID + 1
-    first = zlib.crc32(name.encode(errors='replace'))
-    for step in range(count):
-        domain_id = FIRST_DOMAIN_ID + (first + step) % count
+    first = zlib.crc32(name.encode(errors='replace')) % len(_KNOWN)
+    wanted = [*_KNOWN[first:], *_KNOWN[:first]]
+    if shared:
+        wanted += _FOR_SHARING
+    elif between_is_possible():
+        wanted += BETWEEN
+    for domain_id in wanted:
         if domain_id == other_than:
             continue
         try:
-            return DomainClaim(domain_id, listed=listed)
+            return DomainClaim(domain_id, listed=not shared)
         except BlockingIOError:
             continue
         except OSError as error:
@@ -91,9 +119,10 @@ def claim_domain(*, listed: bool = True, other_than: int | None = None) -> Domai
                 todo='Choose a domain yourself: lab.start(domain_id=7)',
             ) from error
     raise LabError(
-        f'All {count} ROS domains of this machine are in use by other notebooks.',
+        f'All {len(wanted)} ROS domains of this machine are in use by other notebooks.',
         todo='Shut down kernels that are not needed any more (in JupyterLab: the square symbol '
-        'at the left), or share a domain on purpose with lab.start(domain_id=...).',
+        'at the left), or share a domain on purpose: '
+        + ('lab.join(..., domain_id=7).' if shared else 'lab.start(domain_id=7).'),
     )
 
 
@@ -107,13 +136,44 @@ def claimed_domains() -> dict[int, str]:
     except OSError:
         return {}
     start = _NOTEBOOK.format(user_id=os.getuid(), domain_id='').rstrip('/') + '/'
+    known = {str(domain_id) for domain_id in (*_KNOWN, *BETWEEN)}
     found = {}
     for line in table.splitlines():
         _, sign, name = line.partition(f'@{start}')
         domain_id, slash, notebook = name.partition('/')
-        if sign and slash and domain_id.isdecimal() and int(domain_id) <= LAST_DOMAIN_ID:
+        if sign and slash and domain_id in known:
             found[int(domain_id)] = _printable(notebook)
     return dict(sorted(found.items()))
+
+
+def number_for_ros(domain_id: int) -> int:
+    """Return the number by which ROS in this process knows a domain.
+
+    Fast DDS reads its profile once, when the first node of a process is made. If that was the
+    one of the domains between (`settings.BETWEEN`), it counts ports from then on.
+
+    Args:
+        domain_id: The domain, as `ROS_DOMAIN_ID` has it.
+
+    Raises:
+        LabError: It lies between two others, and the first node was made without that profile.
+    """
+    counts = domain_id in BETWEEN if _counts_ports is None else _counts_ports
+    if counts:
+        return first_port(domain_id) - PORT_BETWEEN
+    if domain_id in BETWEEN:
+        raise LabError(
+            f'Domain {domain_id} can only be the first that a notebook takes part in.',
+            todo=f'Restart the kernel, and begin with lab.start(domain_id={domain_id}).',
+        )
+    return domain_id
+
+
+def first_node_is_made() -> None:
+    """Note which profile Fast DDS has read; called when this process has made a node."""
+    global _counts_ports
+    if _counts_ports is None:
+        _counts_ports = counts_ports()
 
 
 def _address(name: str) -> bytes:

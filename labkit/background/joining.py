@@ -26,7 +26,7 @@ from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerOptions
 from rclpy.validate_node_name import validate_node_name
 
-from labkit.background.domains import DomainClaim, claim_domain
+from labkit.background.domains import DomainClaim, claim_domain, number_for_ros
 from labkit.background.nodes import destroy_node, helper_node
 from labkit.background.notebook_rclpy import ORIGINALS
 from labkit.background.runtime import runtime
@@ -36,7 +36,7 @@ from labkit.rosgraph.endpoints import Endpoint, publishers, subscriptions
 from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.names import full_topic_name
 from labkit.rosgraph.whose import is_own
-from labkit.settings import audience, check_domain_id, read_shared_domain_id
+from labkit.settings import audience, check_shared_domain_id, read_shared_domain_id
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -303,7 +303,7 @@ def join(
     Raises:
         LabError: This notebook is in that domain already, or an argument is not what it should be.
     """
-    check_domain_id(domain_id)
+    check_shared_domain_id(domain_id)
     if discovery_range not in RANGES:
         near = nearest(str(discovery_range), RANGES)
         raise LabError(
@@ -335,7 +335,7 @@ def join(
     _refuse_own_domain(wanted, topic)
     # A script is in a domain that nobody has claimed.
     own = runtime.domain_id
-    claim = claim_domain(listed=False, other_than=own) if wanted is None else None
+    claim = claim_domain(shared=True, other_than=own) if wanted is None else None
     shared = claim.domain_id if claim is not None else wanted
     assert shared is not None
     profile = QoSProfile(depth=qos_profile) if isinstance(qos_profile, int) else qos_profile  # type: ignore[no-untyped-call]
@@ -383,7 +383,7 @@ def _enter(domain_id: int, name: str, variables: dict[str, str]) -> tuple[Contex
     with _environment(variables):
         ORIGINALS['init'](
             context=context,
-            domain_id=domain_id,
+            domain_id=number_for_ros(domain_id),
             args=['--ros-args', '--disable-external-lib-logs', '--disable-stdout-logs'],
             signal_handler_options=SignalHandlerOptions.NO,
         )

@@ -28,6 +28,7 @@ from rclpy.validate_node_name import validate_node_name
 from labkit import settings
 from labkit.background import compat
 from labkit.background.action_callbacks import guarded
+from labkit.background.domains import number_for_ros
 from labkit.background.nodes import made
 from labkit.errors import LabError, LabTimeout
 from labkit.rosgraph.matching import other_type_here
@@ -178,8 +179,10 @@ class _NotebookSafe:
     ) -> None:
         if context is not None and context is not get_default_context():
             none = rclpy.signals.SignalHandlerOptions.NO
+            wanted = domain_id if domain_id is not None else settings.read_domain_id() or 0
+            number = number_for_ros(wanted)
             ORIGINALS['init'](
-                args=args, context=context, domain_id=domain_id, signal_handler_options=none
+                args=args, context=context, domain_id=number, signal_handler_options=none
             )
         else:
             self._background.start(domain_id=domain_id, args=args)

@@ -119,18 +119,27 @@ class Runtime:
                 self._refuse_move_with_nodes(domain_id)
             self.stop()
             self._end_foreign_start()
-            self._choose_domain(domain_id)
+            domain_id = self._choose_domain(domain_id)
+            number = domains.number_for_ros(domain_id or 0)
+            if domain_id is not None:
+                # The processes that the notebook starts read it.
+                settings.set_domain(domain_id)
             # Log files: nobody looks for them in a course, and a home that can't be written to
             # would keep ROS from starting.
             ros_args = [*(args or ()), '--ros-args', '--disable-external-lib-logs']
             if settings.in_kernel():
                 ros_args.append('--disable-stdout-logs')
-            ORIGINALS['init'](args=ros_args, signal_handler_options=SignalHandlerOptions.NO)
-            self.domain_id = get_default_context().get_domain_id()
+            ORIGINALS['init'](
+                args=ros_args,
+                domain_id=number,
+                signal_handler_options=SignalHandlerOptions.NO,
+            )
+            self.domain_id = domain_id or 0
             self.started_at = time.monotonic()
             self.console.open()
             self._executor = BackgroundExecutor(self.console)
             self._add_helper(self._executor)
+            domains.first_node_is_made()
             if settings.in_kernel():
                 install(self)
                 press_enter_for_nobody()
@@ -289,15 +298,13 @@ class Runtime:
     def _is_up_in(self, domain_id: int | None) -> bool:
         return self.started and domain_id in (None, self.domain_id)
 
-    def _choose_domain(self, domain_id: int | None) -> None:
+    def _choose_domain(self, domain_id: int | None) -> int | None:
         if domain_id is None:
             domain_id = settings.read_domain_id()
         if domain_id is None and settings.in_kernel():
             self._claim = self._claim or domains.claim_domain()
             domain_id = self._claim.domain_id
-        if domain_id is not None:
-            # rclpy reads it here, and so do the processes that the notebook starts.
-            os.environ['ROS_DOMAIN_ID'] = str(domain_id)
+        return domain_id
 
     def _refuse_move_with_nodes(self, domain_id: int | None) -> None:
         names = [entry.name for entry in self.nodes()]
@@ -363,8 +370,9 @@ def start(*, domain_id: int | None = None) -> None:
     Everything in labkit that needs ROS does this by itself; call it to choose a domain.
 
     Args:
-        domain_id: The ROS domain to take part in, 0 to 101. By default `ROS_DOMAIN_ID` if it is
-            set, else, in a notebook, a domain that no other notebook on this machine has.
+        domain_id: The ROS domain to take part in, 0 to 101, or that of another notebook. By
+            default `ROS_DOMAIN_ID` if it is set, else, in a notebook, a domain that no other
+            notebook on this machine has.
 
     Raises:
         LabError: ROS runs in another domain already, with nodes in it.

@@ -97,7 +97,10 @@ def _try_here(runtime: Runtime) -> str:
 
 def _try_in_a_process() -> str:
     """Pass a message in a process of its own; return the middleware's name."""
-    env = {key: text for key, text in os.environ.items() if key != 'ROS_DOMAIN_ID'}
+    env = dict(os.environ)
+    env.pop('ROS_DOMAIN_ID', None)
+    if settings.counts_ports():
+        del env[settings.PROFILES_FILE]
     env['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'OFF'
     code = _TRY.replace('TOPIC', repr(TOPIC)).replace('ARRIVAL_SEC', repr(ARRIVAL_SEC))
     todo = (
@@ -148,6 +151,8 @@ def domain() -> str:
             f'{UNSAFE_DOMAIN_IDS[0]} to {UNSAFE_DOMAIN_IDS[-1]} to other programs.',
             todo=f'Choose a number from 0 to {settings.LAST_DOMAIN_ID}.',
         )
+    if wanted is not None:
+        settings.check_profile(wanted)
     reach = _range()
     runtime = _runtime()
     if runtime is None or not runtime.started:

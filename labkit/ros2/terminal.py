@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 from labkit import settings
@@ -73,13 +74,22 @@ def choose_domain() -> None:
     notebooks = domains.claimed_domains()
     if len(notebooks) > 1:
         lines = [f'  ROS_DOMAIN_ID={number}  {name}' for number, name in notebooks.items()]
-        first = next(iter(notebooks))
         raise LabError(
             'Several notebooks are running, each in a ROS domain of its own:\n' + '\n'.join(lines),
-            todo=f'Choose one: export ROS_DOMAIN_ID={first}',
+            todo=f'Choose one: export ROS_DOMAIN_ID={next(iter(notebooks))}{_profile(notebooks)}',
         )
-    if notebooks:
-        os.environ['ROS_DOMAIN_ID'] = str(next(iter(notebooks)))
+    for domain_id in notebooks:
+        settings.set_domain(domain_id)
+
+
+def _profile(domain_ids: Iterable[int]) -> str:
+    """Say what a program needs that is neither this command nor imports labkit; '' if nothing."""
+    if set(domain_ids).isdisjoint(settings.BETWEEN):
+        return ''
+    return (
+        f'\nWith a number above 232, programs that know nothing of labkit also need: '
+        f'export {settings.PROFILES_FILE}={settings.PROFILE}'
+    )
 
 
 def _complete() -> int:

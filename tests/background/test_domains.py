@@ -12,12 +12,10 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 
 import pytest
+from background.talker import LOCALHOST, TALKER
 
 from labkit.background import domains
 from labkit.errors import LabError
-
-LOCALHOST = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
-
 
 CLAIMING = """
 import sys
@@ -25,31 +23,6 @@ from labkit.background.domains import claim_domain
 claim = claim_domain()
 print(claim.domain_id, flush=True)
 sys.stdin.read()
-"""
-
-
-TALKER = """
-import labkit as lab
-from labkit.background.runtime import runtime
-from rclpy.node import Node
-from std_msgs.msg import String
-
-class Talker(Node):
-    def __init__(self, name='talker'):
-        super().__init__(name)
-        self.count = 0
-        self.publisher = self.create_publisher(String, 'chatter', 10)
-        self.create_timer(0.02, self.on_timer)
-
-    def on_timer(self):
-        self.publisher.publish(String(data=WORD))
-        self.count += 1
-
-class Listener(Node):
-    def __init__(self):
-        super().__init__('listener')
-        self.heard = set()
-        self.create_subscription(String, 'chatter', lambda msg: self.heard.add(msg.data), 10)
 """
 
 
@@ -116,34 +89,6 @@ def _taken(domain_id: int) -> bool:
     except OSError:
         return True
     return False
-
-
-def test_all_domains_taken(script: Callable[..., object]) -> None:
-    # Sockets of this kind belong to a network namespace: there all can be taken without harm.
-    unshare = ['unshare', '--net', *([] if os.geteuid() == 0 else ['--map-root-user'])]
-    if subprocess.run([*unshare, 'true'], capture_output=True).returncode != 0:
-        pytest.skip('this system does not allow namespaces (net)')
-    result = script(f"""
-import subprocess, sys
-code = '''
-from labkit.errors import LabError
-from labkit.background.domains import claim_domain
-claims = [claim_domain() for _ in range(101)]
-print(sorted(claim.domain_id for claim in claims) == list(range(1, 102)))
-try:
-    claim_domain()
-except LabError as error:
-    print(error)
-claims[41].close()
-print(claim_domain().domain_id == claims[41].domain_id)
-'''
-sys.exit(subprocess.run([*{unshare!r}, sys.executable, '-c', code]).returncode)
-""")
-    assert result.exit_code == 0, result.stderr
-    lines = result.stdout.splitlines()
-    assert (lines[0], lines[-1]) == ('True', 'True')
-    assert lines[1] == 'All 101 ROS domains of this machine are in use by other notebooks.'
-    assert 'Shut down kernels that are not needed any more' in lines[2]
 
 
 def test_bad_domain_is_said_in_the_cell_and_nothing_is_started(

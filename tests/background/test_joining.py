@@ -56,7 +56,7 @@ room = lab.join(
 def shared() -> Iterator[int]:
     """Give a domain that nobody has, nor this process, which has claimed none."""
     own = int(os.environ.get('ROS_DOMAIN_ID') or 0)
-    claim = claim_domain(listed=False, other_than=own)
+    claim = claim_domain(shared=True, other_than=own)
     yield claim.domain_id
     claim.close()
 
@@ -184,7 +184,7 @@ def test_a_domain_is_taken_and_given_back(started: None) -> None:
 
 
 def test_the_own_domain_is_never_the_shared_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    free = claim_domain(listed=False)
+    free = claim_domain(shared=True)
     free.close()
     # A script of a domain that the search would come to first.
     monkeypatch.setenv('ROS_DOMAIN_ID', str(free.domain_id))

@@ -1,0 +1,259 @@
+"""More notebooks than ROS has domains: they stay apart, and are found by those who may."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+from background import crowd
+from background.talker import LOCALHOST, TALKER
+
+from labkit import settings
+from labkit.background import domains
+from labkit.background.domains import DomainClaim
+from labkit.errors import LabError
+from labkit.settings import BETWEEN, first_port
+
+Start = Callable[..., Any]
+EVERYBODYS = (*range(102), *range(215, 233))
+
+
+@pytest.fixture
+def between() -> Iterator[int]:
+    """Give a domain between two others that nobody has."""
+    for domain_id in BETWEEN:
+        try:
+            claim = DomainClaim(domain_id)
+        except BlockingIOError:
+            continue
+        break
+    yield claim.domain_id
+    claim.close()
+
+
+@pytest.fixture
+def namespace() -> None:
+    if not crowd.unshare():
+        pytest.skip('this system does not allow namespaces (net, mount, pid)')
+
+
+def looked_for(domain_id: int) -> list[int]:
+    """Return the ports at which the processes of a domain look for each other."""
+    return [first_port(domain_id) + 10 + 2 * number for number in range(32)]
+
+
+def test_no_two_domains_meet() -> None:
+    everywhere = [port for number in (*EVERYBODYS, *BETWEEN) for port in looked_for(number)]
+    assert len(everywhere) == len(set(everywhere))
+    # As DDS says it, and as the profile says it.
+    assert first_port(7) == 7400 + 250 * 7
+    assert all(first_port(number) == 7000 + number for number in BETWEEN)
+    assert len(set(BETWEEN)) + 101 >= 400
+
+
+def test_a_program_without_the_profile_is_in_no_domain_at_all(
+    lab_env: dict[str, str], between: int
+) -> None:
+    # Nor in a wrong one: there is no port above 65535.
+    assert all(7400 + 250 * number > 65535 for number in BETWEEN)
+    program = 'import rclpy; rclpy.init(); rclpy.create_node("one"); print("made")'
+    env = {**lab_env, **LOCALHOST, 'ROS_DOMAIN_ID': str(between)}
+    ended = subprocess.run(
+        [sys.executable, '-c', program], env=env, capture_output=True, text=True
+    )
+    assert ended.returncode != 0 and 'made' not in ended.stdout
+    assert 'Probably the domainId is over 232' in ended.stdout + ended.stderr
+
+
+def test_ports_between_are_not_handed_out_by_the_system() -> None:
+    # Linux, ip_local_port_range, where nobody has changed it.
+    handed_out = range(32768, 61000)
+    for number in BETWEEN:
+        ports = range(looked_for(number)[0], looked_for(number)[-1] + 2)
+        assert ports[-1] < handed_out[0] or (handed_out[-1] < ports[0] and ports[-1] <= 65535)
+
+
+def test_a_notebook_of_very_many_processes_does_not_reach_the_next_but_one() -> None:
+    # Its processes go on from port to port, sixty times, and a second context begins one further.
+    profile = settings.PROFILE.read_text()
+    assert '<mutation_tries>60</mutation_tries>' in profile
+    everybodys = {port for number in EVERYBODYS for port in looked_for(number)}
+    others = {port: number for number in BETWEEN for port in looked_for(number)}
+    for number in BETWEEN:
+        mine = {first_port(number) + 10 + 2 * more for more in range(62)}
+        assert {others.get(port, number) for port in mine} == {number}
+        # Those of a whole number lie on even ports, as every second one between does.
+        assert not mine & everybodys
+
+
+@pytest.mark.usefixtures('namespace')
+def test_four_hundred_notebooks_of_two_users_have_domains_of_their_own(
+    lab_env: dict[str, str],
+) -> None:
+    found = crowd.run('claims', 400, env=lab_env)
+    claimed = found['claimed']
+    assert len(set(claimed)) == 400
+    # The first hundred have those that every program can join.
+    assert set(range(1, 102)) < set(claimed) <= {*range(1, 102), *BETWEEN}
+    # A terminal is told those of its own user.
+    assert sorted(found['own']) == sorted(found['of_this_user'])
+    # The domains of killed kernels are free.
+    assert sorted(found['again']) == sorted(found['freed'])
+    *rest, (error, text) = found['rest']
+    assert sorted([*claimed, *rest]) == sorted([*range(1, 102), *BETWEEN])
+    count = 101 + len(BETWEEN)
+    assert error == 'LabError'
+    assert text.startswith(f'All {count} ROS domains of this machine are in use')
+    assert 'Shut down kernels that are not needed any more' in text
+
+
+@pytest.mark.usefixtures('namespace')
+def test_neighbours_do_not_hear_each_other(lab_env: dict[str, str]) -> None:
+    """Every kind of neighbour. `crowd.py talk 130` does it with so many notebooks."""
+    near = [number for number in BETWEEN if first_port(7) < first_port(number) < first_port(8)]
+    found = crowd.run('neighbours', 7, *near, 8, env=lab_env)
+    assert len(found['reports']) == 2 * 5
+    for number, heard, nodes in found['reports']:
+        assert heard == [f'one of {number}', f'other of {number}']
+        assert nodes == [number]
+
+
+def test_a_notebook_between_and_what_it_starts(
+    start_kernel: Start, between: int, lab_env: dict[str, str]
+) -> None:
+    kernel = start_kernel(**LOCALHOST, ROS_DOMAIN_ID=str(between))
+    assert not kernel.run(f'WORD = "one"\n{TALKER}\ntalker = lab.spin(Talker())').error
+    assert kernel.run('print(runtime.domain_id)').text == f'{between}\n'
+    assert kernel.run('%ros2 topic list').text.count('/chatter') == 1
+    # A process that it starts, and a terminal that knows nothing but the number.
+    env = {**lab_env, **LOCALHOST, 'ROS_DOMAIN_ID': str(between)}
+    command = [sys.executable, '-m', 'labkit', 'ros2', 'topic', 'list']
+    assert '/chatter' in kernel.run(f'import subprocess\n{run_there(command)}').text
+    assert '/chatter' in subprocess.run(command, env=env, capture_output=True, text=True).stdout
+    # And the domain of somebody else, named there.
+    elsewhere = f'os.environ["ROS_DOMAIN_ID"] = "220"\n{run_there(command)}'
+    assert '/chatter' not in kernel.run(f'import os\n{elsewhere}').text
+
+
+def run_there(command: list[str]) -> str:
+    return f'print(subprocess.run({command!r}, capture_output=True, text=True).stdout)'
+
+
+def test_who_joins_from_between_is_found_by_everybody(start_kernel: Start, between: int) -> None:
+    shared = domains.claim_domain(shared=True)
+    ada = start_kernel(**LOCALHOST, ROS_DOMAIN_ID=str(between))
+    bo = start_kernel(**LOCALHOST, ROS_DOMAIN_ID=str(shared.domain_id))
+    for kernel, word in ((ada, 'ada'), (bo, 'bo')):
+        cell = f'WORD = "{word}"\n{TALKER}\nlistener = lab.spin(Listener())\n'
+        assert not kernel.run(f'{cell}talker = lab.spin(Talker("t_{word}"))').error
+    room = (
+        f'lab.join("chatter", String, domain_id={shared.domain_id}, discovery_range="LOCALHOST")'
+    )
+    assert not ada.run(f'room = {room}\nroom.wait_for_others(2, timeout_sec=60)').error
+    for kernel in (ada, bo):
+        heard = kernel.run(
+            'lab.wait_until(lambda: len(listener.heard) == 2, timeout_sec=60)\n'
+            'print(sorted(listener.heard))'
+        )
+        assert (heard.error, heard.text) == ('', "['ada', 'bo']\n")
+    # The whole notebook can move there, too, and what it starts then.
+    moved = ada.run(
+        f'lab.stop()\nlab.start(domain_id={shared.domain_id})\nlistener = lab.spin(Listener())\n'
+        'lab.wait_until(lambda: "bo" in listener.heard, timeout_sec=60)\n'
+        'import os\nprint(runtime.domain_id, os.environ["ROS_DOMAIN_ID"])\n'
+        'print(os.environ.get("FASTRTPS_DEFAULT_PROFILES_FILE"))'
+    )
+    assert moved.error == ''
+    assert moved.text == f'{shared.domain_id} {shared.domain_id}\nNone\n'
+    # And a context of the learner's own.
+    own = ada.run(
+        'import rclpy\ncontext = rclpy.context.Context()\nrclpy.init(context=context)\n'
+        'guest = Node("guest", context=context)\n'
+        'lab.wait_until(lambda: guest.count_publishers("chatter") == 1, timeout_sec=60)\n'
+        'guest.destroy_node()\nrclpy.shutdown(context=context)'
+    )
+    assert own.error == ''
+    shared.close()
+
+
+def test_the_next_notebook_goes_between(start_kernel: Start) -> None:
+    kernel = start_kernel()
+    # As if every program's domains were taken, but for one, and now that one.
+    kernel.run(
+        'from labkit.background import domains\ndomains._KNOWN = range(1, 2)\n'
+        'try:\n    first = domains.DomainClaim(1)\nexcept BlockingIOError:\n    pass'
+    )
+    started = kernel.run(
+        'import labkit as lab\nlab.start()\nfrom labkit.background.runtime import runtime\n'
+        'from labkit.settings import BETWEEN\n'
+        'print(runtime.domain_id in BETWEEN, runtime.own_domain)'
+    )
+    assert (started.error, started.text) == ('', 'True True\n')
+    again = kernel.run('lab.stop()\nlab.start()\nprint(runtime.domain_id in BETWEEN)')
+    assert (again.error, again.text) == ('', 'True\n')
+    report = kernel.run('print(lab.doctor())').text
+    line = next(line for line in report.splitlines() if ' Domain ' in line)
+    assert "this notebook's own" in line and 'good' in line
+    # What it shares with other computers is a domain that they know.
+    shared = kernel.run('held = domains.claim_domain(shared=True)\nprint(held.domain_id)').text
+    assert int(shared) <= 232
+
+
+def test_a_notebook_can_not_go_between_later(start_kernel: Start, between: int) -> None:
+    kernel = start_kernel()
+    kernel.run(
+        'import labkit as lab\nlab.start()\nimport os\nbefore = os.environ["ROS_DOMAIN_ID"]'
+    )
+    refused = kernel.run(f'lab.start(domain_id={between})')
+    assert f'Domain {between} can only be the first' in refused.error
+    assert f'begin with lab.start(domain_id={between})' in refused.traceback
+    stayed = kernel.run('lab.start()\nprint(os.environ["ROS_DOMAIN_ID"] == before)')
+    assert (stayed.error, stayed.text) == ('', 'True\n')
+
+
+def test_own_profile_of_a_learner_stays(monkeypatch: pytest.MonkeyPatch, between: int) -> None:
+    monkeypatch.setenv('ROS_DOMAIN_ID', '')
+    monkeypatch.setenv(settings.PROFILES_FILE, '/home/me/my_profile.xml')
+    with pytest.raises(LabError, match=r'=/home/me/my_profile\.xml'):
+        settings.set_domain(between)
+    assert os.environ['ROS_DOMAIN_ID'] == ''
+    settings.set_domain(7)
+    assert os.environ[settings.PROFILES_FILE] == '/home/me/my_profile.xml'
+    # Such a notebook is not given one either.
+    monkeypatch.setattr(domains, '_KNOWN', range(1, 2))
+    with pytest.raises(LabError, match='All 1 ROS domains'):
+        domains.claim_domain(other_than=1)
+
+
+def test_profile_comes_and_goes_with_the_number(
+    monkeypatch: pytest.MonkeyPatch, between: int
+) -> None:
+    monkeypatch.setenv('ROS_DOMAIN_ID', str(between))
+    monkeypatch.setenv(settings.PROFILES_FILE, '')
+    settings.prepare_environment()
+    assert os.path.isfile(os.environ[settings.PROFILES_FILE])
+    monkeypatch.setenv('ROS_DOMAIN_ID', '7')
+    settings.prepare_environment()
+    assert settings.PROFILES_FILE not in os.environ
+    settings.set_domain(between)
+    assert settings.counts_ports()
+    settings.set_domain(7)
+    assert not settings.counts_ports()
+
+
+def test_what_is_shared_leaves_the_last_domains_for_last(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(domains, '_KNOWN', range(1, 2))
+    claims = [domains.claim_domain(shared=True, other_than=1) for _ in range(20)]
+    numbers = [claim.domain_id for claim in claims]
+    for claim in claims:
+        claim.close()
+    # Others may have some of them meanwhile.
+    assert numbers == sorted(numbers, key=lambda number: (number < 215, number))
+    assert numbers[-1] < 215 and not set(numbers) & set(BETWEEN)
+    assert not set(domains.claimed_domains()) & set(numbers)
