@@ -22,6 +22,9 @@ ROOT = Path(__file__).resolve().parent.parent
 # Nothing that a test process itself starts is heard outside of it. A test that needs processes to
 # find each other passes LOCALHOST and a domain of its own.
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'OFF'
+# Whoever starts the tests in the background may have them, and all that they start, ignore Ctrl-C.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 # Variables that would make a kernel or a script behave otherwise than in a fresh terminal.
 # (ipykernel, for one, does not show what C code prints while PYTEST_CURRENT_TEST is set.)
 _FOREIGN = (

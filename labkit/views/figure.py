@@ -7,14 +7,12 @@ compared, and what other programs show, is the PNG as before.
 
 from __future__ import annotations
 
-import base64
 import io
-import re
 import sys
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 from labkit.settings import audience
+from labkit.views.themed import as_source, picture, themed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,12 +23,6 @@ __all__ = ['describe', 'figure_html', 'register']
 # A drawing of many thousand points would make the page slow: beyond so many characters the PNG
 # is shown, on white paper.
 LARGEST = 1_000_000
-# What is black in a figure is text and axes, and white is its paper.
-_THEME = {
-    '#000000': 'var(--jp-content-font-color1, #000)',
-    '#ffffff': 'var(--jp-layout-color0, #fff)',
-}
-_STYLE = 'max-width: 100%; height: auto'
 
 
 def register() -> None:
@@ -46,14 +38,11 @@ def figure_html(figure: Figure) -> str | None:
     """Return a figure as HTML, None where it is stored and compared."""
     if audience().same_each_time:
         return None
-    words = escape(describe(figure))
-    picture = f'<img alt="{words}" src="data:image/png;base64,{_png(figure)}" style="{_STYLE}">'
-    drawing = _svg(figure)
+    words, source = describe(figure), as_source('image/png', _saved(figure, 'png'))
+    drawing = _saved(figure, 'svg').decode()
     if len(drawing) > LARGEST:
-        return picture
-    # A page that does not trust the notebook takes away the drawing and the `template` around the
-    # picture, which nobody sees else.
-    return f'<div role="img" aria-label="{words}">{drawing}</div><template>{picture}</template>'
+        return picture(words, source)
+    return themed(drawing, words, source)
 
 
 def describe(figure: Figure) -> str:
@@ -94,17 +83,6 @@ def _count(number: int, thing: str) -> str:
 
 def _range(name: str, limits: tuple[float, float]) -> str:
     return f'{name} from {limits[0]:.4g} to {limits[1]:.4g}'
-
-
-def _svg(figure: Figure) -> str:
-    text = _saved(figure, 'svg').decode()
-    drawing = text[text.index('<svg') :]
-    drawing = drawing.replace('<svg', f'<svg aria-hidden="true" style="{_STYLE}"', 1)
-    return re.sub('#(?:000000|ffffff)', lambda found: _THEME[found[0]], drawing)
-
-
-def _png(figure: Figure) -> str:
-    return base64.b64encode(_saved(figure, 'png')).decode()
 
 
 def _saved(figure: Figure, kind: str) -> bytes:

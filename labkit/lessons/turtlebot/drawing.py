@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from labkit import settings
 from labkit.lessons.turtlebot.drive import Drive
 from labkit.views.arena_picture import Scene, row, two
+from labkit.views.themed import as_source, themed
 
 __all__ = ['observed']
 
@@ -50,7 +51,11 @@ def _show_row(drives: list[Drive]) -> None:
         for drive in drives
     ]
     text = '\n'.join(map(_words, drives))
-    display({'text/plain': text, 'image/svg+xml': row(scenes, text)}, raw=True)  # type: ignore[no-untyped-call]
+    drawing = row(scenes, text)
+    forms = {'text/plain': text, 'image/svg+xml': drawing}
+    if settings.audience().live:
+        forms['text/html'] = themed(drawing, text, as_source('image/svg+xml', drawing.encode()))
+    display(forms, raw=True)  # type: ignore[no-untyped-call]
 
 
 def _words(drive: Drive) -> str:
