@@ -30,8 +30,14 @@ def register() -> None:
     ipython = sys.modules.get('IPython')
     shell = ipython.get_ipython() if ipython is not None else None
     if shell is not None:
-        html = shell.display_formatter.formatters['text/html']
-        html.for_type_by_name('matplotlib.figure', 'Figure', figure_html)
+        # Not that for `text/html`: matplotlib takes away what others have told it of figures.
+        bundles = shell.display_formatter.mimebundle_formatter
+        bundles.for_type_by_name('matplotlib.figure', 'Figure', _bundle)
+
+
+def _bundle(figure: Figure) -> dict[str, str]:
+    html = figure_html(figure)
+    return {} if html is None else {'text/html': html}
 
 
 def figure_html(figure: Figure) -> str | None:

@@ -15,6 +15,7 @@ from labkit.errors import LabError
 from labkit.rosgraph.snapshot import Graph, is_whole, read_graph
 from labkit.views.graph_picture import Picture
 from labkit.views.live import helper
+from labkit.views.themed import as_source, picture
 
 if TYPE_CHECKING:
     from labkit.views.graph_live import LiveGraph
@@ -38,7 +39,13 @@ class GraphView:
         return bundle(self.data)['text/plain']
 
     def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
-        return bundle(self.data)
+        forms = bundle(self.data)
+        drawing = forms.get('image/svg+xml')
+        if drawing and settings.audience().live:
+            # JupyterLab shows an SVG without its words, and as wide as it likes.
+            source = as_source('image/svg+xml', drawing.encode())
+            forms['text/html'] = picture(forms['text/plain'], source)
+        return forms
 
 
 def bundle(data: Graph) -> dict[str, str]:

@@ -98,6 +98,16 @@ def test_logs_are_in_a_box_that_shows_the_last_ones(open_cells):
         }"""
     )
     assert seen
+    # Without a mouse: Tab reaches it, and Home goes to its first line.
+    notebook.cell('talker').focus()
+    for _ in range(20):
+        notebook.page.keyboard.press('Tab')
+        if box.evaluate('box => document.activeElement === box'):
+            break
+    notebook.page.keyboard.press('Home')
+    notebook.page.wait_for_function(
+        'box => box.scrollTop <= box.clientHeight - box.scrollHeight + 1', arg=box.element_handle()
+    )
     # What a cell itself prints is left alone.
     assert notebook.output('plain').evaluate('output => output.clientHeight') > 500
 

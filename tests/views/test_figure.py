@@ -88,10 +88,8 @@ def test_a_drawing_that_is_too_large_is_a_picture(monkeypatch: pytest.MonkeyPatc
 
 
 def test_what_is_stored_and_compared_is_the_png_alone(start_kernel: Callable[..., Kernel]) -> None:
-    code = (
-        '%matplotlib inline\nimport matplotlib.pyplot as plt\nimport labkit as lab\n'
-        'plt.plot([1, 2])\nplt.show()'
-    )
+    # As in a lesson: labkit is there before matplotlib.
+    code = 'import labkit\nimport matplotlib.pyplot as plt\nplt.plot([1, 2])\nplt.show()'
     forms = []
     for headless in ('0', '1'):
         result = start_kernel(LABKIT_HEADLESS=headless).run(code)
