@@ -192,6 +192,7 @@ def test_without_a_kernel_it_is_a_picture(notebook: Notebook):
     notebook.run_cell('still')
     picture = notebook.output('still').locator('img')
     assert picture.evaluate('img => img.decode().then(() => img.naturalWidth)') > 400
+    expect(picture).to_have_attribute('alt', re.compile('/talker'))
     # What a viewer gets that knows nothing of widgets is the same drawing.
     shown = notebook.cells()[notebook._index('still')]['outputs'][0]['data']
-    assert sorted(shown) == ['image/svg+xml', 'text/plain']
+    assert sorted(shown) == ['image/svg+xml', 'text/html', 'text/plain']
