@@ -62,7 +62,8 @@ class LogBox:
             words = f'{self._count:,} lines'
         if self._count > self._kept:
             words += f', the first {self._kept} below. The last one: {self._last[:200]}'
-        page = f'<style class="labkit-style">{_rules()}</style><div class="labkit-log">{html.escape(words)}</div>'
+        style = f'<style class="labkit-style">{_rules()}</style>'
+        page = f'{style}<div class="labkit-log">{html.escape(words)}</div>'
         compat.display_under(self._request, {'text/html': page}, self._name, update=update)
 
 

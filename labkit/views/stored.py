@@ -73,8 +73,8 @@ class Stored:
         now = datetime.now()
         words = f'Stored on {now.day} {now:%B %Y} at {now:%H:%M:%S}. {TODO}'
         page = (
-            f'<style class="labkit-style">{_style(self._mark)}</style><div class="labkit-stored {self._mark}-stored">'
-            f'<p>{words}</p>{body}</div>'
+            f'<style class="labkit-style">{_style(self._mark)}</style>'
+            f'<div class="labkit-stored {self._mark}-stored"><p>{words}</p>{body}</div>'
         )
         return {**self._kept, 'text/html': page}
 
