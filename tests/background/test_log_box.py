@@ -30,7 +30,7 @@ class Loud(Node):
             self.timer.cancel()
 
 async def wait_for(words):
-    while words not in told[-1]:
+    while not told or words not in told[-1]:
         await asyncio.sleep(0.02)
 """
 
