@@ -46,7 +46,7 @@ def _run(words: list[str]) -> int:
         module = importlib.import_module(_FORWARDED[words[0]])
         return int(module.main(words[1:]))
     options, others = _parser().parse_known_args(words)
-    if others and options.command not in ('lab', 'test'):
+    if others and options.command not in ('hub', 'lab', 'test'):
         _parser().error(f'{options.command} does not know {" ".join(others)!r}')
     if others[:1] == ['--']:
         others = others[1:]
@@ -54,6 +54,17 @@ def _run(words: list[str]) -> int:
         from labkit.course.jupyterlab import start_lab
 
         start_lab(others)
+    if options.command == 'hub':
+        from labkit.hub.command import run_hub
+
+        return run_hub(
+            others,
+            class_list=options.class_list,
+            folder=options.folder,
+            image=options.image,
+            new_password=options.new_password,
+            prepare=options.prepare,
+        )
     if options.command == 'test':
         return run_tests(others, fast=options.fast, shard=options.shard, coverage=options.coverage)
     if options.command == 'reset':
@@ -136,6 +147,19 @@ def _parser() -> argparse.ArgumentParser:
         'Options it does not know, and all after `--`, go to JupyterLab: '
         '`--no-browser`, `--port 9000`.',
     )
+    hub = add(
+        'hub',
+        'Start JupyterHub for a class, on this machine',
+        'Options it does not know, and all after `--`, go to JupyterHub: `--port 9000`. '
+        'docs/hub.md tells more.',
+    )
+    hub.add_argument(
+        '--class', dest='class_list', metavar='FILE', help='a text file with a name on each line'
+    )
+    hub.add_argument('--folder', help='what the hub keeps; /var/lib/labkit-hub if not given')
+    hub.add_argument('--image', help='run servers in containers of this image of Docker')
+    hub.add_argument('--new-password', metavar='NAME', help='make one for somebody, and end')
+    hub.add_argument('--prepare', action='store_true', help='install what is needed, and end')
     test = add(
         'test',
         'Run every lesson and every test',

@@ -38,7 +38,8 @@ class Course:
         shutil.copytree(ROOT / 'labkit', folder / 'labkit', ignore=ignored)
         (folder / 'notebooks').mkdir()
         (folder / 'tests').mkdir()
-        (folder / 'tests' / 'requirements.txt').write_text('')
+        for name in ('labkit/hub/requirements.txt', 'tests/requirements.txt'):
+            (folder / name).write_text('')
         self.require(self.wheel('alpha'))
         self.env = machine.clean_environment()
         # With uv, which is quick; no waiting for a network that isn't there.

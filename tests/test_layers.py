@@ -31,7 +31,7 @@ FLOORS = {
     'labkit.exercises': 6,
     'labkit.lessons': 7,
     'labkit.course': 8,
-    'labkit.hub': 8,
+    'labkit.hub': 8.1,
     'labkit': 9,
     'labkit.__main__': 9.1,
 }
@@ -44,7 +44,7 @@ BARE = (
     *('labkit', 'labkit.__main__', 'labkit.checkup.report', 'labkit.errors', 'labkit.settings'),
     *('labkit.files', 'labkit.setup.environment', 'labkit.setup.installer'),
     *('labkit.setup.machine', 'labkit.setup.requirements', 'labkit.course.jupyterlab'),
-    *('labkit.course.learner_folder', 'labkit.course.run_tests'),
+    *('labkit.course.learner_folder', 'labkit.course.run_tests', 'labkit.hub.command'),
 )
 
 

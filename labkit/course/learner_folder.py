@@ -21,7 +21,8 @@ from labkit.setup.environment import ROOT
 __all__ = ['FIRST', 'WORK', 'copy_lessons', 'reset']
 
 LESSONS = ROOT / 'notebooks'
-WORK = ROOT / 'work'
+# On a hub each learner has one in their home.
+WORK = Path(os.environ.get('LABKIT_WORK') or ROOT / 'work')
 RECORD = '.labkit.json'
 # Where the old copies of lessons go, in the learner's folder.
 BACKUPS = 'backups'

@@ -14,7 +14,7 @@ from labkit.setup.environment import ROOT, VENV, environment_variables, make_env
 
 __all__ = ['SHARDS', 'run_tests']
 
-REQUIREMENTS = ('environment.txt', 'tests/requirements.txt')
+REQUIREMENTS = ('environment.txt', 'labkit/hub/requirements.txt', 'tests/requirements.txt')
 # Quick, and about the code as it stands; they come first and are not repeated later.
 _FAST_TESTS = (
     'tests/test_layers.py',

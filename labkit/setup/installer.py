@@ -211,11 +211,20 @@ def _steps(root: Path, requirements: Sequence[str]) -> list[list[str]]:
     """Return what to install one after the other, as options of uv and of pip."""
     if LOCKED not in requirements or not (root / LOCK).is_file():
         return [[option for name in requirements for option in ('-r', name)]]
-    others = [option for name in requirements if name != LOCKED for option in ('-r', name)]
+    # A lock that lies beside its file has all that comes on top of the environment.
+    locks = {name: Path(name).with_suffix('.lock') for name in requirements if name != LOCKED}
+    locked = [str(lock) for lock in locks.values() if (root / lock).is_file()]
+    others = [
+        option
+        for name, lock in locks.items()
+        if str(lock) not in locked
+        for option in ('-r', name)
+    ]
     return [
         ['--require-hashes', '-r', LOCK],
         # The package of the folder itself has no hash. What builds it is there by now.
         ['--no-deps', '--no-build-isolation', '-e', '.'],
+        *(['--no-deps', '--require-hashes', '-r', lock] for lock in locked),
         *([others] if others else []),
     ]
 

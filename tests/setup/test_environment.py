@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 from courses import BARE_PATH, ROOT, TIMEOUT_SEC, Course, Gate, base_python, wait_for_line
 
+from labkit.course.run_tests import REQUIREMENTS
 from labkit.errors import SetupError
 from labkit.setup import machine
 from labkit.setup.requirements import applicable
@@ -422,7 +423,7 @@ def test_other_ros_installations_are_kept_out(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_every_requirement_is_pinned() -> None:
-    for name in ('environment.txt', 'tests/requirements.txt'):
+    for name in REQUIREMENTS:
         lines = applicable((ROOT / name).read_text().splitlines(), (3, 12, 0))
         loose = [line for line in lines if '==' not in line and line != '-e .']
         assert not loose, f'{name}: {loose}'

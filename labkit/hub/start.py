@@ -1,0 +1,102 @@
+"""The second half of `labkit hub`, in the environment's Python: accounts, passwords, the hub."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy
+
+from labkit.errors import LabError
+from labkit.hub.accounts import make_accounts
+from labkit.hub.class_list import read_class
+from labkit.hub.passwords import FIRST_PASSWORDS, make_passwords
+from labkit.setup.compiler import fix_exported_paths
+from labkit.setup.environment import ROOT, environment_variables
+
+__all__ = ['main']
+
+_CONFIG = Path(__file__).with_name('jupyterhub_config.py')
+
+
+def main(words: Sequence[str]) -> int:
+    """Make accounts and passwords, and become JupyterHub.
+
+    Args:
+        words: The options that `labkit.hub.command` gives.
+
+    Returns:
+        The exit code, if no hub is started.
+    """
+    options = _parser().parse_args(words)
+    # Learners can't write to the environment, so lesson 12 finds this done.
+    fix_exported_paths(Path(sys.prefix), numpy.get_include())
+    if options.class_list is None:
+        print('All that a hub needs is installed.')
+        return 0
+    names = [member.name for member in read_class(options.class_list)]
+    anew = options.new_password
+    if anew is not None and anew not in names:
+        raise LabError(f'{anew!r} is not in {options.class_list.name}.')
+    os.umask(0o077)
+    options.folder.mkdir(parents=True, exist_ok=True)
+    options.folder.chmod(0o700)
+    if options.image is None:
+        for name in make_accounts(names):
+            print(f'{name} has an account now.')
+        _check_access(names[0])
+    new = make_passwords(options.folder, names, anew=[anew] if anew else [])
+    passwords = options.folder / FIRST_PASSWORDS
+    if new:
+        print(f'New passwords, for {", ".join(new)}: {passwords}')
+    if anew is not None:
+        return 0
+    variables = environment_variables() | {'LABKIT_CLASS': str(options.class_list)}
+    variables |= {'LABKIT_IMAGE': options.image} if options.image else {}
+    print(f'Starting JupyterHub for {len(names)}. To stop it, press Ctrl+C here.', flush=True)
+    os.chdir(options.folder)
+    command = [sys.executable, '-m', 'jupyterhub', '-f', str(_CONFIG), *options.arguments]
+    os.execve(sys.executable, command, variables)
+
+
+def _check_access(name: str) -> None:
+    """Make sure that learners can read the course and run its Python."""
+    done = subprocess.run(
+        [sys.executable, '-c', 'import rclpy, labkit'],
+        cwd='/',
+        env=environment_variables(),
+        user=name,
+        group=name,
+        extra_groups=[],
+        capture_output=True,
+        text=True,
+    )
+    if done.returncode != 0:
+        last = (done.stderr.strip().splitlines() or ['no output'])[-1]
+        raise LabError(
+            f'{name} can not use the course in {str(ROOT)!r}: {last}',
+            todo='Put the course, and the Python that it is made with, where everybody may read: '
+            'a clone in /srv, and a Python of the system. Then delete .venv and repeat.',
+        )
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog='labkit hub', allow_abbrev=False)
+    parser.add_argument('--class', dest='class_list', type=Path)
+    parser.add_argument('--folder', type=Path)
+    parser.add_argument('--image')
+    parser.add_argument('--new-password')
+    parser.add_argument('arguments', nargs='*')
+    return parser
+
+
+if __name__ == '__main__':
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except LabError as error:
+        print(f'labkit: {error}', file=sys.stderr)
+        sys.exit(2)
