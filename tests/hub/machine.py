@@ -74,6 +74,8 @@ class Machine:
         lines = [f'mount --bind {etc} /etc']
         for place, mode in (('/home', '755'), ('/dev/shm', '1777'), ('/var/log', '755')):
             lines.append(f'mount -t tmpfs -o mode={mode} tmpfs {place}')
+        # A systemd of this machine knows nothing of these accounts.
+        lines.append('[ ! -d /run/systemd ] || mount -t tmpfs tmpfs /run/systemd')
         lines += _laid_open(folder)
         return '\n'.join([*lines, f'exec {shlex.quote(sys.executable)} -c {shlex.quote(_INIT)}'])
 

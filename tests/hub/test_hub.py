@@ -145,7 +145,7 @@ def test_nobody_sees_files_progress_and_kernels_of_others(learners: Class, hub: 
     assert 'Permission denied' in notebook.run(f'!ls {hub.state}')
     assert 'Permission denied' in notebook.run('!cat /proc/1/environ')
     assert 'anna' in notebook.run('!id -un')
-    # A kernel listens at no port: there, everybody on the machine could listen.
+    # A kernel's channels are no ports: there, everybody on the machine could listen.
     assert evaluated(notebook, 'get_ipython().kernel.parent.transport') == 'ipc'
 
 
