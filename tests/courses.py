@@ -84,17 +84,21 @@ class Course:
         """Write `environment.txt`."""
         (self.folder / 'environment.txt').write_text('\n'.join(requirements) + '\n')
 
-    def lock(self, *wheels: str) -> None:
+    def lock(self, *wheels: str, file: str = LOCK) -> None:
         """Write the lock: requirements of `wheel`, with the hashes of their files.
 
         What the course's own package is built with comes too, from the environment of this test.
+
+        Args:
+            wheels: The requirements.
+            file: The lock's name.
         """
         lines = []
         for wheel in wheels:
             name, version = Path(wheel).name.split('-')[:2]
             digest = hashlib.sha256((self.folder / wheel).read_bytes()).hexdigest()
             lines.append(f'{name}=={version} \\\n    --hash=sha256:{digest}\n')
-        (self.folder / LOCK).write_text(''.join(lines))
+        (self.folder / file).write_text(''.join(lines))
         self.env.update(
             PIP_FIND_LINKS=str(self.folder),
             UV_FIND_LINKS=str(self.folder),

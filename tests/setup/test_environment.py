@@ -118,6 +118,28 @@ def test_a_package_that_is_not_the_tested_one_is_refused(
     assert 'alpha-1.0' in course.installed()
 
 
+@pytest.mark.parametrize('installer', ['uv', 'pip'])
+def test_a_lock_beside_another_file_is_used_as_well(without_uv: Course, installer: str) -> None:
+    course = without_uv
+    if installer == 'uv':
+        course.env['PATH'] = f'{course.folder / "uv"}:{BARE_PATH}'
+    course.lock(course.wheel('alpha', '2.0'))
+    course.require('alpha==2.0', '-e .')
+    (course.folder / 'tests' / 'requirements.txt').write_text('checker==1.0\n')
+    course.lock(course.wheel('checker'), file='tests/requirements.lock')
+    files = "('environment.txt', 'tests/requirements.txt')"
+    make = f'labkit.setup.environment.make_environment({files})'
+    done = course.python(make)
+    assert done.returncode == 0, done.stderr
+    assert {'alpha-2.0', 'checker-1.0'} <= course.installed()
+    (course.folder / 'tests' / 'requirements.txt').write_text('checker==2.0\n')
+    course.lock(course.wheel('checker', '2.0'), file='tests/requirements.lock')
+    course.wheel('checker', '2.0', size=1)
+    said = ' '.join(sentence(course.python(make)).split())
+    assert 'is not the one that the course was tested with' in said
+    assert 'checker-1.0' in course.installed()
+
+
 def test_failed_install_leaves_nothing(course: Course) -> None:
     course.require('./missing-1.0-py3-none-any.whl')
     assert 'missing-1.0' in sentence(course.make())
