@@ -165,12 +165,21 @@ class BackgroundExecutor(Executor):
         # Who looks at a condition keeps the thread from its next round.
         waits_in_vain = self.in_callback() or self._looking == threading.get_ident()
         if self.is_open and not waits_in_vain:
-            with self._round_begun:
-                self._round_awaited += 1
-                try:
-                    self._round_begun.wait_for(lambda: self._rounds > seen, RELEASE_SEC)
-                finally:
-                    self._round_awaited -= 1
+            self._await_round_after(seen)
+
+    def _await_round_after(self, seen: int) -> None:
+        """Wait until what the background waited for is let go, unless a callback keeps it."""
+        left = END_SEC
+        with self._round_begun:
+            self._round_awaited += 1
+            try:
+                while not self._round_begun.wait_for(lambda: self._rounds > seen, RELEASE_SEC):
+                    left -= RELEASE_SEC  # no clock: the whole machine may have stood still
+                    is_busy = self._running is not None or self._looking is not None
+                    if is_busy or not self.is_open or left <= 0:
+                        return
+            finally:
+                self._round_awaited -= 1
 
     def entry_of(self, node: Node) -> NodeEntry | None:
         """Return the entry of a node, None if it is not on this executor."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Set
+from collections.abc import Callable
 
 from rclpy.node import Node
 
@@ -24,8 +24,8 @@ from labkit.background.nodes import (
 
 __all__ = ['Registry']
 
-# How long an executor of the learner's own may take to let go of a node that was destroyed, s. It
-# does so at once, unless a callback keeps it.
+# How long somebody may hold a node that was destroyed, s. An executor of the learner's own lets go
+# at once, unless a callback keeps it.
 GONE_SEC = 1.0
 POLL_SEC = 0.001
 
@@ -35,12 +35,12 @@ class Registry:
 
     Args:
         console: Knows the cell that is running.
-        own_names: Returns the full names of this process's nodes that are in the graph.
+        count: Returns how many nodes of a full name are in the graph.
     """
 
-    def __init__(self, console: Console, own_names: Callable[[], Set[str]]) -> None:
+    def __init__(self, console: Console, count: Callable[[str], int]) -> None:
         self._console = console
-        self._own_names = own_names
+        self._count = count
         self._lock = threading.Lock()
         self._entries: dict[str, NodeEntry] = {}
 
@@ -89,20 +89,22 @@ class Registry:
         executor = getattr(node, 'executor', None)
         if executor is not None:
             executor.remove_node(node)
+        before = self._count(name)
         error = destroy_node(node)
-        if executor is not None:
-            self._wait_until_gone(name)
+        self._wait_until_fewer(name, before)
         if error is not None:
             self._console.show_error(name, 'destroy_node', error)
         return error
 
-    def _wait_until_gone(self, name: str) -> None:
-        """Wait until an executor of the learner's own lets go of what it waits for.
+    def _wait_until_fewer(self, name: str, count: int) -> None:
+        """Wait until nobody holds a node that was destroyed, such as an executor in its wait.
 
-        Were a node of the same name made before, it would have no name in the graph.
+        It leaves the graph only then; what it had leaves before. Were a node of the same name made
+        meanwhile, the graph would take the new one's topics for the old one's, and leave them
+        nameless.
         """
         end = time.monotonic() + GONE_SEC
-        while name in self._own_names() and time.monotonic() < end:
+        while count and self._count(name) >= count and time.monotonic() < end:
             time.sleep(POLL_SEC)
 
     def release(self, executor: BackgroundExecutor | None, entry: NodeEntry) -> None:

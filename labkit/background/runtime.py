@@ -30,11 +30,13 @@ from labkit.background.nodes import (
     full_name,
     half_made,
     helper_node,
+    node_exists,
 )
 from labkit.background.notebook_rclpy import ORIGINALS, install
 from labkit.background.registry import Registry
 from labkit.errors import LabError, nearest
-from labkit.rosgraph.whose import foreign_nodes, own_nodes
+from labkit.rosgraph.names import full_node_name
+from labkit.rosgraph.whose import foreign_nodes
 
 __all__ = [
     'Runtime',
@@ -76,7 +78,7 @@ class Runtime:
         # Held for as long as a start takes. No callback asks for it, see `start`.
         self._starting = threading.RLock()
         self._ending = threading.Lock()
-        self._registry = Registry(self.console, self._own_names)
+        self._registry = Registry(self.console, self._count_nodes)
         self._reported: set[str] = set()
         self._executor: BackgroundExecutor | None = None
         self._claim: domains.DomainClaim | None = None
@@ -251,8 +253,11 @@ class Runtime:
         self.ended.pop(name, None)
         self._registry.make_room(self._executor, name)
 
-    def _own_names(self) -> set[str]:
-        return own_nodes(self.helper) if self.helper is not None else set()
+    def _count_nodes(self, name: str) -> int:
+        if self.helper is None or not node_exists(self.helper):
+            return 0
+        names = self.helper.get_node_names_and_namespaces()
+        return sum(full_node_name(*pair) == name for pair in names)
 
     def foreign_nodes(self) -> set[str]:
         """Return the full names of the nodes that other processes have in this domain."""

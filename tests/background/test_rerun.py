@@ -35,6 +35,36 @@ def test_a_node_that_was_started_again_keeps_its_name_in_the_graph(kernel):
     assert kernel.run('print(seen)').text == "{'talker'}\n"
 
 
+def test_it_keeps_its_name_while_somebody_still_holds_the_one_before(kernel):
+    code = f"""
+{TALKER}
+import threading, time
+from labkit.background.runtime import runtime
+
+def hold(handle, held):
+    # As an executor does that waits: it lets go a moment after all else of the node has gone.
+    with handle:
+        held.set()
+        while runtime.helper.count_publishers('/chatter'):
+            time.sleep(0.001)
+        time.sleep(0.1)
+
+for _ in range(5):
+    talker = lab.spin(Talker())
+    lab.wait_until(lambda: talker.count >= 1, timeout_sec=30)
+    held = threading.Event()
+    threading.Thread(target=hold, args=(talker.handle, held)).start()
+    held.wait()
+    lab.remove(talker)
+talker = lab.spin(Talker())
+for thread in threading.enumerate():
+    if thread.name.endswith('(hold)'):
+        thread.join()
+print([info.node_name for info in talker.get_publishers_info_by_topic('/chatter')])
+"""
+    assert kernel.run(code).text == "['talker']\n"
+
+
 def test_removing_a_node_whose_callback_does_not_return_ends_soon(kernel):
     kernel.run(TALKER)
     code = """
