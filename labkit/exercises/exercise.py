@@ -16,7 +16,7 @@ from labkit.exercises.probe import Probe
 from labkit.exercises.recorder import Recorder
 from labkit.exercises.scope import Scope
 from labkit.exercises.standing import after
-from labkit.exercises.traces import refuse_traces
+from labkit.exercises.traces import refuse_nameless, refuse_traces
 from labkit.exercises.verdict import Fail, LearnerError, NotAttempted, Outcome, Verdict
 from labkit.exercises.watch import Watch
 from labkit.views.card import Card
@@ -313,6 +313,7 @@ class Exercise:
                 error = last_cell.learner_error()
                 if error is not None:
                     raise error from None
+                refuse_nameless(probe, self._asked())
                 unexplained = isinstance(outcome, NotAttempted) and not str(outcome)
                 if unexplained and not probe.something_is_starting():
                     refuse_traces(probe, self._asked())

@@ -17,13 +17,14 @@ from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
 from labkit import settings
+from labkit.exercises.callbacks import is_given
 from labkit.exercises.scope import PUBLISHER, SERVICE, SUBSCRIPTION
 from labkit.exercises.verdict import Fail
 
 if TYPE_CHECKING:
     from labkit.exercises.probe import Probe
 
-__all__ = ['refuse_traces']
+__all__ = ['refuse_nameless', 'refuse_traces']
 
 # Of a longer program the beginning is looked at, in characters.
 MAX_PROGRAM = 100_000
@@ -41,6 +42,31 @@ def refuse_traces(probe: Probe, task: str) -> None:
     if settings.in_kernel():
         _refuse_class(task)
     _refuse_process(probe, task)
+
+
+def refuse_nameless(probe: Probe, task: str) -> None:
+    """Raise Fail if the graph has lost the name of a node that runs here.
+
+    That is so if a node of the same name was destroyed, and somebody held it until the new one was
+    made: then ROS takes what the new one has for the old one's, and forgets it with that.
+
+    Args:
+        probe: The probe of the check.
+        task: What the exercise asks for, in a few words.
+    """
+    from labkit.background.runtime import runtime
+    from labkit.rosgraph.snapshot import node_names
+
+    known = node_names(probe.node)
+    for entry in runtime.nodes():
+        if entry.name in known or is_given(entry.name, probe.scope):
+            continue
+        raise Fail(
+            task,
+            f'the node {entry.name}, which runs here, and of which the graph has lost the name',
+            why='A node of the same name ended while this one was made, and took its name along.',
+            todo='Run the cell of the node again.',
+        )
 
 
 def _refuse_nodes(probe: Probe, task: str) -> None:

@@ -97,3 +97,15 @@ def test_a_node_that_has_ended_itself_is_named(kernel: Any) -> None:
     assert '/ones has ended, because its callback last called rclpy.shutdown()' in ' '.join(
         said.split()
     )
+
+
+def test_a_node_of_which_the_graph_has_lost_the_name_is_told_so(
+    lab: ModuleType, lesson: Lesson
+) -> None:
+    earlier = Node('maker')
+    with earlier.handle:
+        # Past labkit, which would wait until nobody holds it.
+        Node.destroy_node(earlier)
+        node = lab.spin(Node('maker'))
+        node.create_publisher(Int16, 'ones', 10)
+    assert 'the graph has lost the name' in lesson.ones.check().seen
