@@ -18,7 +18,7 @@ from labkit.setup.installer import LOCK
 
 ROOT = Path(__file__).resolve().parent.parent
 # A hang ends; nothing is judged by it.
-TIMEOUT_SEC = 120
+TIMEOUT_SEC = 240
 BARE_PATH = '/usr/bin:/bin'
 START = '00_start_here.ipynb'
 

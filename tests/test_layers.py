@@ -14,11 +14,12 @@ import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 
-# The floor of every room, and of the three modules that lie beside them; see docs/design.md.
+# The floor of every room, and of the modules that lie beside them; see docs/design.md.
 FLOORS = {
     'labkit.errors': 0,
+    'labkit.domain_ids': 0.1,
     'labkit.files': 0.1,
-    'labkit.settings': 0.1,
+    'labkit.settings': 0.2,
     'labkit.setup': 1,
     'labkit.rosgraph': 1,
     'labkit.background': 2,
@@ -37,12 +38,14 @@ FLOORS = {
 }
 # Rooms, and one module, in which all that is loaded may need rclpy.
 WITH_ROS = ('labkit.rosgraph', 'labkit.background', 'labkit.bags', 'labkit.sim.turtlebot')
-WITHOUT_ROS = ('labkit.errors', 'labkit.files', 'labkit.settings', 'labkit.setup')
+WITHOUT_ROS = (
+    *('labkit.domain_ids', 'labkit.errors', 'labkit.files', 'labkit.settings', 'labkit.setup'),
+)
 VIEWS_ONLY = ('anywidget', 'ipywidgets', 'matplotlib', 'pygments')
 # What `python3 -m labkit` needs before there is an environment.
 BARE = (
     *('labkit', 'labkit.__main__', 'labkit.checkup.report', 'labkit.errors', 'labkit.settings'),
-    *('labkit.files', 'labkit.setup.environment', 'labkit.setup.installer'),
+    *('labkit.domain_ids', 'labkit.files', 'labkit.setup.environment', 'labkit.setup.installer'),
     *('labkit.setup.machine', 'labkit.setup.requirements', 'labkit.course.jupyterlab'),
     *('labkit.course.learner_folder', 'labkit.course.run_tests', 'labkit.hub.command'),
 )

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from labkit import settings
+from labkit import domain_ids, settings
 from labkit.errors import LabError
 
 
@@ -15,38 +15,38 @@ from labkit.errors import LabError
 def test_bad_domain_in_the_environment(monkeypatch: pytest.MonkeyPatch, value: str) -> None:
     monkeypatch.setenv('ROS_DOMAIN_ID', value)
     with pytest.raises(LabError) as caught:
-        settings.read_domain_id()
+        domain_ids.read_domain_id()
     assert repr(value) in str(caught.value)
     assert 'a number from 0 to 101' in str(caught.value)
     assert 'unset it' in caught.value.todo
 
 
-@pytest.mark.parametrize('value', [-1, 102, 7.0, '7', float(settings.BETWEEN[0])])
+@pytest.mark.parametrize('value', [-1, 102, 7.0, '7', float(domain_ids.BETWEEN[0])])
 def test_bad_domain_as_an_argument(value: object) -> None:
     with pytest.raises(LabError, match='must be a whole number from 0 to 101'):
-        settings.check_domain_id(value)
+        domain_ids.check_domain_id(value)
 
 
 def test_good_domains(monkeypatch: pytest.MonkeyPatch) -> None:
     for value, expected in (('', None), ('0', 0), ('101', 101)):
         monkeypatch.setenv('ROS_DOMAIN_ID', value)
-        assert settings.read_domain_id() == expected
-    for domain_id in (None, 0, 101, settings.BETWEEN[0]):
-        settings.check_domain_id(domain_id)
+        assert domain_ids.read_domain_id() == expected
+    for domain_id in (None, 0, 101, domain_ids.BETWEEN[0]):
+        domain_ids.check_domain_id(domain_id)
     # All computers know those up to 232, and only this machine those between.
     for domain_id in (None, 0, 101, 102, 232):
-        settings.check_shared_domain_id(domain_id)
+        domain_ids.check_shared_domain_id(domain_id)
 
 
 def test_a_domain_between_is_not_shared(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv('ROS_DOMAIN_ID', str(settings.BETWEEN[0]))
-    monkeypatch.setenv('LABKIT_SHARED_DOMAIN_ID', str(settings.BETWEEN[0]))
-    assert settings.read_domain_id() == settings.BETWEEN[0]
+    monkeypatch.setenv('ROS_DOMAIN_ID', str(domain_ids.BETWEEN[0]))
+    monkeypatch.setenv('LABKIT_SHARED_DOMAIN_ID', str(domain_ids.BETWEEN[0]))
+    assert domain_ids.read_domain_id() == domain_ids.BETWEEN[0]
     with pytest.raises(LabError, match='LABKIT_SHARED_DOMAIN_ID must be a number from 0 to 101'):
-        settings.read_shared_domain_id()
-    for bad in (settings.BETWEEN[0], 233, -1, 7.0):
+        domain_ids.read_shared_domain_id()
+    for bad in (domain_ids.BETWEEN[0], 233, -1, 7.0):
         with pytest.raises(LabError, match='must be a whole number from 0 to 101, but it is'):
-            settings.check_shared_domain_id(bad)
+            domain_ids.check_shared_domain_id(bad)
 
 
 WHO = 'import labkit as lab; from labkit import settings; print(settings.audience())'

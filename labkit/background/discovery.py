@@ -11,10 +11,10 @@ from typing import TypeVar
 from rclpy.node import Node
 
 from labkit.background.runtime import runtime
+from labkit.domain_ids import first_port
 from labkit.rosgraph.endpoints import publishers
 from labkit.rosgraph.snapshot import is_whole, node_names
 from labkit.rosgraph.whose import participant_of
-from labkit.settings import first_port
 
 __all__ = [
     'DISCOVERY_SEC',

@@ -1,6 +1,6 @@
 """A ROS domain for each notebook: claimed while its kernel lives, found by its terminals.
 
-The first hundred take domains that every program knows, the others those of `settings.BETWEEN`.
+The first hundred take domains that every program knows, the others those of `domain_ids.BETWEEN`.
 """
 
 from __future__ import annotations
@@ -11,16 +11,16 @@ import socket
 import zlib
 from pathlib import Path
 
-from labkit.errors import LabError
-from labkit.settings import (
+from labkit.domain_ids import (
     BETWEEN,
     LAST_DOMAIN_ID,
     PORT_BETWEEN,
     between_is_possible,
     counts_ports,
     first_port,
-    notebook_name,
 )
+from labkit.errors import LabError
+from labkit.settings import notebook_name
 
 __all__ = [
     'DomainClaim',
@@ -88,7 +88,7 @@ def claim_domain(*, shared: bool = False, other_than: int | None = None) -> Doma
     """Claim a domain that no other notebook has.
 
     The first hundred notebooks have domains that every program knows, the others have one between
-    two of those (`settings.BETWEEN`). The search starts from a number made from the notebook's
+    two of those (`domain_ids.BETWEEN`). The search starts from a number made from the notebook's
     name, so that a notebook whose kernel is restarted mostly meets its own domain again.
 
     Args:
@@ -150,7 +150,7 @@ def number_for_ros(domain_id: int) -> int:
     """Return the number by which ROS in this process knows a domain.
 
     Fast DDS reads its profile once, when the first node of a process is made. If that was the
-    one of the domains between (`settings.BETWEEN`), it counts ports from then on.
+    one of the domains between (`domain_ids.BETWEEN`), it counts ports from then on.
 
     Args:
         domain_id: The domain, as `ROS_DOMAIN_ID` has it.

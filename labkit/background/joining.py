@@ -31,12 +31,13 @@ from labkit.background.nodes import destroy_node, helper_node
 from labkit.background.notebook_rclpy import ORIGINALS
 from labkit.background.runtime import runtime
 from labkit.background.session import Session, end_earlier, going_on
+from labkit.domain_ids import check_shared_domain_id, read_shared_domain_id
 from labkit.errors import LabError, LabTimeout, nearest
 from labkit.rosgraph.endpoints import Endpoint, publishers, subscriptions
 from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.names import full_topic_name
 from labkit.rosgraph.whose import is_own
-from labkit.settings import audience, check_shared_domain_id, read_shared_domain_id
+from labkit.settings import audience
 
 if TYPE_CHECKING:
     from rclpy.node import Node

@@ -25,7 +25,7 @@ import rclpy.timer
 from rclpy.utilities import get_default_context
 from rclpy.validate_node_name import validate_node_name
 
-from labkit import settings
+from labkit import domain_ids, settings
 from labkit.background import compat
 from labkit.background.action_callbacks import guarded
 from labkit.background.domains import number_for_ros
@@ -179,7 +179,7 @@ class _NotebookSafe:
     ) -> None:
         if context is not None and context is not get_default_context():
             none = rclpy.signals.SignalHandlerOptions.NO
-            wanted = domain_id if domain_id is not None else settings.read_domain_id() or 0
+            wanted = domain_id if domain_id is not None else domain_ids.read_domain_id() or 0
             number = number_for_ros(wanted)
             ORIGINALS['init'](
                 args=args, context=context, domain_id=number, signal_handler_options=none

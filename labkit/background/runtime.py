@@ -17,7 +17,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import get_default_context, ok, try_shutdown
 
-from labkit import settings
+from labkit import domain_ids, settings
 from labkit.background import domains
 from labkit.background.console import Cell, Console
 from labkit.background.executor import BackgroundExecutor
@@ -111,7 +111,7 @@ class Runtime:
             domain_id: See `labkit.start`.
             args: Command line arguments for ROS, as `rclpy.init` takes them.
         """
-        settings.check_domain_id(domain_id)
+        domain_ids.check_domain_id(domain_id)
         if self._is_called_by_a_callback() or self._is_up_in(domain_id):
             return
         with self._starting:
@@ -125,7 +125,7 @@ class Runtime:
             number = domains.number_for_ros(domain_id or 0)
             if domain_id is not None:
                 # The processes that the notebook starts read it.
-                settings.set_domain(domain_id)
+                domain_ids.set_domain(domain_id)
             # Log files: nobody looks for them in a course, and a home that can't be written to
             # would keep ROS from starting.
             ros_args = [*(args or ()), '--ros-args', '--disable-external-lib-logs']
@@ -305,7 +305,7 @@ class Runtime:
 
     def _choose_domain(self, domain_id: int | None) -> int | None:
         if domain_id is None:
-            domain_id = settings.read_domain_id()
+            domain_id = domain_ids.read_domain_id()
         if domain_id is None and settings.in_kernel():
             self._claim = self._claim or domains.claim_domain()
             domain_id = self._claim.domain_id

@@ -9,7 +9,7 @@ import threading
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from labkit import settings
+from labkit import domain_ids, settings
 from labkit.errors import LabError, first_few
 from labkit.rosgraph.names import is_hidden
 
@@ -22,7 +22,7 @@ __all__ = ['callbacks', 'domain', 'middleware', 'nodes', 'topics']
 RANGES = ('OFF', 'LOCALHOST', 'SUBNET', 'SYSTEM_DEFAULT')
 # On Linux, the ports of these domains overlap with those that the system hands out by itself
 # (docs.ros.org, "The ROS_DOMAIN_ID").
-UNSAFE_DOMAIN_IDS = range(settings.LAST_DOMAIN_ID + 1, 215)
+UNSAFE_DOMAIN_IDS = range(domain_ids.LAST_DOMAIN_ID + 1, 215)
 TOPIC = f'_labkit/doctor_{os.getpid()}'
 ARRIVAL_SEC = 2.0
 # A busy machine may take long to start Python; it is a limit, not a measure.
@@ -99,8 +99,8 @@ def _try_in_a_process() -> str:
     """Pass a message in a process of its own; return the middleware's name."""
     env = dict(os.environ)
     env.pop('ROS_DOMAIN_ID', None)
-    if settings.counts_ports():
-        del env[settings.PROFILES_FILE]
+    if domain_ids.counts_ports():
+        del env[domain_ids.PROFILES_FILE]
     env['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'OFF'
     code = _TRY.replace('TOPIC', repr(TOPIC)).replace('ARRIVAL_SEC', repr(ARRIVAL_SEC))
     todo = (
@@ -144,15 +144,15 @@ def _reason(done: subprocess.CompletedProcess[str]) -> str:
 
 def domain() -> str:
     """Look at who can hear this process: the domain, and the range in which others are found."""
-    wanted = settings.read_domain_id()
+    wanted = domain_ids.read_domain_id()
     if wanted in UNSAFE_DOMAIN_IDS:
         raise LabError(
             f'ROS_DOMAIN_ID is {wanted}; the system may give the ports of domains '
             f'{UNSAFE_DOMAIN_IDS[0]} to {UNSAFE_DOMAIN_IDS[-1]} to other programs.',
-            todo=f'Choose a number from 0 to {settings.LAST_DOMAIN_ID}.',
+            todo=f'Choose a number from 0 to {domain_ids.LAST_DOMAIN_ID}.',
         )
     if wanted is not None:
-        settings.check_profile(wanted)
+        domain_ids.check_profile(wanted)
     reach = _range()
     runtime = _runtime()
     if runtime is None or not runtime.started:

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
-from labkit import settings
+from labkit import domain_ids
 from labkit.background import domains
 from labkit.errors import LabError
 
@@ -69,7 +69,7 @@ def choose_domain() -> None:
     Raises:
         LabError: Several notebooks are running.
     """
-    if settings.read_domain_id() is not None:
+    if domain_ids.read_domain_id() is not None:
         return
     notebooks = domains.claimed_domains()
     if len(notebooks) > 1:
@@ -79,16 +79,16 @@ def choose_domain() -> None:
             todo=f'Choose one: export ROS_DOMAIN_ID={next(iter(notebooks))}{_profile(notebooks)}',
         )
     for domain_id in notebooks:
-        settings.set_domain(domain_id)
+        domain_ids.set_domain(domain_id)
 
 
-def _profile(domain_ids: Iterable[int]) -> str:
+def _profile(domains: Iterable[int]) -> str:
     """Say what a program needs that is neither this command nor imports labkit; '' if nothing."""
-    if set(domain_ids).isdisjoint(settings.BETWEEN):
+    if set(domains).isdisjoint(domain_ids.BETWEEN):
         return ''
     return (
         f'\nWith a number above 232, programs that know nothing of labkit also need: '
-        f'export {settings.PROFILES_FILE}={settings.PROFILE}'
+        f'export {domain_ids.PROFILES_FILE}={domain_ids.PROFILE}'
     )
 
 

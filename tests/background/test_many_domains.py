@@ -12,11 +12,11 @@ import pytest
 from background import crowd
 from background.talker import LOCALHOST, TALKER
 
-from labkit import settings
+from labkit import domain_ids, settings
 from labkit.background import domains
 from labkit.background.domains import DomainClaim
+from labkit.domain_ids import BETWEEN, first_port
 from labkit.errors import LabError
-from labkit.settings import BETWEEN, first_port
 
 Start = Callable[..., Any]
 EVERYBODYS = (*range(102), *range(215, 233))
@@ -79,7 +79,7 @@ def test_ports_between_are_not_handed_out_by_the_system() -> None:
 
 def test_a_notebook_of_very_many_processes_does_not_reach_the_next_but_one() -> None:
     # Its processes go on from port to port, sixty times, and a second context begins one further.
-    profile = settings.PROFILE.read_text()
+    profile = domain_ids.PROFILE.read_text()
     assert '<mutation_tries>60</mutation_tries>' in profile
     everybodys = {port for number in EVERYBODYS for port in looked_for(number)}
     others = {port: number for number in BETWEEN for port in looked_for(number)}
@@ -189,7 +189,7 @@ def test_the_next_notebook_goes_between(start_kernel: Start) -> None:
     )
     started = kernel.run(
         'import labkit as lab\nlab.start()\nfrom labkit.background.runtime import runtime\n'
-        'from labkit.settings import BETWEEN\n'
+        'from labkit.domain_ids import BETWEEN\n'
         'print(runtime.domain_id in BETWEEN, runtime.own_domain)'
     )
     assert (started.error, started.text) == ('', 'True True\n')
@@ -217,12 +217,12 @@ def test_a_notebook_can_not_go_between_later(start_kernel: Start, between: int) 
 
 def test_own_profile_of_a_learner_stays(monkeypatch: pytest.MonkeyPatch, between: int) -> None:
     monkeypatch.setenv('ROS_DOMAIN_ID', '')
-    monkeypatch.setenv(settings.PROFILES_FILE, '/home/me/my_profile.xml')
+    monkeypatch.setenv(domain_ids.PROFILES_FILE, '/home/me/my_profile.xml')
     with pytest.raises(LabError, match=r'=/home/me/my_profile\.xml'):
-        settings.set_domain(between)
+        domain_ids.set_domain(between)
     assert os.environ['ROS_DOMAIN_ID'] == ''
-    settings.set_domain(7)
-    assert os.environ[settings.PROFILES_FILE] == '/home/me/my_profile.xml'
+    domain_ids.set_domain(7)
+    assert os.environ[domain_ids.PROFILES_FILE] == '/home/me/my_profile.xml'
     # Such a notebook is not given one either.
     monkeypatch.setattr(domains, '_KNOWN', range(1, 2))
     with pytest.raises(LabError, match='All 1 ROS domains'):
@@ -233,16 +233,16 @@ def test_profile_comes_and_goes_with_the_number(
     monkeypatch: pytest.MonkeyPatch, between: int
 ) -> None:
     monkeypatch.setenv('ROS_DOMAIN_ID', str(between))
-    monkeypatch.setenv(settings.PROFILES_FILE, '')
+    monkeypatch.setenv(domain_ids.PROFILES_FILE, '')
     settings.prepare_environment()
-    assert os.path.isfile(os.environ[settings.PROFILES_FILE])
+    assert os.path.isfile(os.environ[domain_ids.PROFILES_FILE])
     monkeypatch.setenv('ROS_DOMAIN_ID', '7')
     settings.prepare_environment()
-    assert settings.PROFILES_FILE not in os.environ
-    settings.set_domain(between)
-    assert settings.counts_ports()
-    settings.set_domain(7)
-    assert not settings.counts_ports()
+    assert domain_ids.PROFILES_FILE not in os.environ
+    domain_ids.set_domain(between)
+    assert domain_ids.counts_ports()
+    domain_ids.set_domain(7)
+    assert not domain_ids.counts_ports()
 
 
 def test_what_is_shared_leaves_the_last_domains_for_last(

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from labkit import settings
+from labkit import domain_ids
 from labkit.background import domains
 from labkit.errors import LabError
 from labkit.ros2 import terminal
@@ -82,11 +82,11 @@ def test_domain_of_the_one_running_notebook(monkeypatch):
     monkeypatch.setattr(domains, 'claimed_domains', lambda: {7: '04_odds.ipynb'})
     terminal.choose_domain()
     assert os.environ.pop('ROS_DOMAIN_ID') == '7'
-    one = settings.BETWEEN[0]
+    one = domain_ids.BETWEEN[0]
     monkeypatch.setattr(domains, 'claimed_domains', lambda: {one: '04_odds.ipynb'})
     terminal.choose_domain()
     assert os.environ.pop('ROS_DOMAIN_ID') == str(one)
-    assert os.environ.pop(settings.PROFILES_FILE) == str(settings.PROFILE)
+    assert os.environ.pop(domain_ids.PROFILES_FILE) == str(domain_ids.PROFILE)
     monkeypatch.setattr(domains, 'claimed_domains', lambda: {})
     terminal.choose_domain()
     assert 'ROS_DOMAIN_ID' not in os.environ
@@ -95,11 +95,11 @@ def test_domain_of_the_one_running_notebook(monkeypatch):
     with pytest.raises(LabError) as caught:
         terminal.choose_domain()
     assert '  ROS_DOMAIN_ID=7  04_odds.ipynb\n  ROS_DOMAIN_ID=9  05_my' in str(caught.value)
-    assert settings.PROFILES_FILE not in str(caught.value)
-    two[settings.BETWEEN[0]] = '06_chat.ipynb'
+    assert domain_ids.PROFILES_FILE not in str(caught.value)
+    two[domain_ids.BETWEEN[0]] = '06_chat.ipynb'
     with pytest.raises(LabError) as caught:
         terminal.choose_domain()
-    assert f'export {settings.PROFILES_FILE}={settings.PROFILE}' in caught.value.todo
+    assert f'export {domain_ids.PROFILES_FILE}={domain_ids.PROFILE}' in caught.value.todo
     monkeypatch.setenv('ROS_DOMAIN_ID', '3')
     terminal.choose_domain()
     assert os.environ['ROS_DOMAIN_ID'] == '3'
