@@ -1,5 +1,8 @@
 """JupyterLab in this process, with a quiet log: its address, and what is wrong, each once.
 
+The kernel of the notebook on which it opens starts with it, not when the page asks for one: while
+JupyterLab is loaded, which takes longer, it gets ready.
+
 It is run by its path and imports nothing of labkit: what labkit sets for ROS is for kernels, not
 for the terminals that JupyterLab starts.
 """
@@ -53,6 +56,21 @@ def main(arguments: Sequence[str]) -> None:
     """
     from jupyterlab.labapp import LabApp
 
+    # Its options and its log are called by this name.
+    class ServerApp(LabApp.serverapp_class):  # type: ignore[misc]
+        def start_app(self) -> None:
+            super().start_app()
+            self.io_loop.add_callback(self._start_kernel)
+
+        async def _start_kernel(self) -> None:
+            path = self.default_url.partition('/lab/tree/')[2]
+            if path.endswith('.ipynb'):
+                # The page takes the kernel that its notebook has. What fails here, it says.
+                await self.session_manager.create_session(
+                    path=path, name=path.rpartition('/')[2], type='notebook'
+                )
+
+    LabApp.serverapp_class = ServerApp
     if not any(re.match(r'--debug$|--(\w+\.)?log[-_]level', word) for word in arguments):
         quiet = Quiet()
         for name in _LOGGERS:
