@@ -206,5 +206,5 @@ LESSON = Lesson(
     exercises=[first_node],
     quizzes=[_QUIZ],
     topics=['/greetings'],
-    given={'/first_node': 'first-node'},
+    given={'/first_node': 'first-node', '/listener': 'first-node'},
 )

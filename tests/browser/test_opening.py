@@ -18,9 +18,15 @@ from tests.browser.page import Notebook
 
 def test_first_lesson_opens_ready_to_run(tmp_path, browser):
     with JupyterLab(tmp_path / 'fresh') as jupyter:
+        # The kernel does not wait for the page, and the page takes the one that is there.
+        while not (sessions := jupyter.request('api/sessions')):
+            pass
+        assert [session['path'] for session in sessions] == [FIRST]
         # The address that is opened in the learner's browser, and nothing else.
         notebook = Notebook(browser.new_page()).open(jupyter.url)
         _look_at_first_lesson(notebook)
+        kernels = [session['kernel']['id'] for session in jupyter.request('api/sessions')]
+        assert kernels == [session['kernel']['id'] for session in sessions]
         notebook.close()
         # The terminal has the address, and no log; nor does each kernel warn there.
         assert not re.search(r'\[[IW] |WARNING', jupyter.log)
@@ -35,9 +41,18 @@ def _look_at_first_lesson(notebook: Notebook) -> None:
     # JupyterLab asks for the news when it is started, before a kernel can be idle.
     expect(page.locator('.jp-Dialog')).to_have_count(0)
     expect(page.locator('.Toastify__toast')).to_have_count(0)
-    first = next(cell['id'] for cell in notebook.cells() if cell['cell_type'] == 'code')
-    notebook.run_cell(first)
-    assert notebook.error_of(first) == ''
+    code = [cell['id'] for cell in notebook.cells() if cell['cell_type'] == 'code']
+    for cell_id in code[:2]:
+        notebook.run_cell(cell_id)
+        assert notebook.error_of(cell_id) == ''
+    # The lesson opens with a picture that lives: messages pass, and are counted.
+    output = notebook.output(code[1])
+    for name in ('/first_node publishes', '/listener subscribes'):
+        arrow = output.locator(f'[data-part][aria-label^="{name}"]')
+        expect(arrow).to_have_attribute('data-passed', re.compile(r'^[2-9]$|^\d\d'))
+    messages = output.locator('.labkit-monitor div', has_text='Messages').locator('dd')
+    expect(messages).to_have_text(re.compile(r'^[2-9]$|^\d\d'))
+    expect(output).to_contain_text("'Hello from ROS 2'")
     expect(page.locator('.jp-Dialog')).to_have_count(0)
     expect(page.locator('.Toastify__toast')).to_have_count(0)
 
