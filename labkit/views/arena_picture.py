@@ -45,7 +45,7 @@ _BUMP = '#c62828'
 
 @dataclass
 class Scene:
-    """What there is to see, in metres and radians, in the frame of the odometry.
+    """What there is to see, in metres and radians.
 
     Attributes:
         pose: Where the robot is; None if it is not known.
@@ -56,6 +56,7 @@ class Scene:
         nearest: Distance and direction of what is nearest, seen by the robot; None if nothing is.
         goals: Points to be marked.
         bump: Where it touches what has stopped it; None if nothing has.
+        frame: The frame of all that in words; '' if it is that of the odometry.
     """
 
     pose: Pose | None = None
@@ -66,6 +67,7 @@ class Scene:
     nearest: tuple[float, float] | None = None
     goals: Sequence[Point] = ()
     bump: Point | None = None
+    frame: str = ''
 
     def words(self) -> str:
         """Return the scene in words; '' if nothing is known of a robot."""
@@ -148,6 +150,8 @@ def to_svg(scene: Scene, text: str = '', *, least: float = LEAST, font: int = 11
         paper.goal(goal, str(number) if len(scene.goals) > 1 else '')
     if scene.bump is not None:
         paper.bump(scene.bump)
+    if scene.frame:
+        paper.name(scene.frame)
     text = html.escape(text or scene.words() or 'An empty map')
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
@@ -213,6 +217,13 @@ class _Paper:
                 self._label(3, float(py) - 3, f'{y:g} m' if y == 0 else f'{y:g}')
         self._label(WIDTH - 14, float(self.at((0, 0))[1]) - 3, 'x')
         self._label(float(self.at((0, 0))[0]) - 12, 12, 'y')
+
+    def name(self, frame: str) -> None:
+        """Say whose the axes are."""
+        self.parts.append(
+            f'<text x="{WIDTH - 8}" y="20" fill="#424242" text-anchor="end" '
+            f'stroke="#ffffff" stroke-width="4" paint-order="stroke">{html.escape(frame)}</text>'
+        )
 
     def _line(self, x1: str, y1: str, x2: str, y2: str, is_axis: bool) -> None:
         colour = '#9e9e9e' if is_axis else _GRID

@@ -325,7 +325,7 @@ function render({ model, el }) {
     const names = state.lines.map(({ label, unit }) => (unit ? `${label} in ${unit}` : label));
     chart.setAttribute('aria-label',
       `Lines over the time of the bag: ${names.join(', ')}. The table has the numbers.`);
-    chart.style.height = `${heightOf(state.lines)}px`;
+    chart.style.height = `${heightOf(state.lines)}em`;
   };
   const takeAll = (news, buffers) => {
     setText(title, news.name);

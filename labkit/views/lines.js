@@ -2,6 +2,8 @@
 
 const FRAME_MS = 50;
 const WORDS_MS = 500; // numbers that change more often can't be read
+// All lengths are those of a page with letters of so many pixels; with larger ones all is larger.
+const LETTERS = 14;
 const [LEFT, RIGHT, TOP, BOTTOM, GAP] = [64, 12, 10, 38, 14];
 const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 2], [1, 4]]; // see plot_picture.py
 const PANEL = { one: 230, many: 150 };
@@ -55,9 +57,10 @@ class Sheet {
     if (this.canvas.height !== Math.round(height * ratio)) {
       this.canvas.height = Math.round(height * ratio);
     }
-    this.context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    [this.width, this.height] = [width, height];
     const style = getComputedStyle(this.canvas);
+    const larger = Number.parseFloat(style.fontSize) / LETTERS;
+    this.context.setTransform(ratio * larger, 0, 0, ratio * larger, 0, 0);
+    [this.width, this.height] = [width / larger, height / larger];
     this.colour = (name) => style.getPropertyValue(`--labkit-${name}`).trim() || '#777';
     this.font = `12px ${style.fontFamily}`;
   }
@@ -190,9 +193,9 @@ class Legend {
   }
 }
 
-// How high the canvas of such lines is, in pixels.
+// How high the canvas of such lines is, in letters of the page.
 function heightOf(lines) {
   const units = new Set(lines.map(({ unit }) => unit)).size;
   const height = units < 2 ? PANEL.one : PANEL.many * units + GAP * (units - 1);
-  return height + TOP + BOTTOM;
+  return (height + TOP + BOTTOM) / LETTERS;
 }

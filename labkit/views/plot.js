@@ -106,7 +106,7 @@ function render({ model, el }) {
     el.setAttribute('aria-label', `Plot of ${names.join(', ')}`);
     canvas.setAttribute('aria-label',
       `Lines over the last ${data.seconds} s: ${names.join(', ')}. The table has the numbers.`);
-    canvas.style.height = `${heightOf(data.lines)}px`;
+    canvas.style.height = `${heightOf(data.lines)}em`;
   });
   el.append(element('div', { className: 'labkit-live-header' }, legend.table, button), note, canvas);
   frame = requestAnimationFrame(draw);

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from labkit import settings
-from labkit.lessons.turtlebot.drive import Drive
+from labkit.lessons.turtlebot.drive import Drive, Point
+from labkit.sim.kinematics import Pose
 from labkit.views.arena_picture import Scene, row, two
 from labkit.views.themed import as_source, themed
 
@@ -14,6 +15,8 @@ __all__ = ['observed']
 
 # So many pictures fit next to each other in a cell.
 ABREAST = 2
+# What is told of a drive is so, if that is what its task is about.
+FRAME = 'seen from the start'
 
 
 @contextmanager
@@ -41,15 +44,7 @@ def _show(drives: list[Drive]) -> None:
 def _show_row(drives: list[Drive]) -> None:
     from IPython.display import display
 
-    scenes = [
-        Scene(
-            pose=drive.end,
-            trail=[pose[:2] for _, pose in drive.poses],
-            scan=drive.walls,
-            goals=drive.goals,
-        )
-        for drive in drives
-    ]
+    scenes = list(map(_scene, drives))
     text = '\n'.join(map(_words, drives))
     drawing = row(scenes, text)
     forms = {'text/plain': text, 'image/svg+xml': drawing}
@@ -58,9 +53,26 @@ def _show_row(drives: list[Drive]) -> None:
     display(forms, raw=True)  # type: ignore[no-untyped-call]
 
 
+def _scene(drive: Drive) -> Scene:
+    """Return a drive as a scene, in the frame in which the verdict tells of it."""
+
+    def told(point: Point) -> Point:
+        return drive.told(Pose(*point, 0.0))[:2]
+
+    return Scene(
+        pose=drive.told(drive.end),
+        trail=[drive.told(pose)[:2] for _, pose in drive.poses],
+        scan=[None if end is None else told(end) for end in drive.walls],
+        goals=drive.goals,
+        frame=FRAME if drive.from_start else '',
+    )
+
+
 def _words(drive: Drive) -> str:
+    start, end = drive.told(drive.start), drive.told(drive.end)
+    frame = f', {FRAME}:' if drive.from_start else ''
     return (
-        f'Drive from x = {two(drive.start.x)} m, y = {two(drive.start.y)} m '
-        f'to x = {two(drive.end.x)} m, y = {two(drive.end.y)} m: '
+        f'Drive{frame} from x = {two(start.x)} m, y = {two(start.y)} m '
+        f'to x = {two(end.x)} m, y = {two(end.y)} m: '
         f'{two(drive.way())} m in {drive.duration:.1f} s, {len(drive.commands)} commands.'
     )

@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import Any
 
 from labkit.exercises.watch import Sample, Watch
-from labkit.sim.kinematics import Pose, Twist2, yaw_from_quaternion
+from labkit.sim.kinematics import Pose, Twist2, wrap_angle, yaw_from_quaternion
 
 __all__ = [
     'EMPTY',
@@ -98,7 +98,8 @@ class Drive:
         scans: Each scan: time in s, and the distances, m.
         sign: When the sign to start was given, s.
         number: The how manieth drive of the check it is, from 0.
-        goals: Where it should come by, m.
+        goals: Where it should come by, m, in the frame of `told`.
+        from_start: Whether places are told as the robot saw them from its start.
         walls: What the scanner saw near its end, beam by beam, m; None where that was nothing.
         exact: Whether its times are exact. Else it was driven in real time.
         margin: How far its times may be off, s.
@@ -111,6 +112,7 @@ class Drive:
     sign: float = 0.0
     number: int = 0
     goals: Sequence[Point] = ()
+    from_start: bool = False
     walls: Sequence[Point | None] = ()
     exact: bool = True
     margin: float = 1e-6
@@ -179,6 +181,21 @@ class Drive:
         """
         gaps = sorted(self.gaps)
         return gaps[len(gaps) // 10] if gaps else 0.0
+
+    def told(self, pose: Pose) -> Pose:
+        """Return a pose in the frame in which verdict and picture tell it.
+
+        Args:
+            pose: Of the odometry.
+
+        Returns:
+            The same; seen from the start, where the task is about that: x ahead, y to the left.
+        """
+        if not self.from_start:
+            return pose
+        (x, y, yaw), c, s = self.start, math.cos(self.start.yaw), math.sin(self.start.yaw)
+        dx, dy = pose.x - x, pose.y - y
+        return Pose(c * dx + s * dy, c * dy - s * dx, wrap_angle(pose.yaw - yaw))
 
     def way(self) -> float:
         """Return how far it drove, m."""

@@ -295,22 +295,9 @@ def _rounds(found: Drive) -> float:
     return found.way() / (4 * SIDE)
 
 
-def _on_floor(corner: Point, start: tuple[float, float, float]) -> Point:
-    """Return a corner in the frame of the odometry."""
-    (x, y, yaw), (ahead, left) = start, corner
-    c, s = math.cos(yaw), math.sin(yaw)
-    return x + c * ahead - s * left, y + s * ahead + c * left
-
-
 def _from_start(found: Drive) -> list[Point]:
-    """Return the path as the robot saw it at the start: x ahead, y to the left."""
-    start = found.start
-    c, s = math.cos(start.yaw), math.sin(start.yaw)
-    path = []
-    for _, pose in found.poses:
-        dx, dy = pose.x - start.x, pose.y - start.y
-        path.append((c * dx + s * dy, c * dy - s * dx))
-    return path
+    """Return the path as the robot saw it at the start."""
+    return [found.told(pose)[:2] for _, pose in found.poses]
 
 
 def _draw() -> list[Trial]:
@@ -319,10 +306,7 @@ def _draw() -> list[Trial]:
         (random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(-3, 3))
         for _ in range(2)
     ]
-    return [
-        Trial(start, goals=[_on_floor(corner, start) for corner in CORNERS[1:]])
-        for start in starts
-    ]
+    return [Trial(start, goals=CORNERS[1:], from_start=True) for start in starts]
 
 
 def _tell(drives: Sequence[Drive]) -> str:

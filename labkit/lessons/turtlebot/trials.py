@@ -72,13 +72,15 @@ class Trial:
     Attributes:
         start: Where the robot is put: x and y in m, yaw in rad.
         fields: Fields of the message that gives the sign.
-        goals: Where the robot should come by, for the picture, m.
+        goals: Where the robot should come by, m.
+        from_start: Whether that, and all that is told, is seen from the start.
         short_sighted: Whether the scanner says 0.0 where it sees nothing.
     """
 
     start: tuple[float, float, float]
     fields: Mapping[str, Any] = field(default_factory=dict)
     goals: Sequence[Point] = ()
+    from_start: bool = False
     short_sighted: bool = False
 
 
@@ -202,7 +204,7 @@ class Trials:
                 until=EndOfDrive(SIGN_SEC),
                 start=trial.start,
             )
-        found = Drive(sign=SIGN_SEC, goals=trial.goals)
+        found = Drive(sign=SIGN_SEC, goals=trial.goals, from_start=trial.from_start)
         if life.remote:
             found.margin = REMOTE_MARGIN_SEC
         found.take(life.on('/odom'), life.on('/cmd_vel'), life.on('/scan'))
@@ -339,6 +341,7 @@ class Trials:
             )
             sign = send(trial.fields)
             found = Drive(sign=sign, goals=trial.goals, exact=False, margin=REAL_MARGIN_SEC)
+            found.from_start = trial.from_start
             ended, commands = EndOfDrive(sign, REAL_TAIL_SEC), watches['/cmd_vel']
             end = sign + self.seconds + LONGER_SEC
             first = math.inf
