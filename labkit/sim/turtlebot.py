@@ -195,7 +195,7 @@ class Turtlebot(Node):
             return None
 
         def matched(info: Any) -> None:
-            if info.current_count_change > 0:
+            if info.total_count_change > 0:  # in all: another one may have gone meanwhile
                 publish()
 
         return PublisherEventCallbacks(matched=matched)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from labkit.background.patience import busyness
 from labkit.errors import LabError
 from labkit.sim.kinematics import BURGER, Pose, Twist2, wrap_angle
 from labkit.views.arena_picture import Scene, to_svg
@@ -43,7 +44,8 @@ AHEAD = math.radians(80)
 # Walls are remembered at one point of each square of this size, m.
 SQUARE = 0.02
 MOST_MET = 20_000
-# How long a picture waits for the first message of a topic that somebody publishes, s.
+# How long a picture waits for the first message of a topic that somebody publishes, s, on a calm
+# machine.
 FIRST_SEC = 1.0
 
 
@@ -75,6 +77,9 @@ class Arena(LivePage):
         self._heard_scan: tuple[object, Pose] | None = None
         self._ends: Any = None
         self._unseen: LaserScan | None = None
+        # A scan that came before it was known where the robot is: a robot that stands still may
+        # not send another one.
+        self._early: LaserScan | None = None
         # What the page does not know yet.
         self._fresh = True
         self._lifted = False
@@ -123,7 +128,7 @@ class Arena(LivePage):
         def enough() -> bool:
             return all(feed.topic in self._heard or not feed.publishers for feed in self._feeds)
 
-        with heard(self._feeds, enough, timeout_sec=FIRST_SEC):
+        with heard(self._feeds, enough, timeout_sec=FIRST_SEC * busyness()):
             pass
 
     def _on_odometry(self, message: Odometry) -> None:
@@ -148,6 +153,9 @@ class Arena(LivePage):
                 # A bump is told at once.
                 self._worded_at = 0.0 if scene.bump else self._worded_at
             scene.pose, scene.twist = motion
+            early, self._early = self._early, None
+            if early is not None:
+                self._on_scan(early)
             if way >= TRAIL_STEP:
                 self._trail.append(point)
                 self._new_trail += point
@@ -160,6 +168,7 @@ class Arena(LivePage):
         with self._lock:
             pose = self.scene.pose
             if pose is None:
+                self._early = message
                 return
             self._heard.add(self.scan)
             if self._heard_scan == (message.ranges, pose):

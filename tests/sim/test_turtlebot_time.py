@@ -52,6 +52,18 @@ def test_lockstep_tells_who_joins_where_the_robot_is(stage: Stage) -> None:
     assert robot.simulator.time == 0
 
 
+def test_lockstep_tells_who_takes_the_place_of_another(stage: Stage) -> None:
+    stage.robot(lockstep=0.1, x=0.7)
+    driver = stage.driver()
+    # As on a busy machine, the robot learns of both at once: there are no more than before.
+    earlier = next(s for s in driver.subscriptions if s.topic_name == '/odom')
+    driver.destroy_subscription(earlier)
+    heard: list[Odometry] = []
+    driver.create_subscription(Odometry, 'odom', heard.append, 10)
+    stage.until(lambda: heard)
+    assert heard[0].pose.pose.position.x == 0.7
+
+
 def test_lockstep_passes_exactly_the_time_it_was_given(stage: Stage) -> None:
     stage.robot(world=open_field(), lockstep=0.1)
     driver = stage.driver()

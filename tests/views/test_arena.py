@@ -92,6 +92,18 @@ def test_headless_it_is_a_picture_and_no_widget(start_kernel):
     assert shown(kernel.run('lab.arena()')) == data
 
 
+def test_scan_that_comes_before_the_odometry_is_not_lost(kernel):
+    kernel.run(ROBOT)
+    kernel.run(
+        'from nav_msgs.msg import Odometry\nfrom sensor_msgs.msg import LaserScan\n'
+        "scan = lab.wait_for_message('/scan', LaserScan)\n"
+        "odometry = lab.wait_for_message('/odom', Odometry)\n"
+        "view = lab.arena(odom='/elsewhere', scan='/nowhere')"
+    )
+    text = kernel.run('view._on_scan(scan)\nview._on_odometry(odometry)\nprint(view.text)').text
+    assert 'Nearest obstacle 1.81 m away' in text
+
+
 def test_closing_leaves_nothing(kernel):
     kernel.run(ROBOT)
     before = kernel.run(COUNT).text
