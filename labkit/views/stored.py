@@ -4,7 +4,8 @@ A widget lives as long as its kernel. In a notebook that is opened the next day 
 none, and what it keeps of widgets by itself (`saveState`) is lost again when the notebook is saved
 without the kernel. So a view has two outputs under its cell: its stored form, which is plain HTML
 that every viewer can show, and its widget. The style that comes with the stored form shows one of
-them: the widget while it is there, else the stored form.
+them: the widget while it is there, else the stored form. On paper it is the stored form always:
+what a widget draws is as dark as the page's theme.
 """
 
 from __future__ import annotations
@@ -71,7 +72,7 @@ class Stored:
                 words = html.escape(text)
                 body = f'<img src="data:{kind};base64,{source}" alt="{words}">'
         now = datetime.now()
-        words = f'Stored on {now.day} {now:%B %Y} at {now:%H:%M:%S}. {TODO}'
+        words = f'Stored on {now.day} {now:%B %Y} at {now:%H:%M:%S}. <span>{TODO}</span>'
         page = (
             f'<style class="labkit-style">{_style(self._mark)}</style>'
             f'<div class="labkit-stored {self._mark}-stored"><p>{words}</p>{body}</div>'
@@ -88,4 +89,7 @@ def _style(mark: str) -> str:
     """Return the style of the stored form, and what hides it while the view is there."""
     here = f'.jp-OutputArea:has(> .jp-OutputArea-child .{mark}.labkit-view)'
     stored = f'> .jp-OutputArea-child:has(.{mark}-stored)'
-    return f'{_rules()}\n{here} {stored} {{ display: none; }}'
+    return (
+        f'{_rules()}\n@media screen {{ {here} {stored} {{ display: none; }} }}'
+        f'\n@media print {{ .{mark}.labkit-view {{ display: none !important; }} }}'
+    )
