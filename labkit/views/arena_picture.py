@@ -22,6 +22,8 @@ Point = tuple[float, float]
 WIDTH, HEIGHT = 520, 400
 # Pictures in a row are smaller, and as far apart, in pixels.
 SMALL, GAP = 390, 20
+# A number takes so much room, pixels.
+EDGE = 40
 # What is shown at least: so far around the origin, m.
 LEAST = 1.0
 # Neighbouring beams end on the same wall if their ends are not further apart than this many times
@@ -208,7 +210,9 @@ class _Paper:
         for x in _multiples(step, (self.left + self.right) / 2, wide / 2):
             px, _ = self.at((x, 0))
             self._line(px, '0', px, str(HEIGHT), x == 0)
-            self._label(float(px) + 3, HEIGHT - 4, f'{x:g} m' if x == 0 else f'{x:g}')
+            # One that would be cut off at the right is left out.
+            if float(px) < WIDTH - EDGE:
+                self._label(float(px) + 3, HEIGHT - 4, f'{x:g} m' if x == 0 else f'{x:g}')
         for y in _multiples(step, (self.bottom + self.top) / 2, HEIGHT / self.scale / 2):
             _, py = self.at((0, y))
             self._line('0', py, str(WIDTH), py, y == 0)

@@ -107,7 +107,8 @@ class Map2d {
     this.y0 = (height + this.above) / 2 + scale * y;
     const style = getComputedStyle(this.canvas);
     this.colour = (name) => style.getPropertyValue(`--labkit-${name}`).trim() || '#777';
-    this.font = `${0.8 * parseFloat(style.fontSize)}px ${style.fontFamily}`;
+    this.letters = 0.8 * parseFloat(style.fontSize);
+    this.font = `${this.letters}px ${style.fontFamily}`;
   }
 
   px(x) { return this.x0 + this.scale * x; }
@@ -155,15 +156,16 @@ class Map2d {
     const text = (value) => (value === 0 ? '0 m' : `${Number(value.toFixed(1))}`);
     for (const x of multiples(left, right)) {
       this.line([[x, bottom], [x, top]], x === 0 ? 'axis' : 'grid', 1);
-      this.label(text(x), this.px(x) + 3, this.height - 4);
+      const end = this.px(x) + 3 + this.context.measureText(text(x)).width;
+      if (end <= this.width) this.label(text(x), this.px(x) + 3, this.height - 4);
     }
     for (const y of multiples(bottom, top)) {
       this.line([[left, y], [right, y]], y === 0 ? 'axis' : 'grid', 1);
       // The corner at the bottom is that of the labels along x.
-      if (this.py(y) < this.height - 20) this.label(text(y), 3, this.py(y) - 3);
+      if (this.py(y) < this.height - 1.8 * this.letters) this.label(text(y), 3, this.py(y) - 3);
     }
-    this.label('x', this.width - 10, this.py(0) - 4);
-    this.label('y', this.px(0) - 10, 11);
+    this.label('x', this.width - 0.9 * this.letters, this.py(0) - 4);
+    this.label('y', this.px(0) - 0.9 * this.letters, this.letters);
   }
 
   // What the scanner sees at once, from its eye to the ends of its beams.
