@@ -7,6 +7,10 @@ opens the lesson in JupyterLab, runs all of its cells, and saves a picture of ea
 one that starts at a cell. Cells that ended with an error are named. The README's picture is
 
     python -m tests.browser.screenshot 02 --cell listener-class --until listener-run --height 492
+
+and that of `docs/pictures`, with `--out docs/pictures --height 760`,
+
+    python -m tests.browser.screenshot 00 --cell first-node --until first-node
 """
 
 from __future__ import annotations
@@ -50,7 +54,7 @@ def main(argv: list[str] | None = None) -> int:
         if options.dark:
             notebook.execute('apputils:change-theme', theme='JupyterLab Dark')
         _run(notebook, options.until)
-        _take(notebook, options.out / name, options.cell)
+        _take(notebook, options.out / name, options.cell, '-dark' * options.dark)
         return _report(notebook)
 
 
@@ -82,14 +86,14 @@ def _run(notebook: Notebook, last: str) -> None:
             return
 
 
-def _take(notebook: Notebook, path: Path, cell_id: str) -> None:
+def _take(notebook: Notebook, path: Path, cell_id: str, ending: str) -> None:
     if cell_id:
         notebook.scroll_to_top(cell_id)
-        notebook.screenshot(f'{path}-{cell_id}.png')
+        notebook.screenshot(f'{path}-{cell_id}{ending}.png')
         return
     notebook.scroll_to_top(notebook.cells()[0]['id'])
     for number in range(1, 100):
-        notebook.screenshot(f'{path}-{number:02}.png')
+        notebook.screenshot(f'{path}-{number:02}{ending}.png')
         if not notebook.scroll_on():
             return
 
