@@ -146,8 +146,12 @@ class BackgroundExecutor(Executor):
 
     def wake(self) -> None:
         """Look anew at what there is. rclpy calls it when an entity was made or destroyed."""
-        self._stirred = True
         self._wait_set.give_up()
+        self._rouse()
+
+    def _rouse(self) -> None:
+        """End a wait, to look at what is under way. The entities are still the same."""
+        self._stirred = True
         super().wake()
 
     def remove_node(self, node: Node) -> None:
@@ -204,8 +208,7 @@ class BackgroundExecutor(Executor):
             owner = replace(first, cell=self._console.current_cell(), counts={}, budget=None)
         task = Task(callback, args, kwargs, executor=self)  # type: ignore[no-untyped-call]
         self._under_way.append(_UnderWay(task, owner, compat.callback_of(task)))
-        self._stirred = True
-        super().wake()
+        self._rouse()
         return task
 
     def spin(self) -> NoReturn:
@@ -303,7 +306,7 @@ class BackgroundExecutor(Executor):
         """
         with self._settle_lock:
             done = self._settling = threading.Event()
-            self.wake()
+            self._rouse()
             quiet = done.wait(timeout_sec)
             self._settling = None
         return quiet

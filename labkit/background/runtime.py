@@ -98,7 +98,8 @@ class Runtime:
     @property
     def executor(self) -> BackgroundExecutor:
         """Return the background executor; ROS is started if it is not up."""
-        self.start()
+        if not self.started:  # asked for at each moment of virtual time
+            self.start()
         assert self._executor is not None
         return self._executor
 

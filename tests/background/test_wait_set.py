@@ -94,6 +94,34 @@ print('gone')
     assert text == 'gone\n'
 
 
+def test_who_waits_until_it_is_quiet_has_nothing_gathered_anew(script):
+    text = output(
+        script,
+        """
+from labkit.background import wait_set
+
+wait_set.RENEW_SEC = float('inf')
+gathered = []
+gather = wait_set.KeptWaitSet._gather
+
+def note(*words):
+    gathered.append(words)
+    gather(*words)
+
+wait_set.KeptWaitSet._gather = note
+node.create_subscription(String, 'topic', on_message, 10)
+quiet()
+assert gathered
+gathered.clear()
+for number in range(100):
+    say(str(number))
+    quiet()
+print(len(heard), len(gathered))
+""",
+    )
+    assert text == '100 0\n'
+
+
 def test_a_callback_destroys_its_own_node_and_makes_one_of_the_same_name(script):
     text = output(
         script,
