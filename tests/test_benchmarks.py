@@ -27,6 +27,10 @@ ROWS = {
     'lessons': ['00_start_here'],
     'course': ['JupyterLab answers'],
     'bags': ['throughput: to mcap / bare', 'lost: to sqlite3', 'memory, second half: to mcap'],
+    'sim': [
+        *('headless with scan, playground', 'real time, CPU of the robot', '/odom stamps'),
+        *('real time, CPU of robot and open arena', 'on topics, speed=100', 'lock-step'),
+    ],
 }
 
 
@@ -40,7 +44,50 @@ def test_tables_have_figures(lab_env: dict[str, str], name: str) -> None:
         assert lines, row
         for line in lines:
             # Without an environment of the course there is no JupyterLab to start.
-            assert re.search(r'  \d+\.\d\d  |no \.venv', line), line
+            assert re.search(r'  -?\d+\.\d\d  |no \.venv', line), line
+
+
+@pytest.mark.parametrize(
+    ('ratios', 'turns'),
+    [
+        ([2.0, 2.1, 9.0], 2),
+        ([2.0, 2.5, 2.4], 3),
+        ([2.0, 4.0, 2.0, 4.0, 2.0, 4.0], 5),
+    ],
+)
+def test_turns_are_taken_until_their_ratio_has_settled(ratios: list[float], turns: int) -> None:
+    code = f"""
+from turns import take_turns
+
+order, ratios = [], {ratios!r}
+
+def slow():
+    order.append('slow')
+    # The machine is twice as busy each time, and that says nothing.
+    return {{'rate': 2.0 ** order.count('slow')}}
+
+def quick():
+    order.append('quick')
+    count = order.count('quick')
+    return {{'rate': ratios[count - 1] * 2.0 ** count}}
+
+seen = take_turns({{'slow': slow, 'quick': quick}}, ['rate'], 5)
+print(len(seen['slow']), len(seen['quick']), *order[:4])
+"""
+    done = subprocess.run(
+        [sys.executable, '-c', code], cwd=BENCHMARKS, capture_output=True, text=True, timeout=60
+    )
+    assert done.stdout == f'{turns} {turns} slow quick quick slow\n', done.stderr
+
+
+def test_python_without_the_packages_says_what_to_do() -> None:
+    command = [sys.executable, '-S', str(BENCHMARKS)]
+    told = subprocess.run([*command, '--help'], capture_output=True, text=True, timeout=60)
+    assert told.returncode == 0, told.stderr
+    assert all(f'  {name:<10}' in told.stdout for name in ROWS)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 2
+    assert done.stderr.endswith('`python3 -m labkit test --fast` makes it)\n')
 
 
 def test_a_missed_target_is_told() -> None:

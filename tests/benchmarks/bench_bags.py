@@ -16,9 +16,11 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 from table import Row
+from turns import Figures, take_turns
 
 from labkit.background import domains
 
@@ -133,28 +135,27 @@ print(json.dumps({{
 
 def tables(quick: bool) -> Iterator[tuple[str, list[Row]]]:
     """Measure, and give title and rows of each table."""
-    rounds = 1 if quick else 5
     claim = domains.claim_domain()
     try:
-        yield from _tables(quick, rounds, claim.domain_id)
+        yield from _tables(quick, claim.domain_id)
     finally:
         claim.close()
 
 
-def _tables(quick: bool, rounds: int, domain_id: int) -> Iterator[tuple[str, list[Row]]]:
+def _tables(quick: bool, domain_id: int) -> Iterator[tuple[str, list[Row]]]:
     for name, size, count, window in (
-        ('100 B', 100, 200 if quick else 40000, 500),
-        ('1 MB', 1_000_000, 20 if quick else 1000, 20),
+        ('100 B', 100, 200 if quick else 30000, 500),
+        ('1 MB', 1_000_000, 20 if quick else 600, 20),
     ):
-        seen: dict[str, list[dict[str, float]]] = {'bare': [], 'mcap': [], 'sqlite3': []}
-        for number in range(rounds):
-            order = list(seen)
-            for way in order[number % 3 :] + order[: number % 3]:
-                seen[way].append(_heard(way, size, count, window, domain_id))
+        ways = {
+            way: partial(_heard, way, size, count, window, domain_id)
+            for way in ('bare', 'mcap', 'sqlite3')
+        }
+        seen = take_turns(ways, ('rate',), 1 if quick else 3)
         yield f'Recording messages of {name}', list(_rows(seen, quick))
 
 
-def _rows(seen: dict[str, list[dict[str, float]]], quick: bool) -> Iterator[Row]:
+def _rows(seen: dict[str, list[Figures]], quick: bool) -> Iterator[Row]:
     typical = {
         way: {key: statistics.median(each[key] for each in found) for key in found[0]}
         for way, found in seen.items()
@@ -174,7 +175,7 @@ def _rows(seen: dict[str, list[dict[str, float]]], quick: bool) -> Iterator[Row]
         yield Row(f'memory, second half: {words[way]}', typical[way]['growth'], 'MB', limit)
 
 
-def _heard(way: str, size: int, count: int, window: int, domain_id: int) -> dict[str, float]:
+def _heard(way: str, size: int, count: int, window: int, domain_id: int) -> Figures:
     code = FLOOD + HEARER.format(publisher=FLOOD + PUBLISHER)
     storage = 'mcap' if way == 'bare' else way
     variables = {
@@ -196,5 +197,5 @@ def _heard(way: str, size: int, count: int, window: int, domain_id: int) -> dict
         )
     if done.returncode != 0:
         raise RuntimeError(done.stderr)
-    result: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
+    result: Figures = json.loads(done.stdout.splitlines()[-1])
     return result

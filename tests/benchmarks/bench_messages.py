@@ -11,10 +11,11 @@ import json
 import statistics
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from kernel import Kernel
 from table import Row
+from turns import Figures, take_turns
 
 __all__ = ['tables']
 
@@ -25,13 +26,13 @@ from std_msgs.msg import String
 
 # Other programs disturb most stretches of a busy machine, and slow down those they disturb. So
 # the throughput is that of the best tenth of the stretches.
-STRETCH = 100
+STRETCH = 50
 
 class Echo(Node):
-    def __init__(self, count, in_flight, finish):
+    def __init__(self, counts, finish):
         super().__init__('echo')
-        self.left, self.in_flight, self.finish = count, in_flight, finish
-        self.delays, self.sent, self.marks = [], [], []
+        # One message after the other for the delay; then ten on their way for the throughput.
+        self.runs, self.finish, self.found = [(counts[0], 1), (counts[1], 10)], finish, {}
         self.publisher = self.create_publisher(String, 'echo', 100)
         self.create_subscription(String, 'echo', self.on_message, 100)
         self.timer = self.create_timer(0.05, self.begin)
@@ -39,9 +40,11 @@ class Echo(Node):
 
     def begin(self):
         self.timer.cancel()
+        self.left, in_flight = self.runs.pop(0)
+        self.delays, self.sent, self.marks = [], [], []
         self.cpu = time.thread_time()
         self.marks.append(time.perf_counter())
-        for _ in range(self.in_flight):
+        for _ in range(in_flight):
             self.send()
 
     def send(self):
@@ -57,18 +60,24 @@ class Echo(Node):
         if self.left > 0:
             self.send()
         elif self.left == 0:
-            self.cpu = time.thread_time() - self.cpu
-            self.finish()
+            self.note(time.thread_time() - self.cpu)
+            if self.runs:
+                self.timer.reset()
+            else:
+                self.finish()
+
+    def note(self, cpu):
+        if self.runs:
+            delays = sorted(self.delays)
+            self.found['p50'] = 1e6 * delays[len(delays) // 2]
+            self.found['p99'] = 1e6 * delays[int(0.99 * (len(delays) - 1))]
+            self.found['cpu'] = 1e6 * cpu / len(delays)
+        else:
+            gaps = sorted(end - begin for begin, end in zip(self.marks, self.marks[1:]))
+            self.found['rate'] = STRETCH / gaps[len(gaps) // 10]
 
     def result(self):
-        delays = sorted(self.delays)
-        gaps = sorted(end - begin for begin, end in zip(self.marks, self.marks[1:]))
-        return json.dumps({
-            'p50': 1e6 * delays[len(delays) // 2],
-            'p99': 1e6 * delays[int(0.99 * (len(delays) - 1))],
-            'rate': STRETCH / gaps[len(gaps) // 10],
-            'cpu': 1e6 * self.cpu / len(delays),
-        })
+        return json.dumps(self.found)
 
 def make_others(count):
     others = []
@@ -95,7 +104,7 @@ def finish():
 from rclpy.executors import SingleThreadedExecutor
 
 rclpy.init()
-node = Echo({count}, {in_flight}, finish)
+node = Echo({counts}, finish)
 executor = SingleThreadedExecutor()
 others = make_others({others})
 for each in (node, *others):
@@ -113,7 +122,7 @@ import rclpy
 
 done = threading.Event()
 rclpy.init()
-node = Echo({count}, {in_flight}, done.set)
+node = Echo({counts}, done.set)
 thread = threading.Thread(target=rclpy.spin, args=(node,))
 thread.start()
 while not done.is_set():
@@ -128,7 +137,7 @@ import labkit as lab
 done = threading.Event()
 lab.start()
 others = [lab.spin(each) for each in make_others({others})]
-node = lab.spin(Echo({count}, {in_flight}, done.set))
+node = lab.spin(Echo({counts}, done.set))
 {wait}
 print(node.result())
 for each in (node, *others):
@@ -141,24 +150,22 @@ LOADED = 'while not done.is_set():\n    compute()'
 # Ratios of a kernel to a script that the course has set itself: p50 by the number of other nodes.
 QUIET = {'p99': {'at_most': 1.0}, 'rate': {'at_least': 2.5}, 'cpu': {'at_most': 0.45}}
 BUSY = {'p50': {'at_most': 1.0}, 'rate': {'at_least': 1.0}}
+MOST_TURNS = 5
 
 
 def tables(quick: bool) -> Iterator[tuple[str, list[Row]]]:
     """Measure, and give title and rows of each table."""
-    rounds = 1 if quick else 5
     with Kernel() as kernel:
         for others, most, counts in (
-            (0, 0.4, (4000, 8000)),
-            (10, 0.3, (1500, 4000)),
-            (40, 0.3, (500, 1500)),
+            (0, 0.4, (3000, 6000)),
+            (10, 0.3, (1000, 2000)),
+            (40, 0.3, (400, 800)),
         ):
             targets = {**QUIET, 'p50': {'at_most': most}}
-            counts = (50, 1000) if quick else counts
             title = f'A message, {others + 1} nodes, the main thread waits'
-            yield title, _rows(kernel, PLAIN, IDLE, counts, rounds, targets, others)
-        counts = (50, 1000) if quick else (500, 3000)
+            yield title, _rows(kernel, PLAIN, IDLE, counts, quick, targets, others)
         title = 'A message, the main thread computes'
-        yield title, _rows(kernel, PLAIN_LOADED, LOADED, counts, rounds, BUSY)
+        yield title, _rows(kernel, PLAIN_LOADED, LOADED, (300, 1500), quick, BUSY)
 
 
 def _rows(
@@ -166,26 +173,16 @@ def _rows(
     plain: str,
     wait: str,
     counts: tuple[int, int],
-    rounds: int,
+    quick: bool,
     targets: dict[str, dict[str, float]],
     others: int = 0,
 ) -> list[Row]:
-    # One message after the other for the delay; ten on their way at once for the throughput.
-    ways: dict[str, Callable[[int, int], dict[str, float]]] = {
-        'plain': lambda count, flight: _script(
-            plain.format(count=count, in_flight=flight, others=others)
-        ),
-        'kernel': lambda count, flight: json.loads(
-            kernel.run(
-                NODE + LABKIT.format(count=count, in_flight=flight, wait=wait, others=others)
-            )
-        ),
+    words = {'counts': (20, 100) if quick else counts, 'wait': wait, 'others': others}
+    ways = {
+        'plain': lambda: _script(plain.format(**words)),
+        'kernel': lambda: json.loads(kernel.run(NODE + LABKIT.format(**words))),
     }
-    seen: dict[str, list[dict[str, float]]] = {name: [] for name in ways}
-    for number in range(rounds):
-        for name in sorted(ways, reverse=bool(number % 2)):
-            delay, flood = ways[name](counts[0], 1), ways[name](counts[1], 10)
-            seen[name].append({**delay, 'rate': flood['rate']})
+    seen = take_turns(ways, ('p50', 'rate', 'cpu'), 1 if quick else MOST_TURNS)
 
     def typical(name: str, key: str) -> float:
         return statistics.median(each[key] for each in seen[name])
@@ -205,10 +202,10 @@ def _rows(
     return rows
 
 
-def _script(code: str) -> dict[str, float]:
+def _script(code: str) -> Figures:
     command = [sys.executable, '-c', NODE + code]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300)
     if done.returncode != 0:
         raise RuntimeError(done.stderr)
-    result: dict[str, float] = json.loads(done.stdout)
+    result: Figures = json.loads(done.stdout)
     return result

@@ -57,8 +57,8 @@ lab.spin(Talker())
 
 def tables(quick: bool) -> Iterator[tuple[str, list[Row]]]:
     """Measure, and give title and rows of each table."""
-    yield 'A kernel at rest', _at_rest(0.5 if quick else 20)
-    yield 'Starting', _starting(1 if quick else 7)
+    yield 'A kernel at rest', _at_rest(0.5 if quick else 10)
+    yield 'Starting', _starting(1 if quick else 5)
 
 
 def _at_rest(seconds: float) -> list[Row]:

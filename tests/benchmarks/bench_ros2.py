@@ -51,8 +51,8 @@ LINES = ['topic list', 'topic list -t', 'node list', 'node info /node_0', 'topic
 def tables(quick: bool) -> Iterator[tuple[str, list[Row]]]:
     """Measure, and give title and rows of each table."""
     for count in (3, 40):
-        yield f'%ros2 in a notebook with {count} nodes', _in_kernel(count, 20 if quick else 300)
-    yield 'ros2 in a terminal, alone', _in_terminal(1 if quick else 5)
+        yield f'%ros2 in a notebook with {count} nodes', _in_kernel(count, 20 if quick else 200)
+    yield 'ros2 in a terminal, alone', _in_terminal(1 if quick else 3)
 
 
 def _in_kernel(count: int, rounds: int) -> list[Row]:

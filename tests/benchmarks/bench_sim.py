@@ -1,12 +1,7 @@
-"""How fast the simulated robot is, and how evenly it speaks. Prints a table; judges nothing.
-
-python tests/benchmarks/bench_sim.py            # some 30 s
-python tests/benchmarks/bench_sim.py --quick    # does it run at all?
-"""
+"""How fast the simulated robot is, and how evenly it speaks."""
 
 from __future__ import annotations
 
-import argparse
 import itertools
 import json
 import os
@@ -14,11 +9,16 @@ import statistics
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from typing import Any
 
 from kernel import Kernel
+from table import Row
 
-Row = tuple[str, float, str]
+__all__ = ['tables']
+
+# Three times what the slowest machine that the course was made on simulated at first.
+GOALS = {'open_field': 2265, 'playground': 696, 'pillars': 591}
 
 # A robot in a process of its own, on labkit's background thread as in a notebook. It tells what
 # it cost when its standard input closes.
@@ -56,6 +56,29 @@ curve.linear.x, curve.angular.z = 0.1, 0.5
 driver.create_timer(0.1, lambda: commands.publish(curve))
 lab.wait_until(lambda: view.scene.pose.x > 0.05)
 """
+
+
+def tables(quick: bool) -> Iterator[tuple[str, list[Row]]]:
+    """Measure, and give title and rows of the table."""
+    from labkit.background.domains import claim_domain
+
+    before = dict(os.environ)
+    claim = claim_domain()
+    os.environ['ROS_DOMAIN_ID'] = str(claim.domain_id)
+    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    try:
+        rows = [
+            *headless(2 if quick else 300),
+            *real_time(1 if quick else 8),
+            *arena(1 if quick else 8),
+            *fast_time(0.2 if quick else 3),
+            *lockstep(30 if quick else 1000),
+        ]
+    finally:
+        claim.close()
+        os.environ.clear()
+        os.environ.update(before)
+    yield 'The simulated robot', rows
 
 
 class RobotProcess:
@@ -105,7 +128,8 @@ def headless(seconds: float) -> list[Row]:
             if step % 6 == 0:
                 robot.scan()
         rate = seconds / (time.perf_counter() - begin)
-        rows.append((f'headless with scan, {make.__name__}', rate, 'simulated s per s'))
+        goal = GOALS[make.__name__]
+        rows.append(Row(f'headless with scan, {make.__name__}', rate, 's per s', at_least=goal))
     return rows
 
 
@@ -147,7 +171,7 @@ def real_time(seconds: float) -> list[Row]:
     node.destroy_node()
     rclpy.shutdown()
     return [
-        ('real time, CPU of the robot', 100 * cost['cpu'] / cost['wall'], '% of a core'),
+        Row('real time, CPU of the robot', 100 * cost['cpu'] / cost['wall'], '% of a core'),
         *_gaps('/odom stamps, 33.3 ms', stamps),
         *_gaps('/odom arrivals, 33.3 ms', arrivals),
         *_gaps('/scan arrivals, 200 ms', scans),
@@ -159,7 +183,7 @@ def arena(seconds: float) -> list[Row]:
     with Kernel() as kernel:
         kernel.run(CIRCLES)
         share = kernel.cpu_share(seconds)
-    return [('real time, CPU of robot and open arena', share, '% of a core')]
+    return [Row('real time, CPU of robot and open arena', share, '% of a core', at_most=12)]
 
 
 def _gaps(what: str, times: list[float]) -> list[Row]:
@@ -167,10 +191,10 @@ def _gaps(what: str, times: list[float]) -> list[Row]:
     if not gaps:
         return []
     return [
-        (f'{what}: median', statistics.median(gaps), 'ms'),
-        (f'{what}: standard deviation', statistics.pstdev(gaps), 'ms'),
-        (f'{what}: 99 of 100 below', gaps[int(0.99 * (len(gaps) - 1))], 'ms'),
-        (f'{what}: longest', gaps[-1], 'ms'),
+        Row(f'{what}: median', statistics.median(gaps), 'ms'),
+        Row(f'{what}: standard deviation', statistics.pstdev(gaps), 'ms'),
+        Row(f'{what}: 99 of 100 below', gaps[int(0.99 * (len(gaps) - 1))], 'ms'),
+        Row(f'{what}: longest', gaps[-1], 'ms'),
     ]
 
 
@@ -183,8 +207,11 @@ def fast_time(seconds: float) -> list[Row]:
         time.sleep(seconds)
         cost = robot.end()
         rate = cost['time'] / cost['wall']
-        rows.append((f'on topics, speed={speed:g}', rate, 'simulated s per s'))
-        rows.append((f'on topics, speed={speed:g}, CPU', 100 * cost['cpu'] / cost['wall'], '%'))
+        # What is begun last may not have ended when it is looked at.
+        goal = 0.99 * speed
+        share = 100 * cost['cpu'] / cost['wall']
+        rows.append(Row(f'on topics, speed={speed:g}', rate, 's per s', at_least=goal))
+        rows.append(Row(f'on topics, speed={speed:g}, CPU', share, '% of a core', at_most=100))
     return rows
 
 
@@ -215,31 +242,4 @@ def lockstep(count: int) -> list[Row]:
     node.destroy_node()
     rclpy.shutdown()
     gaps = sorted(1e3 * (later - earlier) for earlier, later in itertools.pairwise(trips[10:]))
-    return [('lock-step, round trip: median', statistics.median(gaps), 'ms')]
-
-
-def main() -> None:
-    """Print the table."""
-    from labkit.background.domains import claim_domain
-
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--quick', action='store_true', help='only to see whether it runs')
-    quick = parser.parse_args().quick
-    claim = claim_domain()
-    os.environ['ROS_DOMAIN_ID'] = str(claim.domain_id)
-    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
-    rows = [
-        *headless(2 if quick else 300),
-        *real_time(1 if quick else 10),
-        *arena(1 if quick else 10),
-        *fast_time(0.2 if quick else 3),
-        *lockstep(30 if quick else 1000),
-    ]
-    claim.close()
-    width = max(len(what) for what, _, _ in rows)
-    for what, number, unit in rows:
-        print(f'{what:<{width}}  {number:>10.2f}  {unit}')
-
-
-if __name__ == '__main__':
-    main()
+    return [Row('lock-step, round trip: median', statistics.median(gaps), 'ms')]

@@ -41,7 +41,7 @@ SEEN = "view._widget._handle_custom_msg({'view': 'seen'}, [])"
 
 def tables(quick: bool) -> Iterator[tuple[str, list[Row]]]:
     """Measure, and give title and rows of the table."""
-    seconds, rounds = (1, 5) if quick else (6, 200)
+    seconds, rounds = (1, 5) if quick else (5, 100)
     rows: dict[str, list[Row]] = {}
     with Kernel() as kernel:
         kernel.run(TALKER)
