@@ -226,7 +226,8 @@ def test_output_is_counted_and_not_shown(kernel: Any) -> None:
         "    live(probe, {'/x': 'std_msgs/msg/String'}, 30.0, nodes={'/chatty'})\n"
         'probe.held_lines'
     ).text
-    assert text.strip() == '60'
+    # A busy machine has time for a bar that tells how far it is.
+    assert text.splitlines()[-1] == '60'
 
 
 STOPPED = """
@@ -260,7 +261,7 @@ def test_the_stop_button_ends_a_check_and_gives_time_back(kernel: Any) -> None:
     assert kernel.run('node.get_clock().ros_time_is_active').text == 'False\n'
     text = kernel.run("lab.wait_for_message('/ones', Int16, timeout_sec=20).data").text
     assert text == '1\n'
-    assert kernel.run('lesson.ones.check()').text.startswith('PASS')
+    assert 'PASS: ones' in kernel.run('lesson.ones.check()').text.splitlines()
 
 
 REMOTE = """
