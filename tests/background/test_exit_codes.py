@@ -11,14 +11,17 @@ from pathlib import Path
 
 import pytest
 
-# What the background thread is doing when the program ends, and how often each end is tried:
-# where callbacks come and go, chance decides at which step the end comes.
+# What the background thread is doing when the program ends.
+FAST = 'callbacks run fast'
 BUSY = {
-    'callbacks run fast': (10, 'self.publisher.publish(String(data="x"))'),
-    'a callback is in an endless loop': (3, 'while True: pass'),
-    'a callback sleeps': (3, 'time.sleep(1000)'),
-    'a callback waits for ever': (3, 'threading.Event().wait()'),
+    FAST: 'self.publisher.publish(String(data="x"))',
+    'a callback is in an endless loop': 'while True: pass',
+    'a callback sleeps': 'time.sleep(1000)',
+    'a callback waits for ever': 'threading.Event().wait()',
 }
+# How often an end is tried where callbacks come and go, so that chance decides at which step it
+# comes; else the thread stands where it stands. A kernel takes a second to start.
+SCRIPTS, KERNELS = 10, 5
 NODE = """
 import signal, sys, threading, time
 import labkit as lab
@@ -76,10 +79,10 @@ def started(command: list[str], env: dict[str, str]) -> Iterator[subprocess.Pope
 @pytest.mark.parametrize('work', BUSY)
 @pytest.mark.parametrize('end', ENDS)
 def test_script(lab_env: dict[str, str], tmp_path: Path, end: str, work: str) -> None:
-    count, callback = BUSY[work]
+    count = SCRIPTS if work == FAST else 1
     last_lines, exit_code = ENDS[end]
     path = tmp_path / 'script.py'
-    path.write_text(NODE.format(work=callback) + last_lines + '\n')
+    path.write_text(NODE.format(work=BUSY[work]) + last_lines + '\n')
     with ExitStack() as stack:
         command = [sys.executable, str(path)]
         processes = [stack.enter_context(started(command, lab_env)) for _ in range(count)]
@@ -98,10 +101,9 @@ def test_script(lab_env: dict[str, str], tmp_path: Path, end: str, work: str) ->
 @pytest.mark.parametrize('work', BUSY)
 @pytest.mark.parametrize('end', ['shutdown', 'exit()', 'SIGTERM'])
 def test_kernel(start_kernel: Callable[..., object], end: str, work: str) -> None:
-    count, callback = BUSY[work]
-    for _ in range(count if count > 3 else 2):  # a kernel takes a second to start
+    for _ in range(KERNELS if work == FAST else 1):
         kernel = start_kernel()
-        assert not kernel.run(NODE.format(work=callback)).error
+        assert not kernel.run(NODE.format(work=BUSY[work])).error
         if end == 'shutdown':
             exit_code = kernel.shutdown(TIMEOUT_SEC)
         else:
