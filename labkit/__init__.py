@@ -30,9 +30,11 @@ if TYPE_CHECKING:
     from labkit.bags.recorder import record
     from labkit.checkup.report import doctor
     from labkit.exercises.lesson import lesson
+    from labkit.exercises.membership import join_class, leave_class
     from labkit.exercises.progress import progress
     from labkit.packages.export import export
     from labkit.sim.turtlebot import Turtlebot
+    from labkit.teaching.classroom import classroom
     from labkit.views.arena import arena
     from labkit.views.bag import bag
     from labkit.views.graph import graph
@@ -50,11 +52,14 @@ __all__ = [
     'arena',
     'bag',
     'build',
+    'classroom',
     'doctor',
     'export',
     'graph',
     'image',
     'join',
+    'join_class',
+    'leave_class',
     'lesson',
     'listen',
     'monitor',
@@ -80,11 +85,14 @@ _HOMES = {
     'arena': 'labkit.views.arena',
     'bag': 'labkit.views.bag',
     'build': 'labkit.background.workspace',
+    'classroom': 'labkit.teaching.classroom',
     'doctor': 'labkit.checkup.report',
     'export': 'labkit.packages.export',
     'graph': 'labkit.views.graph',
     'image': 'labkit.views.image',
     'join': 'labkit.background.joining',
+    'join_class': 'labkit.exercises.membership',
+    'leave_class': 'labkit.exercises.membership',
     'lesson': 'labkit.exercises.lesson',
     'listen': 'labkit.background.waiting',
     'monitor': 'labkit.views.monitor',

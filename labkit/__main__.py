@@ -17,7 +17,11 @@ from labkit.errors import LabError, SetupError
 __all__ = ['main']
 
 # Command -> the module whose `main(argv)` runs it, given all that follows.
-_FORWARDED = {'progress': 'labkit.exercises.progress', 'ros2': 'labkit.ros2'}
+_FORWARDED = {
+    'classroom': 'labkit.teaching.command',
+    'progress': 'labkit.exercises.progress',
+    'ros2': 'labkit.ros2',
+}
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -182,7 +186,11 @@ def _parser() -> argparse.ArgumentParser:
     reset.add_argument('lesson', metavar='NN', help='number or name of the lesson')
     add('docs', 'Write docs/api.md anew from the docstrings of the public names')
     for name in _forwarded():
-        text = {'progress': 'Show what you have solved', 'ros2': 'The words of the ros2 command'}
+        text = {
+            'classroom': 'Show what the learners of a class share, or write it as a table',
+            'progress': 'Show what you have solved',
+            'ros2': 'The words of the ros2 command',
+        }
         commands.add_parser(name, help=text[name], add_help=False)
     return parser
 

@@ -6,12 +6,13 @@ import contextlib
 import os
 import secrets
 import stat
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO, Union
 
-__all__ = ['is_inside', 'rename_to_free', 'write_atomically']
+__all__ = ['is_inside', 'locked', 'rename_to_free', 'write_atomically']
 
 AnyPath = Union[str, 'os.PathLike[str]']
 
@@ -21,7 +22,14 @@ _PREFIX, _SUFFIX = '.labkit-', '.new'
 _NEW_MODE = 0o666
 
 
-def write_atomically(path: Path, content: bytes, *, replace: bool = True) -> None:
+def write_atomically(
+    path: Path,
+    content: bytes,
+    *,
+    replace: bool = True,
+    follow_links: bool = True,
+    mode: int | None = None,
+) -> None:
     """Put a file in its place, all of it or nothing, even if the machine is switched off.
 
     A file that is there keeps its permissions, a link stays a link and the file that it leads to
@@ -32,14 +40,18 @@ def write_atomically(path: Path, content: bytes, *, replace: bool = True) -> Non
         path: The file. Its folder has to be there.
         content: What it is to hold.
         replace: Whether a file of that name may be replaced.
+        follow_links: Whether a link stays. In a folder of others', one may lead anywhere: then
+            the link itself is replaced.
+        mode: Its permissions, whatever was there and whatever the umask says.
 
     Raises:
         FileExistsError: It is there, and is not to be replaced.
         OSError: It can't be written. Then all is as it was.
     """
-    target = Path(os.path.realpath(path)) if replace else path
+    target = Path(os.path.realpath(path)) if replace and follow_links else path
     _remove_leftovers(target.parent)
-    mode = _mode(target) if replace else None
+    if mode is None and replace and follow_links:
+        mode = _mode(target)
     try:
         with _new_file(target.parent, mode) as (new, file):
             file.write(content)
@@ -54,6 +66,32 @@ def write_atomically(path: Path, content: bytes, *, replace: bool = True) -> Non
         error.filename, error.filename2 = str(path), None
         raise
     _sync_folder(target.parent)
+
+
+@contextmanager
+def locked(path: Path, timeout_sec: float) -> Iterator[None]:
+    """Keep other processes out, as long as all of them ask here.
+
+    Args:
+        path: An empty file for the lock. It stays.
+        timeout_sec: Seconds to wait for others.
+
+    Raises:
+        OSError: Another process keeps it.
+    """
+    import fcntl  # only there on Unix
+
+    with path.open('w') as file:
+        end = time.monotonic() + timeout_sec
+        while True:
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            except BlockingIOError:
+                if time.monotonic() > end:
+                    raise OSError('another notebook keeps the file locked') from None
+                time.sleep(0.005)
+        yield
 
 
 def rename_to_free(old: Path, new: Path) -> None:

@@ -32,6 +32,7 @@ FLOORS = {
     'labkit.exercises': 6,
     'labkit.lessons': 7,
     'labkit.course': 8,
+    'labkit.teaching': 8,
     'labkit.hub': 8.1,
     'labkit': 9,
     'labkit.__main__': 9.1,

@@ -10,8 +10,9 @@ from labkit.exercises.progress_file import Store
 
 __all__ = ['ProgressStore', 'number_of', 'progress_store']
 
-# Of an answer that was typed, no more than this is kept.
+# Of an answer that was typed, and of the reason of a verdict, no more than this is kept.
 LONGEST_ANSWER = 200
+LONGEST_WHY = 1000
 
 
 class ProgressStore:
@@ -28,14 +29,24 @@ class ProgressStore:
         self.store = store or Store()
         self.after_change: list[Callable[[], None]] = []
 
-    def note_check(self, lesson: str, name: str, outcome: str) -> str:
-        """Note the outcome of a check; one that was not attempted is not counted."""
+    def note_check(
+        self, lesson: str, name: str, outcome: str, *, clause: str = '', why: str = ''
+    ) -> str:
+        """Note the outcome of a check; one that was not attempted is not counted.
+
+        Args:
+            lesson: The lesson.
+            name: The exercise.
+            outcome: PASS, FAIL, ERROR or NOT ATTEMPTED.
+            clause: What of the task is not fulfilled.
+            why: The misconception behind it.
+        """
         if not lesson or outcome == 'NOT ATTEMPTED':
             return ''
 
         def change(entry: dict[str, Any]) -> None:
             _note_try(entry, outcome == 'PASS')
-            entry['last'] = outcome
+            entry['last'], entry['clause'], entry['why'] = outcome, clause, why[:LONGEST_WHY]
 
         return self._change(lesson, 'exercises', name, change)
 
@@ -102,6 +113,7 @@ def _note_try(entry: dict[str, Any], right: bool) -> None:
     now = datetime.now(timezone.utc).isoformat(timespec='seconds')
     entry['tries'] = number_of(entry.get('tries')) + 1
     entry.setdefault('first_try', now)
+    entry['last_try'] = now
     if right:
         entry.setdefault('passed_at', now)
 

@@ -208,7 +208,13 @@ class Exercise:
 
     def _check(self) -> Verdict:
         verdict = self._examine()
-        note = progress_store.note_check(self.lesson, self.name, verdict.outcome.value)
+        note = progress_store.note_check(
+            self.lesson,
+            self.name,
+            verdict.outcome.value,
+            clause=verdict.clause,
+            why=verdict.why,
+        )
         if verdict.passed and self.belongs_to is not None:
             verdict = replace(verdict, standing=after(self, progress_store.store.read()[0]))
         return verdict if not note else verdict.with_note(note)

@@ -80,11 +80,13 @@ class Lesson:
     def begin(self) -> Lesson:
         """Get ready: called by `lab.lesson` in the setup cell."""
         from labkit.exercises.home import follow_progress
+        from labkit.exercises.membership import follow_class
 
         last_cell.follow()
         for exercise in self.exercises:
             exercise.begin()
         follow_progress()
+        follow_class(self.name)
         return self
 
     @property

@@ -9,16 +9,14 @@ from __future__ import annotations
 
 import contextlib
 import copy
-import fcntl
 import itertools
 import json
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from labkit import settings
-from labkit.files import rename_to_free, write_atomically
+from labkit.files import locked, rename_to_free, write_atomically
 
 __all__ = ['Store']
 
@@ -81,7 +79,7 @@ class Store:
         note = ''
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
-            with self._locked():
+            with locked(self.path.with_suffix('.lock'), LOCK_TIMEOUT_SEC):
                 try:
                     data = self._load()
                 except ValueError:
@@ -93,20 +91,6 @@ class Store:
         except OSError as error:
             return _empty(), f'Your progress could not be saved: {error}'
         return data, note
-
-    @contextlib.contextmanager
-    def _locked(self) -> Iterator[None]:
-        with self.path.with_suffix('.lock').open('w') as lock:
-            end = time.monotonic() + LOCK_TIMEOUT_SEC
-            while True:
-                try:
-                    fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                    break
-                except BlockingIOError:
-                    if time.monotonic() > end:
-                        raise OSError('another notebook keeps the file locked') from None
-                    time.sleep(0.005)
-            yield
 
     def _load(self) -> Data:
         """Return what the file holds.
