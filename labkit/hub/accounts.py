@@ -6,12 +6,14 @@ import grp
 import os
 import pwd
 import subprocess
-from collections.abc import Iterable
+import zlib
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from labkit.errors import LabError
+from labkit.hub.class_list import Member
 
-__all__ = ['GROUP', 'make_accounts']
+__all__ = ['GROUP', 'make_accounts', 'make_class_folder']
 
 GROUP = 'labkit-class'
 """The group of all accounts that were made here, by which they are told from others."""
@@ -50,6 +52,29 @@ def make_accounts(names: Iterable[str]) -> list[str]:
         home = Path(pwd.getpwnam(name).pw_dir)
         os.chmod(home, 0o700)
     return missing
+
+
+def make_class_folder(folder: Path, members: Sequence[Member]) -> None:
+    """Make sure that each member has a folder for what they share with the class.
+
+    Only its owner can write in it, and only teachers can read it, too. Nobody but root makes
+    folders beside it, so its name says for certain whose it is.
+
+    Args:
+        folder: Where these folders are. It is not for two classes.
+        members: The class; all have an account.
+    """
+    group = f'{GROUP}-{zlib.crc32(str(folder).encode()):08x}'
+    teachers = [member.name for member in members if member.teaches]
+    _run('groupadd', '--force', group)
+    _run('gpasswd', '--members', ','.join(teachers), group)
+    number = grp.getgrnam(group).gr_gid
+    places = [(folder, 0, 0o751)]
+    places += [(folder / m.name, pwd.getpwnam(m.name).pw_uid, 0o750) for m in members]
+    for place, owner, mode in places:
+        place.mkdir(exist_ok=True)
+        os.chown(place, owner, number)
+        place.chmod(mode)
 
 
 def _members() -> list[str]:

@@ -35,6 +35,10 @@ c.Spawner.start_timeout = c.Spawner.http_timeout = 180
 c.Spawner.mem_limit = '2G'
 # Nothing else of the hub's own variables: they belong to root's Python.
 c.Spawner.env_keep = ['PATH', 'LANG', 'LC_ALL', 'VIRTUAL_ENV']
+class_folder = os.environ.get('LABKIT_CLASS_FOLDER')
+if class_folder:
+    # For `lab.join_class()` and `lab.classroom()`.
+    c.Spawner.environment = {'LABKIT_CLASS_FOLDER': class_folder}
 learner = [sys.executable, '-m', 'labkit.hub.learner']
 image = os.environ.get('LABKIT_IMAGE')
 if image:

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy
 
 from labkit.errors import LabError
-from labkit.hub.accounts import make_accounts
+from labkit.hub.accounts import make_accounts, make_class_folder
 from labkit.hub.class_list import read_class
 from labkit.hub.passwords import FIRST_PASSWORDS, make_passwords
 from labkit.setup.compiler import fix_exported_paths
@@ -38,7 +38,8 @@ def main(words: Sequence[str]) -> int:
     if options.class_list is None:
         print('All that a hub needs is installed.')
         return 0
-    names = [member.name for member in read_class(options.class_list)]
+    members = read_class(options.class_list)
+    names = [member.name for member in members]
     anew = options.new_password
     if anew is not None and anew not in names:
         raise LabError(f'{anew!r} is not in {options.class_list.name}.')
@@ -49,6 +50,7 @@ def main(words: Sequence[str]) -> int:
         for name in make_accounts(names):
             print(f'{name} has an account now.')
         _check_access(names[0])
+        make_class_folder(_class_folder(options.folder), members)
     new = make_passwords(options.folder, names, anew=[anew] if anew else [])
     passwords = options.folder / FIRST_PASSWORDS
     if new:
@@ -56,11 +58,19 @@ def main(words: Sequence[str]) -> int:
     if anew is not None:
         return 0
     variables = environment_variables() | {'LABKIT_CLASS': str(options.class_list)}
-    variables |= {'LABKIT_IMAGE': options.image} if options.image else {}
+    if options.image is None:
+        variables['LABKIT_CLASS_FOLDER'] = str(_class_folder(options.folder))
+    else:
+        variables['LABKIT_IMAGE'] = options.image
     print(f'Starting JupyterHub for {len(names)}. To stop it, press Ctrl+C here.', flush=True)
     os.chdir(options.folder)
     command = [sys.executable, '-m', 'jupyterhub', '-f', str(_CONFIG), *options.arguments]
     os.execve(sys.executable, command, variables)
+
+
+def _class_folder(folder: Path) -> Path:
+    """Return the folder for what learners share: beside the hub's, which is closed to them."""
+    return folder.with_name(f'{folder.name}-class')
 
 
 def _check_access(name: str) -> None:

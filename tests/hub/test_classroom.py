@@ -1,0 +1,129 @@
+"""A class on a hub that shares its progress: who can write what, who can read it, who is named."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from hub.machine import Hub, Machine
+from hub.person import Notebook, Person, at_once
+
+from labkit.exercises.class_sheet import FILE_NAME
+
+NAMES = ('anna', 'ben', 'maria')
+TRY = (
+    'from labkit.exercises.attempts import progress_store\n'
+    'from labkit.exercises.membership import wait_until_sent\n'
+    'progress_store.note_check("talker_listener", "four_a_second", {!r})\n'
+    'print(wait_until_sent(60))'
+)
+
+
+@pytest.fixture(scope='module')
+def machine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
+    made = Machine(tmp_path_factory.mktemp('machine'))
+    yield made
+    made.end()
+
+
+@pytest.fixture(scope='module')
+def hub(machine: Machine) -> Iterator[Hub]:
+    # Where everybody can pass through, as through /var/lib.
+    folder = Path(tempfile.mkdtemp(prefix='labkit-hub-'))
+    folder.chmod(0o711)
+    yield Hub(machine, folder, 'anna\nben\nmaria teacher\n')
+    machine.end()
+    shutil.rmtree(folder)
+
+
+@pytest.fixture(scope='module')
+def notebooks(hub: Hub) -> dict[str, Notebook]:
+    """Everybody's notebook, open, and labkit loaded in it."""
+
+    def come_in(person: Person) -> Notebook:
+        person.log_in()
+        person.get_token()
+        person.start_server()
+        notebook = person.open_notebook('02_talker_listener.ipynb')
+        said = notebook.run('import labkit as lab\nlesson = lab.lesson("talker_listener")')
+        assert 'raised' not in said, said
+        return notebook
+
+    return at_once([Person(hub, name) for name in NAMES], come_in)
+
+
+def place(hub: Hub, name: str) -> str:
+    return f'{hub.state}-class/{name}'
+
+
+def test_a_class_joins_and_its_teacher_sees_it(notebooks: dict[str, Notebook], hub: Hub) -> None:
+    board = 'print(lab.classroom(names=True))'
+    assert 'Nobody shares' in notebooks['maria'].run(board)
+    for name, outcome in (('anna', 'PASS'), ('ben', 'FAIL')):
+        said = notebooks[name].run('print(lab.join_class())')
+        assert f'SHARED: your progress, as {name}' in said and 'your teachers' in said, said
+        assert 'True' in notebooks[name].run(TRY.format(outcome))
+    shown = notebooks['maria'].run(board)
+    assert 'Class: 2 share their progress, 2 at work, 0 stuck.' in shown, shown
+    assert 'four_a_second 1 passed 1 trying' in shown
+    assert '1 more of the class share nothing.' in shown
+    assert 'The names are those of their accounts.' in shown
+    assert 'can not be used' not in shown and 'others can write' not in shown
+
+
+@pytest.mark.parametrize(
+    'command',
+    [
+        'ls {folder}',
+        'ls {ben}',
+        'cat {ben}/{file}',
+        'touch {ben}/{file}',
+        'touch {folder}/zoe',
+        'mkdir {folder}/zoe',
+        'rm -r {ben}',
+        'mv {anna} {folder}/zoe',
+        'ln {ben}/{file} {anna}/more',
+    ],
+)
+def test_a_learner_neither_reads_nor_forges_what_is_anothers(
+    command: str, notebooks: dict[str, Notebook], hub: Hub
+) -> None:
+    words = {name: place(hub, name) for name in NAMES}
+    text = command.format(folder=f'{hub.state}-class', file=FILE_NAME, **words)
+    said = notebooks['anna'].run(f'!{text}')
+    assert 'Permission denied' in said or 'Operation not permitted' in said, said
+    assert hub.machine.run('test', '-s', f'{words["ben"]}/{FILE_NAME}').returncode == 0
+    assert hub.machine.run('test', '-e', f'{hub.state}-class/zoe').returncode != 0
+
+
+def test_what_a_learner_lays_into_their_own_folder_harms_nobody(
+    notebooks: dict[str, Notebook], hub: Hub
+) -> None:
+    mine = f'{place(hub, "anna")}/{FILE_NAME}'
+    for command, trouble in (
+        (f'rm {mine}; mkfifo {mine}', 'no ordinary file'),
+        (f'rm {mine}; ln -s {place(hub, "ben")}/{FILE_NAME} {mine}', 'a link'),
+        (f'rm {mine}; truncate --size 1G {mine}', 'too large'),
+        (f'chmod 000 {mine}', 'Permission denied'),
+        (f'chmod 000 {place(hub, "anna")}', 'Permission denied'),
+    ):
+        assert notebooks['anna'].run(f'!{command}').strip() == '', command
+        shown = notebooks['maria'].run('print(lab.classroom(names=True))')
+        (line,) = [line for line in shown.splitlines() if line.strip().startswith('anna')]
+        assert f'can not be used: {trouble}' in line, shown
+        assert any(line.strip().startswith('ben') for line in shown.splitlines()), shown
+    notebooks['anna'].run(f'!chmod 750 {place(hub, "anna")}')
+    # The next check puts it right.
+    assert 'True' in notebooks['anna'].run(TRY.format('FAIL'))
+    assert 'can not be used' not in notebooks['maria'].run('print(lab.classroom())')
+
+
+def test_who_leaves_is_gone(notebooks: dict[str, Notebook], hub: Hub) -> None:
+    assert 'LEFT' in notebooks['ben'].run('print(lab.leave_class())')
+    notebooks['ben'].run(TRY.format('PASS'))
+    assert hub.machine.run('ls', '-A', place(hub, 'ben')).stdout == ''
+    shown = notebooks['maria'].run('print(lab.classroom(names=True))')
+    assert 'Class: 1 share' in shown and 'ben' not in shown
