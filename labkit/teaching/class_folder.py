@@ -244,7 +244,8 @@ def _note(others: int, too_many: bool) -> str:
     parts = []
     if too_many:
         parts.append(
-            f'There are more names in the folder than a class has: {MOST_LEARNERS} are read.'
+            'There are more names in the folder than a class has; of at most '
+            f'{MOST_LEARNERS} learners something is read.'
         )
     if others:
         what = '1 thing' if others == 1 else f'{others} things'

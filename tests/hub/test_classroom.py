@@ -83,8 +83,8 @@ def test_a_class_joins_and_its_teacher_sees_it(notebooks: dict[str, Notebook], h
         'touch {ben}/{file}',
         'touch {folder}/zoe',
         'mkdir {folder}/zoe',
-        'rm -r {ben}',
-        'mv {anna} {folder}/zoe',
+        'rm -rf {ben}',
+        'mv -f {anna} {folder}/zoe',
         'ln {ben}/{file} {anna}/more',
     ],
 )
@@ -104,9 +104,9 @@ def test_what_a_learner_lays_into_their_own_folder_harms_nobody(
 ) -> None:
     mine = f'{place(hub, "anna")}/{FILE_NAME}'
     for command, trouble in (
-        (f'rm {mine}; mkfifo {mine}', 'no ordinary file'),
+        (f'rm {mine}; mkfifo -m 644 {mine}', 'no ordinary file'),
         (f'rm {mine}; ln -s {place(hub, "ben")}/{FILE_NAME} {mine}', 'a link'),
-        (f'rm {mine}; truncate --size 1G {mine}', 'too large'),
+        (f'rm {mine}; truncate -s 1G {mine}; chmod 644 {mine}', 'too large'),
         (f'chmod 000 {mine}', 'Permission denied'),
         (f'chmod 000 {place(hub, "anna")}', 'Permission denied'),
     ):
