@@ -221,7 +221,7 @@ def _steps(root: Path, requirements: Sequence[str]) -> list[list[str]]:
         for option in ('-r', name)
     ]
     return [
-        ['--require-hashes', '-r', LOCK],
+        ['--no-deps', '--require-hashes', '-r', LOCK],
         # The package of the folder itself has no hash. What builds it is there by now.
         ['--no-deps', '--no-build-isolation', '-e', '.'],
         *(['--no-deps', '--require-hashes', '-r', lock] for lock in locked),
