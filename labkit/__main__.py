@@ -55,9 +55,12 @@ def _run(words: list[str]) -> int:
     if others[:1] == ['--']:
         others = others[1:]
     if options.command == 'lab':
-        from labkit.course.jupyterlab import start_lab
+        from labkit.course.jupyterlab import prepare, start_lab
 
-        start_lab(others)
+        if not options.prepare:
+            start_lab(others)
+        prepare()
+        return 0
     if options.command == 'hub':
         from labkit.hub.command import run_hub
 
@@ -145,12 +148,13 @@ def _parser() -> argparse.ArgumentParser:
             name, help=text, description=f'{text}. {more}'.strip(), allow_abbrev=False
         )
 
-    add(
+    lab = add(
         'lab',
         'Make the environment if need be, and open the lessons in JupyterLab',
         'Options it does not know, and all after `--`, go to JupyterLab: '
         '`--no-browser`, `--port 9000`.',
     )
+    lab.add_argument('--prepare', action='store_true', help='install what is needed, and end')
     hub = add(
         'hub',
         'Start JupyterHub for a class, on this machine',

@@ -7,6 +7,7 @@ import platform
 import re
 import socket
 import subprocess
+import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NoReturn
@@ -14,9 +15,22 @@ from typing import NoReturn
 from labkit.course import learner_folder
 from labkit.errors import SetupError
 from labkit.settings import state_dir
-from labkit.setup.environment import ROOT, environment_variables, make_environment
+from labkit.setup.environment import (
+    PYTHON,
+    ROOT,
+    environment_variables,
+    make_environment,
+)
 
-__all__ = ['HOME', 'lesson_options', 'lesson_variables', 'start_lab', 'write_home']
+__all__ = [
+    'HOME',
+    'lesson_options',
+    'lesson_variables',
+    'prepare',
+    'start_command',
+    'start_lab',
+    'write_home',
+]
 
 # The page with all lessons; see `labkit.exercises.home`.
 HOME = 'Home.md'
@@ -32,9 +46,7 @@ def start_lab(arguments: Sequence[str]) -> NoReturn:
         SetupError: This machine, or a port that was asked for, does not allow it.
     """
     _check_port(arguments)
-    python = make_environment()
-    for sentence in learner_folder.copy_lessons():
-        print(sentence)
+    python = prepare()
     variables = lesson_variables()
     print('Starting JupyterLab. To stop it, press Ctrl+C here, twice. Its address:', flush=True)
     first = write_home(python, variables)
@@ -57,6 +69,36 @@ def start_lab(arguments: Sequence[str]) -> NoReturn:
     # Isolated: no module of the learner's takes the place of one that JupyterLab needs.
     server = str(Path(__file__).with_name('server.py'))
     os.execve(python, [str(python), '-I', server, *options, *arguments], variables)
+
+
+def prepare() -> Path:
+    """Make the environment, and bring the lessons up to date.
+
+    Returns:
+        The environment's interpreter.
+
+    Raises:
+        SetupError: This machine does not allow it.
+    """
+    python = make_environment()
+    for sentence in learner_folder.copy_lessons():
+        print(sentence)
+    return python
+
+
+def start_command(command: Sequence[str]) -> NoReturn:
+    """Become a command of somebody else's that starts JupyterLab, as Binder has one.
+
+    Its programs are taken from the environment, and it starts in the learner's folder.
+
+    Args:
+        command: The command. Its options are its own; what the course sets for JupyterLab lies in
+            a file, in the folder that the variable `JUPYTER_CONFIG_PATH` names.
+    """
+    variables = lesson_variables()
+    write_home(PYTHON, variables)
+    os.chdir(learner_folder.WORK)
+    os.execvpe(command[0], list(command), variables)
 
 
 def lesson_options() -> list[str]:
@@ -121,3 +163,7 @@ def _check_port(arguments: Sequence[str]) -> None:
                 f'Port {port} can not be used: {error}.',
                 todo='Give another one with --port, or none: then a free one is taken.',
             ) from error
+
+
+if __name__ == '__main__':
+    start_command(sys.argv[1:])
