@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Iterable, Sequence
 
@@ -78,12 +79,15 @@ def cell_name(filename: str) -> str:
         filename: `co_filename` of a code object.
 
     Returns:
-        `'Cell In[3]'`, or `''` when the file is not a cell of the running notebook.
+        `'Cell In[3]'`, or `''` when the file is not a cell of the running notebook. An IPython
+        before 8.0 does not tell the number: then it is `'Cell'`.
     """
     ipython = sys.modules.get('IPython')
     shell = ipython.get_ipython() if ipython is not None else None
     if shell is None:
         return ''
+    if not hasattr(shell.compile, 'format_code_name'):
+        return 'Cell' if f'{os.sep}ipykernel_{os.getpid()}{os.sep}' in filename else ''
     data = shell.compile.format_code_name(filename)
     return f'{data[0]} {data[1]}' if data is not None else ''
 

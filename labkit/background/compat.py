@@ -47,6 +47,7 @@ __all__ = [
     'take_all',
     'take_logs',
     'takers',
+    'write_for',
 ]
 
 # --- rclpy ---------------------------------------------------------------------------------------
@@ -202,7 +203,7 @@ def running_request() -> dict[str, Any]:
 
 
 def set_thread_request(request: dict[str, Any]) -> None:
-    """Let what the calling thread writes belong to a request of the kernel."""
+    """Let what the calling thread writes belong to a request of the kernel, if it can do that."""
     shell = _shell()
     if hasattr(shell, 'set_thread_parent'):
         shell.set_thread_parent(request)
@@ -210,7 +211,22 @@ def set_thread_request(request: dict[str, Any]) -> None:
     # Python 3.10 has an older ipykernel, which does the same for streams, but has no name for it.
     for name in ('stdout', 'stderr'):
         stream: Any = getattr(sys, name)
-        getattr(stream, 'target', stream)._parent_header.set(request['header'])
+        stream = getattr(stream, 'target', stream)
+        if hasattr(stream, '_parent_header'):
+            stream._parent_header.set(request['header'])
+
+
+def write_for(request: dict[str, Any], stream: Any, text: str) -> None:
+    """Write what belongs to a request, in a thread for which `set_thread_request` was called."""
+    if hasattr(stream, '_parent_header') or not is_kernel_stream(stream) or not request:
+        stream.write(text)
+        return
+    # In that of Google Colab (6.17) a stream knows nothing of threads.
+    publisher = _shell().display_pub
+    content = {'name': stream.name, 'text': text}
+    publisher.session.send(
+        publisher.pub_socket, 'stream', content, parent=request, ident=stream.topic
+    )
 
 
 def display_under(

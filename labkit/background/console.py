@@ -290,12 +290,13 @@ class Console:
             return
         lines = text.splitlines(keepends=True)[: MAX_LINES - cell.lines]
         cell.lines += sum(line.endswith('\n') for line in lines)
-        stream.write(''.join(map(_shortened, lines)))
+        compat.write_for(cell.parent, stream, ''.join(map(_shortened, lines)))
         if cell.lines >= MAX_LINES:
-            stream.write(
+            text = (
                 f'{MAX_LINES} lines are shown; what follows is not. The node goes on. '
                 'Run the cell again to see more, or end the node with lab.remove().\n'
             )
+            compat.write_for(cell.parent, stream, text)
 
     def _end_cell(self, *_: object) -> None:
         """Close the cell that ran before: what it still holds belongs to no wait."""

@@ -22,7 +22,11 @@ __all__ = ['install', 'is_learners', 'short_traceback', 'without_ros']
 
 _LABKIT = os.path.dirname(os.path.dirname(os.path.abspath(__file__))) + os.sep
 _RCLPY = os.path.dirname(os.path.abspath(rclpy.__file__)) + os.sep
-_LIBRARIES = (sysconfig.get_path('stdlib'), sysconfig.get_path('purelib'))
+# A kernel of somebody else's has packages in one folder, and ROS in another.
+_LIBRARIES = (
+    *(sysconfig.get_path('stdlib'), sysconfig.get_path('purelib')),
+    os.path.dirname(os.path.dirname(_RCLPY)),
+)
 _WITH_INIT = """
 This is written for a newer release of ROS 2. On Jazzy, rclpy.init() returns nothing, so it can not
 stand after `with`. Write instead:

@@ -40,7 +40,9 @@ def ros_packages() -> str:
     _compare(wanted)
     spec = importlib.util.find_spec('rclpy')
     origin = (spec.origin if spec is not None else None) or ''
-    if not is_inside(origin, os.path.join(sysconfig.get_path('platlib'), 'rclpy')):
+    # Not what Python was started with: a kernel may have entered the environment since.
+    own = sysconfig.get_path('platlib', vars={'platbase': sys.prefix})
+    if not is_inside(origin, os.path.join(own, 'rclpy')):
         raise LabError(
             f'Python takes rclpy from {origin!r}, not from its own environment {sys.prefix!r}.',
             todo='Start from a terminal where no ROS 2 has been sourced, and from a folder '
@@ -52,6 +54,10 @@ def ros_packages() -> str:
 def jupyter() -> str:
     """Look whether JupyterLab and what belongs to it are those of environment.txt."""
     wanted = {name: version for name, version in _pinned().items() if name in _JUPYTER}
+    spec = importlib.util.find_spec('ipykernel')
+    if spec is not None and not is_inside(spec.origin or '', sys.prefix, follow_links=False):
+        found = [f'{name} {_version(name)}' for name in _JUPYTER if _version(name)]
+        return f'not of this environment: {", ".join(found)}'
     _compare(wanted)
     return ', '.join(f'{name} {wanted[name]}' for name in _JUPYTER if name in wanted)
 
@@ -75,18 +81,23 @@ def _pinned() -> dict[str, str]:
 def _compare(wanted: dict[str, str]) -> None:
     missing, other = [], []
     for name, version in wanted.items():
-        try:
-            found = importlib.metadata.version(name)
-        except importlib.metadata.PackageNotFoundError:
+        found = _version(name)
+        if not found:
             missing.append(name)
-            continue
-        if found != version:
+        elif found != version:
             other.append(f'{name} {found} instead of {version}')
     if not missing and not other:
         return
     texts = [f'Missing: {first_few(missing)}.'] if missing else []
     texts += [f'Installed: {first_few(other)}.'] if other else []
     raise LabError(' '.join(texts), todo=_renew_environment())
+
+
+def _version(name: str) -> str:
+    try:
+        return importlib.metadata.version(name)
+    except importlib.metadata.PackageNotFoundError:
+        return ''
 
 
 def _renew_environment() -> str:

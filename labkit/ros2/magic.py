@@ -16,10 +16,14 @@ def register() -> None:
     if shell is None:
         return
     shell.register_magic_function(_ros2, 'line', 'ros2')
-    from IPython.core.completer import context_matcher
-
     matchers = shell.Completer.custom_matchers
-    if _complete not in matchers:
+    if _complete in matchers or _complete_word in matchers:
+        return
+    try:
+        from IPython.core.completer import context_matcher
+    except ImportError:  # before IPython 8.6, as in Google Colab
+        matchers.append(_complete_word)
+    else:
         context_matcher()(_complete)
         matchers.append(_complete)
 
@@ -58,15 +62,32 @@ def _complete(context: Any) -> dict[str, Any]:
     """Return what may stand at the cursor; called by IPython's completer in every line."""
     from IPython.core.completer import SimpleCompletion
 
-    magic, space, line = context.text_until_cursor.lstrip().partition(' ')
-    if magic != '%ros2' or not space:
+    last, words = _possible(context.text_until_cursor)
+    if not words:
         return {'completions': []}
-    from labkit.ros2.completion import complete_line
-
-    last, words = complete_line(line)
     return {
         'completions': [SimpleCompletion(text=word, type='ros2') for word in words],
         'matched_fragment': last,
         'ordered': True,
         'suppress': True,  # the words of Python have no place here
     }
+
+
+def _complete_word(text: str) -> list[str]:
+    """Return what may stand for `text` at the cursor, as an older IPython asks it."""
+    shell = sys.modules['IPython'].get_ipython()
+    last, words = _possible(shell.Completer.text_until_cursor)
+    # What is replaced ends at the cursor, but it need not begin where the command's word does.
+    start = len(last) - len(text)
+    return [word[start:] if start >= 0 else text[:-start] + word for word in words]
+
+
+def _possible(text: str) -> tuple[str, list[str]]:
+    """Return the word before the cursor, and what may stand there; nothing in other lines."""
+    magic, space, line = text.lstrip().partition(' ')
+    if magic != '%ros2' or not space:
+        return '', []
+    from labkit.ros2.completion import complete_line
+
+    last, words = complete_line(line)
+    return last, list(words)
