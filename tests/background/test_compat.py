@@ -257,6 +257,19 @@ def test_every_private_name_is_here():
         assert f'compat.{name}' in source, f'{name} has no contract test'
 
 
+def test_text_is_written_for_a_request(kernel):
+    kernel.run('import sys\nfrom labkit.background import compat')
+    write = 'compat.write_for(compat.running_request(), {}, "word\\n")'
+    stream = 'getattr(sys.stdout, "target", sys.stdout)'
+    assert kernel.run(write.format(stream)).text == 'word\n'
+    # As with the ipykernel of Google Colab; tests/setup/test_kernel.py has that one itself.
+    kernel.run(
+        'class Old:\n    name, topic = "stdout", b"stream.stdout"\n'
+        'compat.is_kernel_stream = lambda stream: True'
+    )
+    assert kernel.run(write.format('Old()')).text == 'word\n'
+
+
 def test_input_is_answered_by_a_function(kernel):
     kernel.run('from labkit.background import compat')
     kernel.run('compat.answer_input(lambda prompt: prompt.upper())')
