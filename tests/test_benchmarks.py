@@ -24,6 +24,7 @@ ROWS = {
     'ros2': ['topic list', 'node info', 'ros2 topic list'],
     'views': ['to the page: monitor', 'to the page: plot', 'an empty cell: monitor'],
     'soak': ['messages', 'memory at the end'],
+    'class': ['memory: talker', 'lost: with the robot', 'passed', 'processor time of a check'],
     'lessons': ['00_start_here'],
     'course': ['JupyterLab answers'],
     'bags': ['throughput: to mcap / bare', 'lost: to sqlite3', 'memory, second half: to mcap'],

@@ -34,6 +34,7 @@ BENCHES = {
 }
 # Longer, so only when named.
 LONG = {
+    'class': ('bench_class', 'tables', 'a class on one server, see docs/scale.md'),
     'soak': ('bench_soak', 'tables', 'a million messages, ten thousand nodes: what is left'),
     'lessons': ('bench_course', 'lessons', 'how long the test of each lesson takes'),
     'setup': ('bench_course', 'setup', 'the first start beside pip; both fetch from the network'),
