@@ -134,7 +134,12 @@ class Notebook:
             if label:
                 number = re.search(r'\d+', label)
                 source = ''.join(linecache.getlines(code.co_filename))
-                return Cell(label, int(number[0]) if number else 0, source)
+                if number:
+                    return Cell(label, int(number[0]), source)
+                # An IPython that does not tell numbers: it is the last one with that text.
+                text = source.rstrip()
+                same = (cell for cell in reversed(self.cells) if cell.source.rstrip() == text)
+                return next(same, Cell(label, 0, source))
         return None
 
 

@@ -178,3 +178,16 @@ def test_an_exercise_is_checked(kernel: Kernel) -> None:
     assert 'NOT ATTEMPTED' in kernel.run('lesson.count_up.check()')[1]
     kernel.run('exec(lesson.count_up.answer.code)')
     assert 'PASS' in kernel.run('lesson.count_up.check()')[1]
+
+
+def test_a_package_has_its_constants_first(kernel: Kernel) -> None:
+    kernel.run('import labkit as lab\nlab.start()\nfrom rclpy.node import Node\nPERIOD = 0.5')
+    kernel.run(
+        'class Odds(Node):\n    def __init__(self):\n        super().__init__("odds")\n'
+        '        self.create_timer(PERIOD, self.say)\n\n    def say(self):\n        pass'
+    )
+    _, text, _ = kernel.run(
+        'lab.export(Odds, package="odds_lab")\n'
+        'from pathlib import Path\nprint(next(Path.cwd().rglob("odds.py")).read_text())'
+    )
+    assert -1 < text.find('PERIOD = 0.5') < text.find('class Odds(Node)')
