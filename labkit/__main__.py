@@ -87,6 +87,11 @@ def _run(words: list[str]) -> int:
     if options.command == 'doctor':
         return _doctor(words)
     _enter_environment(words)
+    if options.command == 'lesson':
+        from labkit.course.live_coding import write_blank, write_solved
+
+        print((write_blank if options.blank else write_solved)(options.lesson))
+        return 0
     from labkit.course.record import record
 
     return record(options.lessons)
@@ -186,6 +191,19 @@ def _parser() -> argparse.ArgumentParser:
     record.add_argument(
         'lessons', nargs='*', metavar='NN', help='numbers or names; all if none is given'
     )
+    lesson = add(
+        'lesson',
+        'Write a lesson for a class into your folder',
+        'Made from the published lesson each time. What is there already goes to its backups.',
+    )
+    lesson.add_argument('lesson', metavar='NN', help='number or name of the lesson')
+    form = lesson.add_mutually_exclusive_group(required=True)
+    form.add_argument(
+        '--blank',
+        action='store_true',
+        help='headings, tasks and empty cells to type into; the rest goes to a page of notes',
+    )
+    form.add_argument('--solved', action='store_true', help='with solutions in their cells')
     reset = add('reset', 'Get a fresh copy of a lesson, and keep the old one as a backup')
     reset.add_argument('lesson', metavar='NN', help='number or name of the lesson')
     add('docs', 'Write docs/api.md anew from the docstrings of the public names')

@@ -25,7 +25,7 @@ def test_it():
     done = subprocess.run([sys.executable, '-c', CODE], capture_output=True)
     assert (done.returncode, done.stderr) == (0, b'')
 """
-COMMANDS = ('lab', 'test', 'doctor', 'record', 'reset')
+COMMANDS = ('lab', 'test', 'doctor', 'record', 'reset', 'lesson')
 
 
 @pytest.fixture
@@ -53,7 +53,18 @@ def test_help_of_every_command(capsys: pytest.CaptureFixture[str]) -> None:
         assert f'usage: labkit {command}' in capsys.readouterr().out
 
 
-@pytest.mark.parametrize('words', [[], ['lb'], ['doctor', '--colour'], ['reset'], ['--lab']])
+@pytest.mark.parametrize(
+    'words',
+    [
+        [],
+        ['lb'],
+        ['doctor', '--colour'],
+        ['reset'],
+        ['--lab'],
+        ['lesson', '04'],
+        ['lesson', '--blank'],
+    ],
+)
 def test_what_it_does_not_know(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main(words)

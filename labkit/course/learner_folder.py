@@ -18,7 +18,7 @@ from labkit.errors import LabError, SetupError
 from labkit.files import rename_to_free, write_atomically
 from labkit.setup.environment import ROOT
 
-__all__ = ['FIRST', 'WORK', 'copy_lessons', 'reset']
+__all__ = ['FIRST', 'WORK', 'copy_lessons', 'fresh_lesson', 'put', 'reset']
 
 LESSONS = ROOT / 'notebooks'
 # On a hub each learner has one in their home.
@@ -80,18 +80,43 @@ def reset(lesson: str) -> str:
     Raises:
         LabError: There is no such lesson, or more than one.
     """
+    name, fresh = fresh_lesson(lesson)
+    return put(name, fresh)
+
+
+def fresh_lesson(lesson: str) -> tuple[str, bytes]:
+    """Return the file name of a lesson, and what a learner's copy of it holds at first.
+
+    Args:
+        lesson: See `reset`.
+
+    Raises:
+        LabError: There is no such lesson, or more than one.
+    """
     name = _find(lesson)
+    return name, _fresh(name)
+
+
+def put(name: str, fresh: bytes) -> str:
+    """Put a file into the learner's folder; keep what is there in `backups`, unless it is equal.
+
+    Args:
+        name: File name.
+        fresh: What it is to hold.
+
+    Returns:
+        A sentence that says what was done.
+    """
     copy_lessons()
-    fresh = _fresh(name)
     path = WORK / name
     if path.is_file() and path.read_bytes() == fresh:
         return f'{path} is a fresh copy already.'
-    backup = _back_up(path, name)
+    backup = _back_up(path, name) if os.path.lexists(path) else None
     write_atomically(path, fresh)
     record = _read_record()
     record[name] = _digest(fresh)
     write_atomically(WORK / RECORD, json.dumps(record, indent=1).encode())
-    return f'{path} is a fresh copy. The old one is {backup}.'
+    return f'{path} is a fresh copy.' + (f' The old one is {backup}.' if backup else '')
 
 
 # --- Lessons and copies --------------------------------------------------------------------------
