@@ -21,6 +21,7 @@ __all__ = [
     'notebook_name',
     'prepare_environment',
     'state_dir',
+    'variant_seed',
 ]
 
 # What `prepare_environment` has taken out of the environment, with the values.
@@ -118,3 +119,14 @@ def state_dir() -> Path:
         return Path(home)
     data = os.environ.get('XDG_DATA_HOME') or Path.home() / '.local' / 'share'
     return Path(data) / 'labkit'
+
+
+def variant_seed() -> str:
+    """Return whose numbers and names exercises ask for, `''` for those of the notebook.
+
+    It is `$LABKIT_VARIANT`; with `LABKIT_VARIANTS=1`, as a hub sets it for all, the user's name.
+    """
+    seed = os.environ.get('LABKIT_VARIANT', '').strip()
+    if not seed and os.environ.get('LABKIT_VARIANTS', '') not in ('', '0'):
+        seed = os.environ.get('JUPYTERHUB_USER', '').strip()
+    return seed

@@ -24,6 +24,7 @@ from labkit.views.solution import SolutionCard
 
 if TYPE_CHECKING:
     from labkit.exercises.lesson import Lesson
+    from labkit.exercises.variants import Variants
 
 __all__ = ['Exercise', 'Solution', 'Style', 'Wrong', 'changed']
 
@@ -159,6 +160,9 @@ class Exercise:
     def __post_init__(self) -> None:
         self.lesson = ''
         self.belongs_to: Lesson | None = None
+        # What it may be for others, and whose it is; '' if it is what the notebook tells.
+        self.variants: Variants | None = None
+        self.seed = ''
         self.scope = Scope(
             publishes=self.publishes,
             subscribes=self.subscribes,
@@ -196,6 +200,11 @@ class Exercise:
         if self._recorder is not None:
             self._recorder.forget()
 
+    def keep(self, verdict: Verdict) -> None:
+        """Say the same again, as long as nothing new is there."""
+        with Probe(self.name, self.scope) as probe:
+            self._before = (probe.fingerprint(), verdict)
+
     def check(self) -> Verdict | Pending:
         """Look at what your nodes do, and say whether it is what the task asks for.
 
@@ -207,7 +216,9 @@ class Exercise:
         return Pending(self.name, self._check) if learner_task_runs() else self._check()
 
     def _check(self) -> Verdict:
-        verdict = self._examine()
+        verdict = self.examine()
+        if self.variants is not None and self.seed:
+            verdict = self.variants.recognise(self, verdict)
         note = progress_store.note_check(
             self.lesson,
             self.name,
@@ -262,7 +273,8 @@ class Exercise:
 
     # -- the check ------------------------------------------------------------------------------
 
-    def _examine(self) -> Verdict:
+    def examine(self) -> Verdict:
+        """Look at what the learner's nodes do; nothing is noted."""
         recorded = self._recorder.watches() if self._recorder is not None else {}
         try:
             with Probe(self.name, self.scope, recorded=recorded) as probe:
@@ -328,7 +340,9 @@ class Exercise:
             return self._learner_error(error)
         except NotAttempted as nothing:
             text = str(nothing) or (STARTING if probe.something_is_starting() else NOTHING_YET)
-            return Verdict(Outcome.NOT_ATTEMPTED, self.name, text)
+            # Of a variant the notebook does not tell the task.
+            clause = self._asked() if self.seed else ''
+            return Verdict(Outcome.NOT_ATTEMPTED, self.name, text, clause=clause)
         except Fail as fail:
             return Verdict(
                 Outcome.FAIL,

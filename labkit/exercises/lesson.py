@@ -14,6 +14,7 @@ from labkit.exercises.exercise import Exercise
 from labkit.exercises.learner_errors import last_cell
 from labkit.exercises.quiz import Quiz
 from labkit.exercises.scope import Role
+from labkit.exercises.variants import variants_card
 from labkit.views.card import Card
 
 __all__ = ['Lesson', 'NoSuchNameError', 'all_lessons', 'lesson', 'lesson_names']
@@ -87,6 +88,11 @@ class Lesson:
             exercise.begin()
         follow_progress()
         follow_class(self.name)
+        card = variants_card(self.exercises)
+        if card is not None:
+            from IPython.display import display
+
+            display(card)  # type: ignore[no-untyped-call]
         return self
 
     @property

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
-from labkit.exercises import Exercise, Outcome, Solution, Style, Wrong, changed, expect
+from labkit.exercises import Exercise, Outcome, Probe, Solution, Style, Wrong, changed, expect
 from labkit.exercises.clauses import Answers, Evidence
 from labkit.exercises.draws import draw_texts
+from labkit.exercises.life import Stimulus, live
+from labkit.exercises.variants import varied
 from labkit.lessons._script import in_process, started_by_subprocess
 from labkit.lessons.my_name_is.two_stages import STRING
 
@@ -55,11 +58,11 @@ class _AtTheEnd(Answers):
         super().find(evidence)
 
 
-def _explain(text: str, came: Sequence[str]) -> tuple[str, str]:
+def _explain(text: str, came: Sequence[str], ending: str = ENDING) -> tuple[str, str]:
     if not came:
         return '', ''
     if text in came:
-        return 'The text is passed on as it came: nothing is added.', f'msg.data + {ENDING!r}'
+        return 'The text is passed on as it came: nothing is added.', f'msg.data + {ending!r}'
     if not any(text in other for other in came):
         return (
             'What goes out does not hold the text that came in: the string is made beforehand, or '
@@ -67,10 +70,10 @@ def _explain(text: str, came: Sequence[str]) -> tuple[str, str]:
             'Make the string in the callback, of msg.data as it is.',
         )
     beginning = next((other for other in came if other.startswith(text)), '')
-    return expect.text_trouble(beginning, text + ENDING), 'Compare the two texts.'
+    return expect.text_trouble(beginning, text + ending), 'Compare the two texts.'
 
 
-third_stage = Exercise(
+_USUAL = Exercise(
     name='third_stage',
     task=f'A node that appends {ENDING!r} to each text of /complete, and publishes it on '
     '/greeting.',
@@ -322,4 +325,94 @@ lab.spin(node)
             'does not hold the text that came in',
         ),
     ],
+)
+
+
+_GREETINGS = (
+    'Good to see you',
+    'How nice to be here',
+    'It is a pleasure',
+    'Pleased to meet you',
+    'Thank you for having me',
+    'What a lovely day',
+)
+_CITIES = [
+    'Aarhus',
+    'Athens',
+    'Bergen',
+    'Berlin',
+    'Bilbao',
+    'Bogota',
+    'Cairo',
+    'Dublin',
+    'Geneva',
+    'Ghent',
+    'Hanoi',
+    'Helsinki',
+    'Jena',
+    'Kyoto',
+    'Leiden',
+    'Lima',
+    'Lisbon',
+    'Lyon',
+    'Malmo',
+    'Nairobi',
+    'Odessa',
+    'Oslo',
+    'Paris',
+    'Perth',
+    'Porto',
+    'Prague',
+    'Quito',
+    'Riga',
+    'Rome',
+    'Seoul',
+    'Sofia',
+    'Tartu',
+    'Tunis',
+    'Turin',
+    'Utrecht',
+    'Vienna',
+    'Warsaw',
+    'York',
+    'Zagreb',
+]
+
+
+def _variant(*, ending: str) -> Exercise:
+    return replace(
+        _USUAL,
+        task=_USUAL.task.replace(repr(ENDING), repr(ending)),
+        clauses=(
+            _AtTheEnd(
+                '/complete',
+                '/greeting',
+                _USUAL.clauses[0].text.replace(ENDING, ending),
+                answer=lambda text: f'{text}{ending}',
+                draw=draw_texts,
+                explain=partial(_explain, ending=ending),
+            ),
+        ),
+        hints=[hint.replace(repr(ENDING), repr(ending)) for hint in _USUAL.hints],
+        answer=Solution(changed(_POLITE, (ENDING, ending)), _USUAL.answer.reason),
+        styles=(),
+        wrong=(),
+    )
+
+
+def _guess(probe: Probe) -> dict[str, str] | None:
+    node = expect.publisher(probe, '/greeting').node
+    text = 'My name is Ada'
+    test = Stimulus(1.0, '/complete', STRING, {'data': text}, ['/greeting'])
+    topics = {'/complete': STRING, '/greeting': STRING}
+    came = live(probe, topics, 3.0, stimuli=[test], nodes=[node]).on('/greeting')
+    said = came[-1].message.data if came else ''
+    return {'ending': said.removeprefix(text)} if said.startswith(text) else None
+
+
+third_stage = varied(
+    _USUAL,
+    _variant,
+    _guess,
+    ending=[f'. {greeting} in {city}.' for greeting in _GREETINGS for city in _CITIES],
 )

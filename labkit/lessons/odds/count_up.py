@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
-from labkit.exercises import Exercise, Solution, Style, Wrong, changed, expect
-from labkit.exercises.clauses import Messages, Publishes, Stream
+from labkit.exercises import Exercise, Probe, Solution, Style, Wrong, changed, expect
+from labkit.exercises.clauses import Messages, Publishes, Stream, often
+from labkit.exercises.life import live
+from labkit.exercises.variants import varied
 from labkit.lessons._script import in_process, two_copies
 
 __all__ = ['count_up']
 
 INT16 = 'std_msgs/msg/Int16'
-# Fewer messages than odd numbers fit into an Int16: until then nothing has started over.
-BEFORE_THE_LIMIT = 16000
+# The first number that does not fit into an Int16.
+LIMIT = 2**15
 
 _ODDS = """
 from rclpy.node import Node
@@ -37,49 +41,63 @@ odds = lab.spin(Odds())
 """
 
 
-def _odd_numbers(stream: Stream) -> str:
-    expect.each(
-        stream,
-        'data',
-        lambda value: value % 2 == 1,
-        expected='odd numbers on /odds: 1, 3, 5, ...',
-        why=_why_even(stream.values('data')),
-        todo='Start with 1, and add 2 each time.',
-    )
-    expect.steps(
-        stream,
-        'data',
-        2,
-        todo='Keep the number in the node (self.number = 1 in __init__), and add 2 in the '
-        'callback.',
-    )
-    if stream.samples[0].number < BEFORE_THE_LIMIT:
-        expect.first(
+@dataclass(frozen=True)
+class _OddNumbers:
+    """The rule that the numbers follow."""
+
+    first: int = 1
+    step: int = 2
+
+    @property
+    def words(self) -> str:
+        """The first of them: `'1, 3, 5, ...'`."""
+        return f'{self.first}, {self.first + self.step}, {self.first + 2 * self.step}, ...'
+
+    def __call__(self, stream: Stream) -> str:
+        first, step = self.first, self.step
+        expect.each(
             stream,
             'data',
-            1,
-            2,
-            why='The count does not start with 1. Is the number changed before it is published '
-            'for the first time?',
+            lambda value: value % 2 == 1,
+            expected=f'odd numbers on /odds: {self.words}',
+            why=_why_even(stream.values('data'), step),
+            todo=f'Start with {first}, and add {step} each time.',
         )
-    return f'The numbers are {expect.show(stream.values("data"))}.'
+        expect.steps(
+            stream,
+            'data',
+            step,
+            todo=f'Keep the number in the node (self.number = {first} in __init__), and add '
+            f'{step} in the callback.',
+        )
+        # Until so many odd numbers have come that an Int16 holds no more, none starts over.
+        if stream.samples[0].number < (LIMIT - first) // step - 383:
+            expect.first(
+                stream,
+                'data',
+                first,
+                step,
+                why=f'The count does not start with {first}. Is the number changed before it is '
+                'published for the first time?',
+            )
+        return f'The numbers are {expect.show(stream.values("data"))}.'
 
 
-def _why_even(values: Sequence[int]) -> str:
+def _why_even(values: Sequence[int], step: int) -> str:
     if len(set(values[1:])) == 1:
         return f'Every message says {values[1]}: the number is not changed after each message.'
     if any(value % 2 for value in values):
-        return 'Odd and even numbers come in turn: 1 is added, and not 2.'
+        return f'Odd and even numbers come in turn: 1 is added, and not {step}.'
     return 'These are even numbers. 2 more than an even number is even again.'
 
 
-count_up = Exercise(
+_USUAL = Exercise(
     name='count_up',
     task='Publish the odd numbers 1, 3, 5, ... on /odds as `Int16`, five a second.',
     publishes={'/odds': INT16},
     clauses=(
         Publishes('/odds', 5.0, INT16),
-        Messages('/odds', 'the odd numbers 1, 3, 5, ..., one a message', _odd_numbers),
+        Messages('/odds', 'the odd numbers 1, 3, 5, ..., one a message', _OddNumbers()),
     ),
     hints=[
         'The callback runs again and again. What must outlive one run, so that the next one can '
@@ -282,4 +300,59 @@ lab.spin(node)
             'The step changes',
         ),
     ],
+)
+
+
+def _variant(*, first: int, step: int, hz: float) -> Exercise:
+    numbers = _OddNumbers(first, step)
+    period = f'{1 / hz:g}'
+    code = changed(
+        _ODDS,
+        ('self.number = 1', f'self.number = {first}'),
+        ('self.number += 2', f'self.number += {step}'),
+        ('create_timer(0.2,', f'create_timer({period},'),
+    )
+    rate = often(hz).partition(' (')[0]
+    return replace(
+        _USUAL,
+        task=f'Publish the odd numbers {numbers.words} on /odds as `Int16`, {rate}.',
+        clauses=(
+            Publishes('/odds', hz, INT16),
+            Messages('/odds', f'the odd numbers {numbers.words}, one a message', numbers),
+        ),
+        hints=[
+            _USUAL.hints[0],
+            'A variable of the callback is gone when the callback returns. An attribute of the '
+            f'node stays: self.number = {first} in __init__.',
+            'In the callback: msg.data = self.number, publish it, then self.number += '
+            f'{step}. The period is {period} s.',
+        ],
+        answer=Solution(code, changed(_USUAL.answer.reason, ('says 1', f'says {first}'))),
+        styles=(),
+        wrong=(),
+    )
+
+
+def _guess(probe: Probe) -> dict[str, Any] | None:
+    source = expect.publisher(probe, '/odds')
+    samples = live(probe, {'/odds': INT16}, 5.0, nodes=[source.node]).on('/odds')
+    if len(samples) < 3:
+        return None
+    (first, second), gap = samples[:2], samples[2].at - samples[1].at
+    step = second.message.data - first.message.data
+    return {
+        'first': first.message.data - step * (first.number - 1),
+        'step': step,
+        'hz': round(1 / gap, 3) if gap else 0.0,
+    }
+
+
+count_up = varied(
+    _USUAL,
+    _variant,
+    _guess,
+    # None is another one plus or minus a few steps.
+    first=range(15, 2000, 14),
+    step=(4, 6),
+    hz=(1.0, 2.0),
 )

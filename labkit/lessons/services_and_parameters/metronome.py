@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
 
-from labkit.exercises import Exercise, Solution, Style, Wrong, changed
-from labkit.exercises.clauses import Follows, HasParameter, Named, Refuses
+from labkit.exercises import Exercise, Probe, Solution, Style, Wrong, changed
+from labkit.exercises.clauses import Clause, Follows, HasParameter, Named, Refuses
 from labkit.exercises.clauses.parameters import Values
 from labkit.exercises.draws import draw_float
+from labkit.exercises.variants import varied
 from labkit.lessons._script import in_process, started_by_subprocess
 
 __all__ = ['metronome']
@@ -58,17 +61,16 @@ _CHANGE = """                self.destroy_timer(self.timer)
 _POST = '        self.add_post_set_parameters_callback(self.on_change)\n'
 
 
-def _rates() -> Sequence[Values]:
+def _rates(low: float = LIMITS[0], high: float = LIMITS[1]) -> Sequence[Values]:
     """Return a rate that is no whole number, and a limit of the range."""
-    rates = [draw_float(3.0, 9.0), random.choice([1.0, 20.0, 12.5])]
+    rates = [draw_float(3.0, 9.0), random.choice([low, high, 12.5])]
     random.shuffle(rates)
     return [{'rate': rate} for rate in rates]
 
 
-def _bad_rates() -> tuple[Values, Sequence[Values]]:
-    low, high = LIMITS
+def _bad_rates(low: float = LIMITS[0], high: float = LIMITS[1]) -> tuple[Values, Sequence[Values]]:
     bad: list[object] = [
-        draw_float(0.1, 0.9),
+        draw_float(0.1 * low, 0.9 * low),
         draw_float(high + 0.5, high + 100.0),
         draw_float(-15.0, -2.0),
         math.nan,
@@ -79,38 +81,42 @@ def _bad_rates() -> tuple[Values, Sequence[Values]]:
     return {'rate': random.choice([low, 2.5, 6.25])}, [{'rate': value} for value in bad]
 
 
-_FOLLOWS = Follows(
-    NODE,
-    TOPIC,
-    f'publish `{EMPTY}` on `{TOPIC}`, `rate` times a second (up to 2 % off), also after '
-    'each change of `rate`',
-    _rates,
-    hz=lambda values: float(values['rate']),
-)
-
-metronome = Exercise(
-    name='metronome',
-    task='Publish Empty on /tick at a rate that is a parameter, and changes while the node runs.',
-    publishes={TOPIC: EMPTY},
-    nodes=[NODE],
-    clauses=(
+def _clauses(low: float = LIMITS[0], high: float = LIMITS[1]) -> tuple[Clause, ...]:
+    follows = Follows(
+        NODE,
+        TOPIC,
+        f'publish `{EMPTY}` on `{TOPIC}`, `rate` times a second (up to 2 % off), also after '
+        'each change of `rate`',
+        partial(_rates, low, high),
+        hz=lambda values: float(values['rate']),
+    )
+    return (
         Named(NODE),
         HasParameter(
             NODE,
             'rate',
             float,
-            'its parameter `rate` is a double with a range from 1.0 to 20.0 and a description',
-            LIMITS,
+            f'its parameter `rate` is a double with a range from {low} to {high} and a '
+            'description',
+            (low, high),
         ),
-        _FOLLOWS,
+        follows,
         Refuses(
             NODE,
             'values out of the range, `nan` and values of another type are refused, with a '
             'reason, and change nothing',
-            _bad_rates,
-            _FOLLOWS,
+            partial(_bad_rates, low, high),
+            follows,
         ),
-    ),
+    )
+
+
+_USUAL = Exercise(
+    name='metronome',
+    task='Publish Empty on /tick at a rate that is a parameter, and changes while the node runs.',
+    publishes={TOPIC: EMPTY},
+    nodes=[NODE],
+    clauses=_clauses(),
     hints=[
         'A range in the descriptor is looked at by ROS: what is outside is refused.',
         'A timer keeps its period. Which callback is called after a parameter was set?',
@@ -293,4 +299,37 @@ metronome = Exercise(
             process=True,
         ),
     ],
+)
+
+
+def _variant(*, low: float, high: float) -> Exercise:
+    code = changed(
+        _METRONOME, ('from_value=1.0, to_value=20.0', f'from_value={low}, to_value={high}')
+    )
+    return replace(
+        _USUAL,
+        task=f'Publish Empty on /tick at a rate that is a parameter, from {low} to {high}, and '
+        'changes while the node runs.',
+        clauses=_clauses(low, high),
+        answer=Solution(code, _USUAL.answer.reason),
+        styles=(),
+        wrong=(),
+    )
+
+
+def _guess(probe: Probe) -> dict[str, float] | None:
+    from labkit.background.parameters import describe_parameters, parameter_names
+
+    if NODE not in probe.node_names() or 'rate' not in parameter_names(probe.spun_node, NODE):
+        return None
+    found = describe_parameters(probe.spun_node, NODE, ['rate'])[0].floating_point_range
+    return {'low': found[0].from_value, 'high': found[0].to_value} if found else None
+
+
+metronome = varied(
+    _USUAL,
+    _variant,
+    _guess,
+    low=(0.5, 0.6, 0.7, 0.8, 1.2, 1.4, 1.5, 1.6),
+    high=[float(number) for number in range(14, 46) if number != 20],
 )

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Exercise, Outcome, Solution, Style, Wrong, changed
+from dataclasses import replace
+
+from labkit.exercises import Exercise, Outcome, Probe, Solution, Style, Wrong, changed
 from labkit.exercises.clauses import HasText, Publishes
+from labkit.exercises.variants import varied
 from labkit.lessons._script import (
     in_process,
     started_by_asyncio,
@@ -63,7 +66,7 @@ def work(publisher):
 threading.Thread(target=work, args=(publisher,), daemon=True).start()
 """
 
-every_two_seconds = Exercise(
+_USUAL = Exercise(
     name='every_two_seconds',
     task='Write a node that publishes a `String` on /chatter every 2 seconds.',
     publishes={'/chatter': STRING},
@@ -310,3 +313,77 @@ process = subprocess.Popen([f'{sys.prefix}/bin/ros2', 'topic', 'pub', *options, 
         ),
     ],
 )
+
+
+# Names of which none is another one with a slip of the pen.
+_TOPICS = [
+    'anthem',
+    'ballad',
+    'bulletin',
+    'carillon',
+    'chorus',
+    'diary',
+    'echoes',
+    'fable',
+    'fanfare',
+    'forecast',
+    'gazette',
+    'gossip',
+    'greetings',
+    'herald',
+    'hymn',
+    'journal',
+    'legend',
+    'letters',
+    'lullaby',
+    'melody',
+    'memo',
+    'minutes',
+    'news_flash',
+    'oracle',
+    'poetry',
+    'postcards',
+    'prayer',
+    'proverbs',
+    'quotes',
+    'radio',
+    'report',
+    'rhymes',
+    'riddles',
+    'rumours',
+    'saga',
+    'serenade',
+    'sermon',
+    'signals',
+    'slogans',
+    'sonnet',
+    'spells',
+    'tales',
+    'telegram',
+    'tidings',
+    'verses',
+    'weather',
+    'whispers',
+    'yodel',
+]
+
+
+def _variant(*, topic: str) -> Exercise:
+    name = f'/{topic}'
+    return replace(
+        _USUAL,
+        task=f'Write a node that publishes a `String` on {name} every 2 seconds.',
+        publishes={name: STRING},
+        clauses=(Publishes(name, 0.5, STRING), HasText(name)),
+        answer=Solution(changed(_SLOW, ("'chatter'", f"'{topic}'")), _USUAL.answer.reason),
+        styles=(),
+        wrong=(),
+    )
+
+
+def _guess(probe: Probe) -> dict[str, str] | None:
+    names = {end.topic.removeprefix('/') for end in probe.all_publishers()}
+    return next(({'topic': name} for name in (*_TOPICS, 'chatter') if name in names), None)
+
+
+every_two_seconds = varied(_USUAL, _variant, _guess, topic=_TOPICS)

@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 import signal
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from labkit.exercises import Exercise, Fail, Outcome, Solution, Style, Wrong, changed, expect
-from labkit.exercises.clauses import Clause, Evidence, Messages, Named, Publishes, Stream
+from labkit.exercises.clauses import (
+    Clause,
+    Evidence,
+    Messages,
+    Named,
+    Publishes,
+    Stream,
+    often,
+)
+from labkit.exercises.life import live
+from labkit.exercises.variants import varied
 from labkit.lessons.turtlebot.drive import TWIST, command_of
 from labkit.lessons.turtlebot.mistakes import int_for_float
 
 if TYPE_CHECKING:
+    from labkit.exercises import Probe
     from labkit.exercises.watch import Watch
 
 __all__ = ['stop']
@@ -83,24 +95,24 @@ finally:
 """
 
 
-def _cruises(stream: Stream) -> str:
+def _cruises(stream: Stream, wanted: float = SPEED) -> str:
     """Raise Fail if a command does not ask for the speed of the task."""
     for number, sample in enumerate(stream.samples, start=1):
         command = command_of(sample)
-        if abs(command.v - SPEED) < SAME and not (command.w or command.others):
+        if abs(command.v - wanted) < SAME and not (command.w or command.others):
             continue
         why = 'The task asks for another speed.'
         if command.stops:
             why = 'A robot that does not move need not be stopped.'
         elif command.w or command.others:
             why = 'linear.x is the speed ahead. The other numbers stay 0.0.'
-        elif command.v == -SPEED:
+        elif command.v == -wanted:
             why = 'A speed below 0 drives backwards.'
         raise Fail(
-            f'linear.x = {SPEED} m/s and 0.0 in all other numbers, while the node runs',
+            f'linear.x = {wanted} m/s and 0.0 in all other numbers, while the node runs',
             f'command {number} says {command}',
             why=why,
-            todo=f'msg.linear.x = {SPEED}',
+            todo=f'msg.linear.x = {wanted}',
         )
     return ''
 
@@ -186,7 +198,7 @@ def _ends_ros_first(gid: bytes) -> bool:
     return False
 
 
-stop = Exercise(
+_USUAL = Exercise(
     name='stop',
     task='A node `cruiser` drives at 0.1 m/s, and its last command says stop, whatever ends it.',
     publishes={'/cmd_vel': TWIST},
@@ -370,4 +382,50 @@ stop = Exercise(
         ),
     ],
     once=True,
+)
+
+
+def _variant(*, speed: float, hz: float) -> Exercise:
+    code = changed(
+        _CRUISER,
+        ('create_timer(0.1,', f'create_timer({1 / hz:g},'),
+        ('msg.linear.x = 0.1', f'msg.linear.x = {speed}'),
+    )
+    rate = often(hz).partition(' (')[0]
+    return replace(
+        _USUAL,
+        task=f'A node `cruiser` drives at {speed} m/s, says so {rate}, and its last command says '
+        'stop, whatever ends it.',
+        clauses=(
+            Named(NODE),
+            Publishes('/cmd_vel', hz, TWIST, by=NODE),
+            Messages(
+                '/cmd_vel',
+                f'each command says `linear.x` = {speed}, all else 0.0',
+                partial(_cruises, wanted=speed),
+                by=NODE,
+            ),
+            _SaysStop(),
+        ),
+        answer=Solution(code, _USUAL.answer.reason),
+        styles=(),
+        wrong=(),
+    )
+
+
+def _guess(probe: Probe) -> dict[str, float] | None:
+    expect.publisher(probe, '/cmd_vel', by=NODE)
+    samples = live(probe, {'/cmd_vel': TWIST}, 2.0, nodes=[NODE]).on('/cmd_vel')
+    if len(samples) < 3 or samples[2].at == samples[1].at:
+        return None
+    hz = 1 / (samples[2].at - samples[1].at)
+    return {'speed': round(samples[-1].message.linear.x, 6), 'hz': round(hz, 3)}
+
+
+stop = varied(
+    _USUAL,
+    _variant,
+    _guess,
+    speed=[centimetres / 100 for centimetres in (5, 6, 7, 8, 9, *range(11, 22))],
+    hz=(4.0, 5.0, 8.0),
 )

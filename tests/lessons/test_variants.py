@@ -1,0 +1,76 @@
+"""Each learner's own numbers: the own answer passes, and a neighbour's is told to be one."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from proof import lessons
+
+import labkit
+from labkit.background.nodes import existing_nodes
+from labkit.background.runtime import runtime
+from labkit.exercises import Exercise, Outcome
+from labkit.exercises.variants import ANOTHER, Variants
+
+VARIED = {
+    f'{lesson.name}-{exercise.name}': exercise
+    for lesson in lessons()
+    for exercise in lesson.exercises
+    if exercise.variants is not None
+}
+# All 200 take a quarter of an hour: LABKIT_SEEDS=200.
+SEEDS = [f'learner {number}' for number in range(200)]
+CHOSEN = SEEDS[: int(os.environ.get('LABKIT_SEEDS', '3'))]
+
+
+@pytest.fixture
+def lab(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[ModuleType]:
+    monkeypatch.setenv('LABKIT_HOME', str(tmp_path))
+    labkit.start()
+    yield labkit
+    labkit.stop()
+    runtime.after_start.clear()
+
+
+def variants_of(name: str) -> Variants:
+    variants = VARIED[name].variants
+    assert variants is not None
+    return variants
+
+
+def run(lab: ModuleType, code: str) -> None:
+    """Run an answer as a cell does, without anything of the one before."""
+    for node in list(existing_nodes()):
+        if node is not runtime.helper:
+            lab.remove(node)
+    exec(compile(code, '<cell>', 'exec'), {'lab': lab})
+
+
+def neighbour(variants: Variants, seed: str) -> Exercise:
+    """Return the exercise of the next one in the class who has another one."""
+    mine = variants.of(seed)
+    others = SEEDS[SEEDS.index(seed) + 1 :] + SEEDS
+    return next(other for other in map(variants.of, others) if other.task != mine.task)
+
+
+@pytest.mark.parametrize('seed', CHOSEN)
+@pytest.mark.parametrize('name', VARIED)
+def test_own_answer_passes_and_a_neighbours_is_told(lab: ModuleType, name: str, seed: str) -> None:
+    variants = variants_of(name)
+    mine = variants.of(seed)
+    run(lab, mine.answer.code)
+    verdict = mine.check()
+    assert verdict.outcome is Outcome.PASS, verdict
+    other = neighbour(variants, seed)
+    run(lab, other.answer.code)
+    mine = variants.of(seed)
+    told = mine.check()
+    assert told.outcome is Outcome.FAIL and ANOTHER in told.why, told
+    assert (told.expected, told.seen) == (mine.task, other.task)
+    # Pressed again.
+    again = mine.check()
+    assert again.outcome is Outcome.FAIL and ANOTHER in again.why, again
