@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from labkit.views.image import image
     from labkit.views.monitor import monitor
     from labkit.views.plot import plot
+    from labkit.views.projector import projector
     from labkit.views.teleop import teleop
 
 __version__ = '0.1.0'
@@ -67,6 +68,7 @@ __all__ = [
     'plot',
     'processes',
     'progress',
+    'projector',
     'record',
     'remove',
     'source',
@@ -100,6 +102,7 @@ _HOMES = {
     'plot': 'labkit.views.plot',
     'processes': 'labkit.background.child_processes',
     'progress': 'labkit.exercises.progress',
+    'projector': 'labkit.views.projector',
     'record': 'labkit.bags.recorder',
     'remove': 'labkit.background.runtime',
     'source': 'labkit.background.workspace',
