@@ -249,6 +249,8 @@ class VirtualTime:
                 self._stuck.add(executor)
 
     def _settle_background(self) -> None:
+        from labkit.background.patience import busyness
+
         executor, before = self._runtime.executor, self._callbacks()
         began, seen, idle = time.monotonic(), before, 0
         while not executor.settle(CALM_SEC):
@@ -257,7 +259,8 @@ class VirtualTime:
             slow = time.monotonic() - began > SLOW_FLOOD_SEC
             self.flooded = count - before > (SLOW_FLOOD if slow else FLOOD)
             runs = executor.running_callback() is not None
-            self.hanging = idle > (0 if runs else IDLE_ROUNDS)
+            # On a busy machine a callback may get no turn for a round, and may still return.
+            self.hanging = idle > (busyness() - 1 if runs else IDLE_ROUNDS)
             if self.flooded or self.hanging or not executor.is_open:
                 return
             seen = count
