@@ -39,8 +39,8 @@ class ImageView(LivePage):
         self._feed = _feed(topic, self._take)
         self.topic = self._feed.topic
         self._last: bytes | None = None
-        # Whether one has come since the page was told; and why none comes.
-        self._is_new, self._why = False, ''
+        # Whether one has come since the page was told; why none comes; and what is wrong with it.
+        self._is_new, self._why, self._wrong = False, '', ''
         super().__init__([self._feed])
 
     @property
@@ -102,7 +102,6 @@ class ImageView(LivePage):
         state: dict[str, Any] = {
             'topic': self.topic,
             'rate': '' if rate is None else f'{rate:.2g}' if rate < 9.5 else f'{rate:.0f}',
-            'note': self._feed.silence(),
         }
         buffers: list[bytes] = []
         if self._last is not None and (self._is_new or everything):
@@ -111,8 +110,10 @@ class ImageView(LivePage):
                 picture = picture_of(_message(self._last))
                 state |= {'about': picture.words, 'text': self._told_of(picture)}
                 buffers = [to_jpeg(picture)]
+                self._wrong = ''
             except LabError as error:
-                state['note'] = str(error)
+                self._wrong = str(error)
+        state['note'] = self._wrong or self._feed.silence()
         return self._new_of(state), buffers
 
 
