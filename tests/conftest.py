@@ -343,7 +343,7 @@ def script(tmp_path: Path, lab_env: dict[str, str]) -> Callable[..., ScriptResul
             env={**lab_env, **env},
             capture_output=True,
             text=True,
-            timeout=2 * TIMEOUT_SEC,
+            timeout=4 * TIMEOUT_SEC,
         )
         return ScriptResult(done.returncode, done.stdout, done.stderr)
 
