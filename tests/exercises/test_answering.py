@@ -8,7 +8,7 @@ from typing import Any, cast
 import pytest
 
 from labkit.exercises import Fail
-from labkit.exercises.clauses import Answers, Evidence, Logs
+from labkit.exercises.clauses import Answers, Evidence, Logs, answering
 from labkit.exercises.life import Life, Sent
 from labkit.exercises.watch import Sample
 
@@ -73,6 +73,21 @@ def test_answer_that_is_left_out_now_and_then_is_still_one_of_a_timer() -> None:
     with pytest.raises(Fail) as refused:
         CLAUSE.judge(evidence(heard, came))
     assert refused.value.why.startswith('The answer is repeated')
+
+
+def test_message_that_came_too_late_to_be_judged_is_not_called_answered(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(answering, 'hanging', lambda probe: None)
+    heard = [(1.0, 5), (1.5, 7), (29.5, 9)]
+    with pytest.raises(Fail) as refused:
+        CLAUSE.judge(evidence([(1.0, 5), (29.5, 9)], []))
+    assert refused.value.why.endswith('its callback did not publish.')
+    with pytest.raises(Fail) as refused:
+        CLAUSE.judge(evidence(heard, [(1.05, 6)]))
+    assert refused.value.why.startswith('1 of 2 messages were answered rightly')
+    seen = evidence(heard, [(1.05, 6), (1.55, 8)])
+    assert CLAUSE.judge(seen).startswith('/postman has answered 2 messages')
 
 
 def lines(heard: list[tuple[float, str]], logged: list[tuple[float, str]]) -> Evidence:

@@ -27,7 +27,7 @@ def test_a_task_of_the_notebook_is_judged_once_the_cell_has_ended(kernel: Any) -
     kernel.run(SETUP)
     kernel.run(TASK.format(value=1))
     assert kernel.run('lesson.ones.check()').text.startswith('CHECKING: ones')
-    assert kernel.run('await _').text.startswith('PASS: ones')
+    assert 'PASS: ones' in kernel.run('await _').text
     kernel.run('task.cancel()')
     kernel.run(TASK.format(value=2))
     kernel.run('lesson.ones.check()')
@@ -43,5 +43,5 @@ def test_the_answer_takes_the_place_of_the_waiting(kernel: Any) -> None:
     kernel.run(SETUP)
     kernel.run(TASK.format(value=1))
     kernel.run('checked = lesson.ones.check()\nchecked')
-    assert kernel.run('await checked').text.startswith('PASS: ones')
+    assert 'PASS: ones' in kernel.run('await checked').text
     assert kernel.run('checked._handle.display_id != ""').text == 'True\n'

@@ -88,7 +88,7 @@ def test_node_that_is_in_the_graph_before_its_publisher_is_waited_for(
 
 def test_cell_that_raised_is_an_error_and_not_an_attempt_left_out(kernel: Any) -> None:
     kernel.run(SETUP)
-    assert kernel.run('exercise.check()').text.startswith('NOT ATTEMPTED')
+    assert 'NOT ATTEMPTED' in kernel.run('exercise.check()').text
     kernel.run('undefined_name + 1')
     for _ in range(2):
         found = kernel.run('exercise.check()')
@@ -96,7 +96,7 @@ def test_cell_that_raised_is_an_error_and_not_an_attempt_left_out(kernel: Any) -
         assert 'Python does not know the name undefined_name' in ' '.join(found.text.split())
         assert 'Cell In[' in found.text
     kernel.run('1 + 1')
-    assert kernel.run('exercise.check()').text.startswith('NOT ATTEMPTED')
+    assert 'NOT ATTEMPTED' in kernel.run('exercise.check()').text
 
 
 def test_check_works_in_a_plain_script(script: Callable[..., Any]) -> None:

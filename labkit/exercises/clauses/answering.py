@@ -112,9 +112,8 @@ class Answers(Clause):
             elif is_due:
                 missing.append((at, value))
         repeated = self._repeats(heard, left) >= MANY and len(missing) < len(heard) / 2
-        due_count = sum(self.answer(value) is not None for _, value in heard)
         if missing and not repeated:
-            self._refuse_missing(evidence, missing, left, due_count)
+            self._refuse_missing(evidence, missing, left, len(late))
         if not repeated:
             self._refuse_late(evidence, late)
         # At the beginning it may answer what came before: a node may keep what it hears.
@@ -126,18 +125,18 @@ class Answers(Clause):
         if extra:
             self._refuse_extra(evidence, heard, extra)
         if missing:
-            self._refuse_missing(evidence, missing, left, due_count)
+            self._refuse_missing(evidence, missing, left, len(late))
         examples = [value for _, value in heard if self.answer(value) is not None][:2]
         pairs = ', '.join(f'{show([v])} -> {show([self.answer(v)])}' for v in examples)
         hears = evidence.subscription(self.inner, self.by)
-        return f'{hears.node} has answered {due_count} messages, each once: {pairs}.'
+        return f'{hears.node} has answered {len(late)} messages, each once: {pairs}.'
 
     def _refuse_missing(
         self,
         evidence: Evidence,
         missing: Sequence[tuple[float, Any]],
         left: Sequence[tuple[float, Any]],
-        count: int,
+        answered: int,
     ) -> NoReturn:
         hears = evidence.subscription(self.inner, self.by)
         # Some texts hide what is wrong, as one of digits that are to become capital letters does.
@@ -150,8 +149,9 @@ class Answers(Clause):
         if not why and came:
             why = text_trouble(came[-1], right)
             todo = 'Compare the value that is wanted with the one seen.'
-        if not why and len(missing) < count:
-            why = f'{count - len(missing)} of {count} messages were answered rightly, others not.'
+        if not why and answered:
+            count = answered + len(missing)
+            why = f'{answered} of {count} messages were answered rightly, others not.'
             todo = 'Do the same for each message that comes, whatever it says, and each time.'
         if not why:
             why = f'The message reached {hears.node}, but its callback did not publish.'
