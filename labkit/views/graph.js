@@ -1,7 +1,7 @@
 // The graph as the kernel has drawn it. Dots show messages that pass; each part can be asked.
 
 const SVG = 'http://www.w3.org/2000/svg';
-const NAME_PX = 15; // see graph_picture.py
+const LETTERS_PX = 14; // what JupyterLab has unless it is set; drawings are made for it
 const TRAVEL_MS = 650;
 // Dots of an arrow are apart: faster than that, one stands for several messages.
 const APART_MS = 200;
@@ -106,8 +106,10 @@ class Drawing {
     svg.removeAttribute('aria-labelledby');
     svg.setAttribute('role', 'group');
     svg.setAttribute('aria-label', 'Nodes and topics');
-    // As large as the letters of the page.
-    svg.style.width = `${svg.getAttribute('width') / NAME_PX}em`;
+    // As large as the letters of the page: its width is in theirs, not in its own.
+    svg.lastElementChild.setAttribute('font-size', svg.getAttribute('font-size'));
+    svg.removeAttribute('font-size');
+    svg.style.width = `${svg.getAttribute('width') / LETTERS_PX}em`;
     svg.style.height = '';
     const layer = svgElement('g', { 'aria-hidden': 'true' });
     svg.lastElementChild.append(layer);
@@ -274,7 +276,7 @@ function render({ model, el }) {
   const sizes = new ResizeObserver(() => {
     const letters = Number.parseFloat(getComputedStyle(el).fontSize);
     // In steps, so that a page that is being resized asks now and then.
-    const fits = Math.floor(((drawing.place.clientWidth / letters) * NAME_PX) / 20) * 20;
+    const fits = Math.floor(((drawing.place.clientWidth / letters) * LETTERS_PX) / 20) * 20;
     if (fits && fits !== width) send({ width: fits });
     width = fits || width;
   });

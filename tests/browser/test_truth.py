@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import ConsoleMessage, Page, expect
 
-from tests.browser.page import READY, Notebook
+from tests.browser.page import READY, VIEWPORT, Notebook
 
 CELLS = {
     'setup': """
@@ -46,6 +46,17 @@ with lab.record('drive', ['/odom'], overwrite=True) as recording:
     'remove': "lab.remove('talker')",
 }
 VIEWS = ('monitor', 'plot', 'arena', 'teleop', 'graph', 'bag', 'quiz')
+# What in each of them can have the focus.
+FOCUSED = {
+    'monitor': 'summary',
+    'plot': 'button',
+    'arena': 'canvas',
+    'teleop': '.labkit-teleop',
+    'graph': '[data-part][tabindex="0"]',
+    'bag': 'button',
+    'quiz': 'input[type="radio"]',
+}
+HAS_FOCUS = 'view => view.contains(document.activeElement)'
 # What each of them leaves in the notebook.
 LEFT = {
     'monitor': 'data: 70',
@@ -65,6 +76,37 @@ DRAWN = """canvas => {
     count += pixels[i] === 0 && pixels[i + 1] === 114 && pixels[i + 2] === 178;
   }
   return count;
+}"""
+# How large the letters of a view are, by what they are in; those of a canvas grow with its height.
+LETTERS = """view => Object.fromEntries([view, ...view.querySelectorAll('*')].flatMap((part) => {
+  const says = [...part.childNodes].some((each) => each.nodeType === 3 && each.data.trim());
+  const name = `${part.tagName} ${part.getAttribute('class') ?? ''}`;
+  if (part.matches('canvas') && part.closest('.labkit-plot')) return [[name, part.clientHeight]];
+  if (!says || !part.getClientRects().length || part.tagName === 'STYLE') return [];
+  const { fontSize } = getComputedStyle(part);
+  return [[name, part.tagName === 'text' ? part.getBoundingClientRect().height
+    : Number.parseFloat(fontSize)]];
+}))"""
+# Whether they have grown with the setting; those of a drawing as far as there is room for it.
+GROWN = f"""([view, before]) => {{
+  const drawing = view.querySelector('svg[viewBox]');
+  const full = drawing && drawing.clientWidth > 0.95 * drawing.parentElement.clientWidth;
+  const sizes = Object.entries(({LETTERS})(view)).filter(([name]) => name in before);
+  return sizes.length > 0 && sizes.every(([name, size]) =>
+    size > (full && name.startsWith('text') ? 1 : 1.15) * before[name] - 0.1);
+}}"""
+# JupyterLab's setting of the size of letters, increased by four steps.
+LARGER = """larger => Object.entries({ content: 14, code: 13, ui: 13 }).forEach(([kind, size]) => {
+  const name = kind === 'code' ? '--jp-code-font-size' : `--jp-${kind}-font-size1`;
+  if (larger) document.documentElement.style.setProperty(name, `${size + 4}px`);
+  else document.documentElement.style.removeProperty(name);
+})"""
+# What sticks out of a view, or is cut off there: its width, and that of what is in it.
+STICKS_OUT = """view => {
+  const { right } = view.getBoundingClientRect();
+  return [...view.querySelectorAll('*')].filter((part) => !part.closest('svg, option')
+    && part.getBoundingClientRect().right > right + 1 && getComputedStyle(part).clipPath === 'none'
+  ).map((part) => `${part.tagName} ${part.className}`);
 }"""
 # What is wrong with stored forms on paper: a dark ground, faint words, something cut off.
 WRONG_ON_PAPER = """boxes => boxes.flatMap((box) => {
@@ -265,6 +307,28 @@ def test_on_paper_there_is_the_stored_form(run_views, jupyter, browser):
     page.close()
 
 
+def test_letters_follow_the_setting_and_nothing_sticks_out(run_views):
+    notebook = run_views()
+    views = {
+        cell_id: notebook.output(cell_id).locator('.labkit-view').element_handle()
+        for cell_id in VIEWS
+    }
+    before = {cell_id: view.evaluate(LETTERS) for cell_id, view in views.items()}
+    notebook.page.evaluate(LARGER, True)
+    try:
+        for cell_id, view in views.items():
+            # The graph is laid out anew, by Python, for the letters that it has now.
+            notebook.page.wait_for_function(GROWN, arg=[view, before[cell_id]])
+        for width in (1400, 800):
+            notebook.page.set_viewport_size({'width': width, 'height': 900})
+            for cell_id in VIEWS:
+                notebook.scroll_to_top(cell_id)
+                assert views[cell_id].evaluate(STICKS_OUT) == [], (cell_id, width)
+    finally:
+        notebook.page.evaluate(LARGER, False)
+        notebook.page.set_viewport_size(VIEWPORT)
+
+
 def test_two_views_of_one_cell(open_cells):
     notebook = open_cells(**CELLS)
     notebook.run_cell('setup')
@@ -291,9 +355,14 @@ def test_escape_leaves_a_view_and_shift_enter_runs_its_cell(run_views):
         'count => window.jupyterapp.shell.currentWidget.content.widgets.length === count',
         arg=count + 1,
     )
-    for cell_id, focused in (('plot', 'button'), ('teleop', '.labkit-teleop')):
+    for cell_id, focused in FOCUSED.items():
+        place = notebook.output(cell_id).locator(focused).first
         old = notebook.output(cell_id).locator('.labkit-view').element_handle()
-        notebook.output(cell_id).locator(focused).first.focus()
+        place.focus()
+        assert old.evaluate(HAS_FOCUS), cell_id
+        page.keyboard.press('Escape')
+        page.wait_for_function(f'view => !({HAS_FOCUS})(view)', arg=old)
+        place.focus()
         page.keyboard.press('Shift+Enter')
         page.wait_for_function('view => !view.isConnected', arg=old)
         expect_live(notebook, cell_id)
