@@ -4,7 +4,7 @@ Somebody publishes as fast as is heard, and never is more than a window ahead, s
 lost on the way: small messages another process, which knows from a file in memory how many have
 come; large ones a thread of this process, since the middleware takes them apart on their way
 between processes, and is slower than either. Both hear raw messages, with the same QoS, and take
-turns; what counts is the ratio.
+turns, and a recording has ended when all is written; what counts is the ratio.
 """
 
 from __future__ import annotations
@@ -78,7 +78,8 @@ with open(path, 'w+b') as file:
 bag = os.path.join(folder, 'bag')
 if way == 'record':
     recording = lab.record(bag, '/flood', storage=storage, timeout_sec=0)
-    came = lambda: recording.count - recording.waiting + recording.lost
+    came = lambda: recording.count + recording.lost
+    done = lambda: came() - recording.waiting
 else:
     # With no more than the recorder has: what else a node has makes each message dearer.
     heard = [0]
@@ -92,7 +93,7 @@ else:
     node.create_subscription(
         kind, '/flood', hear, QoSProfile(depth=1000), event_callbacks=events, raw=True
     )
-    came = lambda: heard[0]
+    came = done = lambda: heard[0]
 if size < 10000:
     publisher = subprocess.Popen(
         [sys.executable, '-c', {publisher!r}, path, str(size), str(count), str(window)],
@@ -107,10 +108,10 @@ cpu, begin = sum(process.cpu_times()[:2]), time.perf_counter()
 rss, last, moved = [], 0, begin
 while last < count:
     time.sleep(0.001)
-    now = came()
+    shared[:8] = struct.pack('<q', came())
+    now = done()
     if now != last:
         last, moved = now, time.perf_counter()
-        shared[:8] = struct.pack('<q', now)
         if now >= count * (len(rss) + 1) / 20:
             rss.append(process.memory_info().rss)
     elif time.perf_counter() > moved + 20:

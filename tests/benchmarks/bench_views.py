@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import statistics
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from functools import partial
 
 from kernel import Kernel
 from table import Row
+from turns import Figures, take_turns
 
 __all__ = ['tables']
 
@@ -39,45 +41,58 @@ POSITION = 'print(talker.message.pose.pose.position.x)'
 SEEN = "view._widget._handle_custom_msg({'view': 'seen'}, [])"
 
 
+TITLE = 'Live views at 1,000 Odometry messages a second'
+
+
 def tables(quick: bool) -> Iterator[tuple[str, list[Row]]]:
     """Measure, and give title and rows of the table."""
-    seconds, rounds = (1, 5) if quick else (5, 100)
-    rows: dict[str, list[Row]] = {}
+    seconds, rounds, turns = (1, 5, 1) if quick else (2, 25, 5)
     with Kernel() as kernel:
         kernel.run(TALKER)
-        for name, code in VIEWS.items():
-            if code:
-                kernel.run(f'{code}\n{SEEN}')
-                sizes = kernel.comm_messages(seconds)
-                rows.setdefault('page', []).extend(
-                    [
-                        Row(f'to the page: {name}', len(sizes) / seconds, 'updates/s', at_most=20),
-                        Row(f'to the page: {name}', sum(sizes) / seconds / 1e3, 'kB/s'),
-                    ]
-                )
-                kernel.run(SEEN)
-            begin, before = time.perf_counter(), float(kernel.run(POSITION))
-            share = kernel.cpu_share(seconds)
-            sent = 1000 * (float(kernel.run(POSITION)) - before) / (time.perf_counter() - begin)
-            rows.setdefault('sent', []).append(Row(f'published: {name}', sent, 'messages/s'))
-            cpu = rows.setdefault('cpu', [])
-            cpu.append(Row(f'CPU: {name}', share, '% of a core'))
-            if code:
-                more = share - (cpu[0].figure or 0)
-                cpu.append(Row(f'CPU: {name}, beyond no view', more, '% of a core', at_most=10))
-            if code:
-                kernel.run(SEEN)
-            delays = []
-            for _ in range(rounds):
-                begin = time.perf_counter()
-                kernel.run('pass')
-                delays.append(1e3 * (time.perf_counter() - begin))
-            rows.setdefault('cell', []).append(
-                Row(f'an empty cell: {name}', statistics.median(delays), 'ms')
-            )
-            if code:
-                kernel.run('view.close()')
-    yield (
-        'Live views at 1,000 Odometry messages a second',
-        [r for part in rows.values() for r in part],
-    )
+        ways = {name: partial(_look, kernel, name, seconds, rounds) for name in VIEWS}
+        seen = take_turns(ways, ('cpu',), turns)
+    typical = {
+        name: {key: statistics.median(each[key] for each in found) for key in found[0]}
+        for name, found in seen.items()
+    }
+    yield TITLE, list(_rows(typical))
+
+
+def _rows(typical: Mapping[str, Figures]) -> Iterator[Row]:
+    views = [name for name, code in VIEWS.items() if code]
+    for name in views:
+        updates = typical[name]['updates']
+        yield Row(f'to the page: {name}', updates, 'updates/s', at_most=20)
+        yield Row(f'to the page: {name}', typical[name]['size'], 'kB/s')
+    for name, figures in typical.items():
+        yield Row(f'published: {name}', figures['sent'], 'messages/s')
+        yield Row(f'CPU: {name}', figures['cpu'], '% of a core')
+    for name in views:
+        more = typical[name]['cpu'] - typical['no view']['cpu']
+        yield Row(f'CPU: {name}, beyond no view', more, '% of a core', at_most=10)
+    for name, figures in typical.items():
+        yield Row(f'an empty cell: {name}', figures['delay'], 'ms')
+
+
+def _look(kernel: Kernel, name: str, seconds: float, rounds: int) -> Figures:
+    """Open a view, or none, measure for a while, and close it."""
+    figures = {}
+    if VIEWS[name]:
+        kernel.run(f'{VIEWS[name]}\n{SEEN}')
+        sizes = kernel.comm_messages(seconds)
+        figures = {'updates': len(sizes) / seconds, 'size': sum(sizes) / seconds / 1e3}
+        kernel.run(SEEN)
+    begin, before = time.perf_counter(), float(kernel.run(POSITION))
+    figures['cpu'] = kernel.cpu_share(seconds)
+    sent = float(kernel.run(POSITION)) - before
+    figures['sent'] = 1000 * sent / (time.perf_counter() - begin)
+    delays = []
+    if VIEWS[name]:
+        kernel.run(SEEN)
+    for _ in range(rounds):
+        begin = time.perf_counter()
+        kernel.run('pass')
+        delays.append(1e3 * (time.perf_counter() - begin))
+    if VIEWS[name]:
+        kernel.run('view.close()')
+    return {**figures, 'delay': statistics.median(delays)}
