@@ -236,6 +236,19 @@ class Kernel:
         """Run a cell to its end."""
         return self.finish(self.start(code, cell_id), timeout)
 
+    def new_subshell(self) -> str:
+        """Ask for a thread that hears what the page says while a cell runs; return its id."""
+        request = self._client.session.msg('create_subshell_request', {})
+        self._client.control_channel.send(request)
+        answer = self._client.control_channel.get_msg(timeout=TIMEOUT_SEC)
+        return str(answer['content']['subshell_id'])
+
+    def say(self, comm_id: str, data: dict[str, Any], subshell_id: str) -> None:
+        """Say something as the page's end of a comm."""
+        message = self._client.session.msg('comm_msg', {'comm_id': comm_id, 'data': data})
+        message['header']['subshell_id'] = subshell_id
+        self._client.shell_channel.send(message)
+
     def inspect(self, code: str) -> str:
         """Return what Shift and Tab show at the end of a piece of code."""
         answer = self._client.inspect(code, reply=True, timeout=TIMEOUT_SEC)

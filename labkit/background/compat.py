@@ -34,6 +34,7 @@ __all__ = [
     'display_under',
     'forget_executor',
     'handler_of',
+    'hear_while_cells_run',
     'is_kernel_stream',
     'is_shut_down',
     'new_wait_set',
@@ -274,6 +275,15 @@ def call_in_kernel(function: Callable[[], None], *, delay_sec: float = 0.0) -> N
     """
     loop = _shell().kernel.io_loop
     loop.add_callback(lambda: loop.call_later(delay_sec, function))
+
+
+def hear_while_cells_run(comm: Any) -> None:
+    """Let what the page says on a comm be heard in the thread that the page has asked for.
+
+    ipykernel (7.4) sends it to the thread that has last spoken to the page on that comm instead.
+    For what the background says that is the main thread, where it waits for the running cell.
+    """
+    comm._reply_subshell_for = None
 
 
 def _shell() -> Any:

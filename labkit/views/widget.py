@@ -9,6 +9,8 @@ from pathlib import Path
 import anywidget
 import traitlets
 
+from labkit.background.compat import hear_while_cells_run
+
 __all__ = ['PageWidget', 'page_files', 'widget_class']
 
 # What else the page's part of a view is made of. It goes before its own.
@@ -38,6 +40,11 @@ class PageWidget(anywidget.AnyWidget):
     """
 
     mark = traitlets.Unicode().tag(sync=True)
+
+    def open(self) -> None:
+        """Let the page know of it."""
+        super().open()
+        hear_while_cells_run(self.comm)
 
     @traitlets.default('mark')
     def _new_mark(self) -> str:

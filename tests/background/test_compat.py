@@ -195,6 +195,28 @@ running.clear()
         pytest.fail('it was not called')
 
 
+def test_a_page_is_heard_while_a_cell_runs(kernel):
+    subshell = kernel.new_subshell()
+    code = """
+import threading
+from comm import create_comm
+from labkit.background import compat
+heard = threading.Event()
+comm = create_comm(target_name='a view')
+compat.hear_while_cells_run(comm)
+comm.on_msg(lambda message: heard.set())
+thread = threading.Thread(target=comm.send, args=({},))  # as the background does
+thread.start()
+thread.join()
+print(comm.comm_id)
+"""
+    made = kernel.run(code)
+    running = kernel.start("print('running', flush=True)\nprint(heard.wait(20))")
+    kernel.wait_for_output(running, 'running')
+    kernel.say(made.text.strip(), {}, subshell)
+    assert kernel.finish(running).text == 'running\nTrue\n'
+
+
 def test_a_clock_is_set_without_a_word_to_the_graph(script):
     result = script(
         READY
