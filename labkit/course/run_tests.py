@@ -19,6 +19,7 @@ REQUIREMENTS = ('environment.txt', 'labkit/hub/requirements.txt', 'tests/require
 _FAST_TESTS = (
     'tests/test_layers.py',
     'tests/test_notebook_format.py',
+    'tests/test_docs.py',
     'tests/test_requirements.py',
     'tests/course/test_shards.py',
     'tests/course/test_public_names.py',

@@ -8,9 +8,14 @@ one that starts at a cell. Cells that ended with an error are named. The README'
 
     python -m tests.browser.screenshot 02 --cell listener-class --until listener-run --height 492
 
-and that of `docs/pictures`, with `--out docs/pictures --height 760`,
+and those of `docs/pictures`, with `--out docs/pictures --height 760 --width 1200` (the first
+as wide as it is by itself),
 
     python -m tests.browser.screenshot 00 --cell first-node --until first-node
+    python -m tests.browser.screenshot 01 --cell visitor --until visitor
+    python -m tests.browser.screenshot 07 --cell robot --until robot
+    python -m tests.browser.screenshot 07 --cell robot --until robot --dark
+    python -m tests.browser.screenshot 10 --cell trip --until trip
 """
 
 from __future__ import annotations
