@@ -53,8 +53,6 @@ def starting_children(gids: Collection[bytes], others: Collection[int] = ()) -> 
     oldest = time.time() - _YOUNG_SEC * busyness()
 
     def is_starting(child: psutil.Process) -> bool:
-        if child.status() == psutil.STATUS_SLEEPING and child.children():
-            return False  # a supervisor or a shell, which only waits
         if child.create_time() > oldest:
             return bool(child.status() != psutil.STATUS_ZOMBIE)
         # On a busy machine it may take long to get as far as this. What has not used much of a
@@ -64,8 +62,15 @@ def starting_children(gids: Collection[bytes], others: Collection[int] = ()) -> 
         return at_work and used.user + used.system < _STARTING_CPU_SEC
 
     found = set()
-    for child in psutil.Process().children(recursive=True):
+    # One by one, and not all at once: a shell starts its command whenever it likes.
+    to_do = psutil.Process().children()
+    while to_do:
+        child = to_do.pop()
         try:
+            inner = child.children()
+            to_do += inner
+            if inner and child.status() == psutil.STATUS_SLEEPING:
+                continue  # a supervisor or a shell, which only waits
             if child.pid & 0xFFFF not in others and is_starting(child):
                 found.add(child.pid & 0xFFFF in appeared)
         except psutil.NoSuchProcess:

@@ -54,12 +54,18 @@ LETTERS = {
     'figure': 'svg',
 }
 # How large the letters are: in a drawing that is scaled, as they are seen.
-SIZE = """element => element.closest('svg')
-  ? element.getBoundingClientRect().height
-  : Number.parseFloat(getComputedStyle(element).fontSize)"""
+SIZE = """(output, selector) => {
+  const element = output.querySelector(selector);
+  if (!element) return null;
+  return element.closest('svg') ? element.getBoundingClientRect().height
+    : Number.parseFloat(getComputedStyle(element).fontSize);
+}"""
 # Whether something is wider than the notebook.
-WIDER = """element => element.getBoundingClientRect().right
-  > element.closest('.jp-Notebook').getBoundingClientRect().right + 1"""
+WIDER = """(output, selector) => {
+  const right = (element) => element.getBoundingClientRect().right;
+  return [...output.querySelectorAll(selector)].slice(0, 1).some(
+    (element) => right(element) > right(output.closest('.jp-Notebook')) + 1);
+}"""
 
 
 @pytest.fixture
@@ -75,9 +81,14 @@ def notebook(open_cells):
 def sizes(notebook):
     found = {}
     for cell_id, selector in LETTERS.items():
-        place = notebook.output(cell_id).locator(selector).first
-        place.wait_for()
-        found[cell_id] = place.evaluate(SIZE)
+        # Asked of the output, in one go: a view draws its parts anew while it lives.
+        output = notebook.output(cell_id)
+        output.locator(selector).first.wait_for()
+        size = notebook.page.wait_for_function(
+            f'([output, selector]) => ({SIZE})(output, selector)',
+            arg=[output.element_handle(), selector],
+        )
+        found[cell_id] = size.json_value()
     return found
 
 
@@ -96,8 +107,7 @@ def test_type_grows_everywhere_and_goes_back(notebook):
     assert larger.pop('graph') >= before['graph']
     assert {cell_id for cell_id in larger if larger[cell_id] < 1.5 * before[cell_id]} == set()
     for cell_id, selector in LETTERS.items():
-        place = notebook.output(cell_id).locator(selector).first
-        assert not place.evaluate(WIDER), cell_id
+        assert not notebook.output(cell_id).evaluate(WIDER, selector), cell_id
     # It stays while cells run, its own too.
     for cell_id in ('print', 'monitor', 'on'):
         notebook.run_cell(cell_id)

@@ -7,7 +7,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pytest
 from geometry_msgs.msg import Twist
@@ -158,17 +158,23 @@ class Scene:
                     path.append(robot.pose)
             curve.end()
             rounds = int(STEPS * 0.1 * ODOM_RATE)
-            self.stage.until(lambda: len(driver.odometry) >= rounds)
+            # What was told before may have come only now.
+            self.stage.until(lambda: len(since(begin, driver.odometry)) >= rounds)
+        odometry, scans = since(begin, driver.odometry), since(begin, driver.scans)
         return Drive(
             path,
-            [(nanoseconds(message) - begin, place(message)) for message in driver.odometry],
-            [(nanoseconds(message) - begin, list(message.ranges)) for message in driver.scans],
+            [(nanoseconds(message) - begin, place(message)) for message in odometry],
+            [(nanoseconds(message) - begin, list(message.ranges)) for message in scans],
         )
 
 
 def command(count: int) -> Twist2:
     """Return the command at a step of the curve."""
     return Twist2(0.12 + 0.08 * math.sin(count / 5), 1.5 * math.cos(count / 7))
+
+
+def since(begin: int, messages: list[Any]) -> list[Any]:
+    return [message for message in messages if nanoseconds(message) > begin]
 
 
 def nanoseconds(message: Odometry | LaserScan) -> int:
