@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
+from types import SimpleNamespace
 from typing import Any
 
+import psutil
 import pytest
 
+from labkit.background.children import starting_children
 from labkit.background.domains import claim_domain
 
 
@@ -128,3 +132,16 @@ idle.kill()
 """
     )
     assert result.stdout == '(False, False)\n(True, False)\n', result.stderr
+
+
+def test_a_command_that_its_shell_starts_just_now_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    command = SimpleNamespace(
+        pid=3, children=list, status=lambda: psutil.STATUS_RUNNING, create_time=time.time
+    )
+    # It is there when the shell is asked, and was not when all were listed.
+    shell = SimpleNamespace(
+        pid=2, children=lambda: [command], status=lambda: psutil.STATUS_SLEEPING
+    )
+    here = SimpleNamespace(children=lambda recursive=False: [shell])
+    monkeypatch.setattr(psutil, 'Process', lambda: here)
+    assert starting_children([]) == (True, False)
