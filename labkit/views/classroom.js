@@ -58,9 +58,11 @@ function minutes(count) {
 function learnerRow([name, lesson, passed, exercise, last, stuck, quiet, remark]) {
   const row = element('tr', {},
     element('th', { textContent: name, scope: 'row', dir: 'auto' }),
-    cell(lesson), cell(passed, 'labkit-classroom-figure'), cell([exercise, last].filter(Boolean).join(' ')),
+    cell(lesson), cell(passed, 'labkit-classroom-figure'),
+    cell([exercise, last].filter(Boolean).join(' ')),
     cell(minutes(stuck), 'labkit-classroom-figure labkit-classroom-stuck'),
-    cell(quiet === null ? '' : `${minutes(quiet)} ago`, 'labkit-classroom-figure'), cell(remark, 'labkit-classroom-remark'));
+    cell(quiet === null ? '' : `${minutes(quiet)} ago`, 'labkit-classroom-figure'),
+    cell(remark, 'labkit-classroom-remark'));
   row.classList.toggle('labkit-classroom-warned', stuck !== null);
   return row;
 }

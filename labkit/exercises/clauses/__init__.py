@@ -7,8 +7,9 @@ A clause is data. Its `text` stands in the notebook; `find` looks for what has t
 from __future__ import annotations
 
 from labkit.exercises.clauses.acting import Goal, Pursues, Pursuit
-from labkit.exercises.clauses.answering import Answers, Logs, find_stage
+from labkit.exercises.clauses.answering import Answers, find_stage
 from labkit.exercises.clauses.base import Clause, Evidence, Stream, Test, judge
+from labkit.exercises.clauses.logs import Logs
 from labkit.exercises.clauses.messages import HasText, Messages, Says
 from labkit.exercises.clauses.nodes import Named, NobodyElse, Runs, Subscribes
 from labkit.exercises.clauses.parameters import Follows, HasParameter, Refuses

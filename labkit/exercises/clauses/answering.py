@@ -1,4 +1,4 @@
-"""Clauses on what a node does with each message that it hears: answers it, or logs it.
+"""A clause on a node that answers each message that it hears.
 
 Each message is answered once, and nothing is answered that did not come. Other nodes may talk on
 the same topics meanwhile: what they send has to be answered as well.
@@ -7,7 +7,7 @@ the same topics meanwhile: what they send has to be answered as well.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from labkit.exercises.probe import Probe
     from labkit.rosgraph.endpoints import Endpoint
 
-__all__ = ['Answers', 'Logs', 'find_stage']
+__all__ = ['WITHIN_SEC', 'Answers', 'Explain', 'find_stage', 'value_of']
 
 # How soon an answer has to come, s. A node may keep what it hears until its timer ticks.
 WITHIN_SEC = 1.0
@@ -96,26 +96,26 @@ class Answers(Clause):
     def judge(self, evidence: Evidence) -> str:
         """Judge the answers."""
         life = evidence.life
-        heard = [(s.at, _get(s, self.field)) for s in life.on(self.inner)]
+        heard = [(s.at, value_of(s, self.field)) for s in life.on(self.inner)]
         due = [life.is_due(self.inner, s, WITHIN_SEC) for s in life.on(self.inner)]
-        came = [(s.at, _get(s, self.field)) for s in life.on(self.outer)]
+        came = [(s.at, value_of(s, self.field)) for s in life.on(self.outer)]
         left = list(came)
-        missing, late = [], []
+        missing, answered = [], []
         for (at, value), is_due in zip(heard, due, strict=True):
             right = self.answer(value)
             if right is None:
                 continue
             found = next((i for i, (t, v) in enumerate(left) if t >= at and v == right), None)
             if found is not None:
-                late.append((left[found][0] - at, at, value))
+                answered.append((left[found][0] - at, at, value))
                 del left[found]
             elif is_due:
                 missing.append((at, value))
         repeated = self._repeats(heard, left) >= MANY and len(missing) < len(heard) / 2
         if missing and not repeated:
-            self._refuse_missing(evidence, missing, left, len(late))
+            self._refuse_missing(evidence, missing, left, len(answered))
         if not repeated:
-            self._refuse_late(evidence, late)
+            self._refuse_late(evidence, answered)
         # At the beginning it may answer what came before: a node may keep what it hears.
         extra = [(t, value) for t, value in left if t >= WITHIN_SEC]
         values = [s.fields[self.field] for s in life.sent if self.field in s.fields]
@@ -125,11 +125,11 @@ class Answers(Clause):
         if extra:
             self._refuse_extra(evidence, heard, extra)
         if missing:
-            self._refuse_missing(evidence, missing, left, len(late))
+            self._refuse_missing(evidence, missing, left, len(answered))
         examples = [value for _, value in heard if self.answer(value) is not None][:2]
         pairs = ', '.join(f'{show([v])} -> {show([self.answer(v)])}' for v in examples)
         hears = evidence.subscription(self.inner, self.by)
-        return f'{hears.node} has answered {len(late)} messages, each once: {pairs}.'
+        return f'{hears.node} has answered {len(answered)} messages, each once: {pairs}.'
 
     def _refuse_missing(
         self,
@@ -237,113 +237,6 @@ class Answers(Clause):
         )
 
 
-@dataclass(frozen=True, eq=False)
-class Logs(Clause):
-    """A node logs a line for each message, and the line holds its text.
-
-    Attributes:
-        topic: Full name of the topic that it hears.
-        words: What is asked for, in words of the task.
-        draw: Draws the texts that are sent as tests.
-        field: Name of the field that holds the text.
-        line: What has to stand in the line, from the text; the text itself if None.
-        explain: Gets a text that was heard, and the lines that came upon it; returns the
-            misconception and the next step, or two empty texts.
-    """
-
-    topic: str
-    words: str
-    draw: Callable[[], Sequence[str]]
-    field: str = 'data'
-    line: Callable[[str], str] | None = None
-    explain: Explain | None = None
-
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
-
-    def find(self, evidence: Evidence) -> None:
-        """Look for the subscription."""
-        evidence.subscription(self.topic)
-
-    def tests(self, evidence: Evidence) -> Sequence[Test]:
-        """Return messages to be logged."""
-        hears = evidence.subscription(self.topic)
-        spun(evidence.probe, hears)
-        return [
-            Test(self.topic, hears.msg_type, {self.field: text}, ('/rosout',))
-            for text in self.draw()
-        ]
-
-    def judge(self, evidence: Evidence) -> str:
-        """Judge the lines."""
-        source = evidence.subscription(self.topic)
-        lines = _lines_of(source.node, evidence.life.on('/rosout'))
-        life, samples = evidence.life, evidence.life.on(self.topic)
-        texts = [str(_get(s, self.field)) for s in samples]
-        wanted = texts if self.line is None else [self.line(text) for text in texts]
-        heard = [(sample.at, line) for sample, line in zip(samples, wanted, strict=True)]
-        known = [line for _, line in lines if any(text and text in line for _, text in heard)]
-        for number, (at, text) in enumerate(heard):
-            if not life.is_known(self.topic, samples[number]):
-                continue
-            later = [t for t, _ in heard[number + 1 :] if t > at]
-            end = min([at + WITHIN_SEC, *later])
-            here = [line for t, line in lines if at <= t < end]
-            same = [t for t, other in heard if at <= t < end and other == text]
-            holding = [line for line in here if text in line]
-            if len(holding) < len(same):
-                self._refuse(evidence, texts[number], text, here, bool(known))
-            if len(holding) > len(same):
-                raise Fail(
-                    f'one line of {source.node} for each message on {self.topic}',
-                    f'{len(holding)} lines: {show(holding)}',
-                    why='The same message is logged more than once.',
-                    todo='Call get_logger().info(...) once in the callback.',
-                )
-        # At the beginning it may log what came before: a node may keep what it hears.
-        silent = [
-            (t, line)
-            for t, line in lines
-            if t >= WITHIN_SEC and not any(a <= t < a + WITHIN_SEC for a, _ in heard)
-        ]
-        quiet = [line for _, line in evidence.life.without_strangers(self.topic, silent, known)]
-        if quiet:
-            raise Fail(
-                f'lines of {source.node} when a message comes, and none otherwise',
-                f'{len(quiet)} lines when none had come: {show(quiet)}',
-                why='A timer or a loop logs, too.',
-                todo='Log in the callback of the subscription only.',
-            )
-        return f'{source.node} logged each of {len(heard)} texts in a line.'
-
-    def _refuse(
-        self, evidence: Evidence, heard: str, text: str, here: Sequence[str], some: bool
-    ) -> NoReturn:
-        source = evidence.subscription(self.topic)
-        if not here:
-            hanging(evidence.probe)
-        why = 'The callback runs, but its line does not hold what the message says.'
-        todo = "In the callback: self.get_logger().info(f'...{msg.data}')"
-        if self.explain is not None and here:
-            why, todo = self.explain(heard, here)
-        if not here:
-            why = (
-                'The callback does not log it. print() shows a text here; the logger also tells '
-                'all other nodes of it.'
-            )
-        if some and not here:
-            why = 'Some messages are logged as they came, and this one is not.'
-        raise Fail(
-            f'{source.node} logs a line with {show([text])} when '
-            f'{"that" if text == heard else show([heard])} comes on {self.topic}',
-            f'{source.node} logged {show(here)}' if here else f'{source.node} logged nothing',
-            why=why,
-            todo=todo,
-        )
-
-
 def find_stage(
     probe: Probe, inner: str, outer: str, test: dict[str, Any], *, by: str = ''
 ) -> tuple[Endpoint, Endpoint]:
@@ -387,20 +280,6 @@ def _others(probe: Probe, hears: Endpoint) -> list[Endpoint]:
     ]
 
 
-def _get(sample: Sample, path: str) -> Any:
+def value_of(sample: Sample, path: str) -> Any:
+    """Return a field of a message; dots lead to inner ones."""
     return reduce(getattr, path.split('.'), sample.message)
-
-
-def _lines_of(node: str, samples: Iterable[Sample]) -> list[tuple[float, str]]:
-    """Return the lines of a node's logger and of the loggers below it, with their times `at`.
-
-    Args:
-        node: Full name of the node.
-        samples: Messages of /rosout.
-    """
-    logger = node.strip('/').replace('/', '.')
-    return [
-        (sample.at, sample.message.msg)
-        for sample in samples
-        if sample.message.name == logger or sample.message.name.startswith(f'{logger}.')
-    ]
