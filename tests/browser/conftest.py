@@ -54,7 +54,7 @@ def open_lesson(
 
     yield open_
     for notebook in opened:
-        if notebook.has_dialog:
+        if notebook.has_dialog or notebook.was_reloaded:
             notebook.close()
         else:
             notebook.leave()

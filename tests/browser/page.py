@@ -88,6 +88,7 @@ class Notebook:
 
     def __init__(self, page: Page) -> None:
         self.page = page
+        self.was_reloaded = False
 
     def open(self, address: str) -> Notebook:
         """Load JupyterLab, which opens a notebook, and wait until its kernel is idle."""
@@ -107,6 +108,18 @@ class Notebook:
             f'() => {{ {_NOTEBOOK}.context.model.dirty = false; {_NOTEBOOK}.close() }}'
         )
         self.page.wait_for_function(f'() => !{_NOTEBOOK}?.context')
+
+    def reload(self) -> None:
+        """Save the notebook and load the page again; the kernel goes on.
+
+        JupyterLab opens the notebook once from its workspace and, at a time of its own, once more
+        from the address. A tab that was loaded again is therefore not for another notebook.
+        """
+        self.was_reloaded = True
+        self.execute('docmanager:save')
+        path = self.page.evaluate(f'{_NOTEBOOK}.context.path')
+        self.page.reload()
+        self.page.wait_for_function(READY, arg=path)
 
     @property
     def has_dialog(self) -> bool:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import ConsoleMessage, Locator, Page, TimeoutError, expect
 
-from tests.browser.page import READY, VIEWPORT, Notebook
+from tests.browser.page import VIEWPORT, Notebook
 
 CELLS = {
     'setup': """
@@ -191,14 +191,6 @@ def wait_for_stored(notebook: Notebook, text: str) -> None:
     )
 
 
-def reload(notebook: Notebook) -> None:
-    """Load the page again, as it was saved; the kernel goes on."""
-    notebook.execute('docmanager:save')
-    name = notebook.page.evaluate('window.jupyterapp.shell.currentWidget.context.path')
-    notebook.page.reload()
-    notebook.page.wait_for_function(READY, arg=name)
-
-
 def test_next_day_there_is_what_was_stored(run_views, jupyter):
     notebook = run_views()
     wait_for_stored(notebook, LEFT['monitor'])
@@ -253,7 +245,7 @@ def test_after_the_end_of_the_kernel_all_views_say_so(run_views, jupyter):
 
 def test_loaded_again_they_go_on_and_a_plot_has_its_lines(run_views):
     notebook = run_views()
-    reload(notebook)
+    notebook.reload()
     for cell_id in VIEWS:
         expect_live(notebook, cell_id)
     for cell_id in ('monitor', 'plot', 'arena'):
@@ -271,7 +263,7 @@ def test_loaded_again_they_go_on_and_a_plot_has_its_lines(run_views):
     )
     expect(plot.locator('td').first).to_contain_text('70')
     assert plot.locator('canvas').evaluate(DRAWN) > 100
-    reload(notebook)
+    notebook.reload()
     plot = notebook.output('plot')
     expect(plot.get_by_role('status')).to_contain_text('Nobody publishes on /odds.')
     expect(plot.locator('td').first).to_contain_text('70')
