@@ -77,8 +77,13 @@ class Kernel:
                 text += content.get('data', {}).get('text/plain', '')
             kinds.append(message['msg_type'])
 
+        # A kernel that stops on errors drops what is asked in the moment after one.
         reply = self._client.execute_interactive(
-            code, output_hook=collect, timeout=TIMEOUT_SEC, allow_stdin=False
+            code,
+            output_hook=collect,
+            timeout=TIMEOUT_SEC,
+            allow_stdin=False,
+            stop_on_error=False,
         )
         return reply['parent_header']['msg_id'], text, kinds
 
