@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rclpy.action.graph import get_action_server_names_and_types_by_node
-from rclpy.node import Node, NodeNameNonExistentError
+from rclpy.node import Node
 
-from labkit.rosgraph.names import is_hidden, split_node_name
+from labkit.rosgraph.listings import ends_of_node
 from labkit.rosgraph.snapshot import node_names
 
 __all__ = ['Server', 'servers']
@@ -56,15 +55,11 @@ def servers(node: Node) -> list[Server]:
     """
     found = []
     for name in sorted({*node_names(node)}):
-        try:
-            offered = node.get_service_names_and_types_by_node(*split_node_name(name))
-            actions = get_action_server_names_and_types_by_node(node, *split_node_name(name))
-        except NodeNameNonExistentError:
-            continue
+        ends = ends_of_node(node, name)
         every = {f'{name}/{service}' for service in _OF_EVERY_NODE}
         found += [
             Server(name, service, types[0])
-            for service, types in sorted([*offered, *actions])
-            if service not in every and not is_hidden(service)
+            for service, types in sorted([*ends.service_servers, *ends.action_servers])
+            if service not in every
         ]
     return found

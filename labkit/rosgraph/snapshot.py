@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from rclpy.node import Node
 
 from labkit.rosgraph.endpoints import Endpoint, publishers, subscriptions
-from labkit.rosgraph.listings import actions, ends_of_node
+from labkit.rosgraph.listings import actions, ends_of_node, has_ends
 from labkit.rosgraph.matching import how_to_match, why_apart
 from labkit.rosgraph.names import (
     EVERY_NODE_HAS,
@@ -211,9 +211,7 @@ def node_names(node: Node) -> list[str]:
         else:
             living[name] += 1
     for name in named.keys() - living.keys() - killed:
-        living[name] = named[name] * any(
-            ends_of_node(node, name, include_hidden=True).names().values()
-        )
+        living[name] = named[name] * has_ends(node, name)
     return sorted((named & living).elements())
 
 

@@ -130,7 +130,8 @@ is_open()
 stadium._process.stop()
 print(nodes(), gates(), stadium.wrong_gates(), stadium._process.exit_code)
 """
-    assert script(STADIUM + code, **env).stdout == '[] [] [] 0\n'
+    result = script(STADIUM + code, **env)
+    assert result.stdout == '[] [] [] 0\n', result.stderr
 
 
 def test_of_a_stadium_that_was_killed_nothing_is_shown(script: Any, env: dict[str, str]) -> None:

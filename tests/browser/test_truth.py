@@ -164,7 +164,12 @@ def run_views(open_cells: Callable[..., Notebook]) -> Callable[[], Notebook]:
 
 
 def expect_live(notebook: Notebook, cell_id: str) -> None:
-    expect(notebook.output(cell_id).locator('.labkit-view')).to_be_visible()
+    try:
+        expect(notebook.output(cell_id).locator('.labkit-view')).to_be_visible()
+    except AssertionError:
+        # What JupyterLab says in the view's place is hidden behind what is stored.
+        places = notebook.output(cell_id).locator('.jp-OutputArea-output')
+        pytest.fail(f'{cell_id} does not live: {places.all_text_contents()}')
     expect(notebook.output(cell_id).locator('.labkit-stored')).to_be_hidden()
 
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 
-LIST = """
+LAMP = """
 import json
 from dataclasses import asdict
 import labkit as lab
 from labkit.background.runtime import runtime
 from labkit.rosgraph import listings
-from rclpy.node import Node
+from rclpy.node import Node, NodeNameNonExistentError
 from std_msgs.msg import Int16, String
 from std_srvs.srv import Trigger
 
@@ -23,6 +23,10 @@ lamp.create_service(Trigger, '/go', print)
 lamp.create_client(Trigger, '/come')
 lab.spin(lamp)
 node = runtime.helper
+"""
+LIST = (
+    LAMP
+    + """
 print(json.dumps({
     'topics': listings.topics(node),
     'own': listings.own_topics(node),
@@ -35,6 +39,7 @@ print(json.dumps({
         listings.ends_of_node(node, '/hall/lamp', include_hidden=True)).values()],
 }))
 """
+)
 
 
 def test_what_there_is_by_name_and_type(script):
@@ -55,3 +60,46 @@ def test_what_there_is_by_name_and_type(script):
     assert ends['service_clients'] == [['/come', ['std_srvs/srv/Trigger']]]
     assert (ends['action_servers'], ends['action_clients']) == ([], [])
     assert found['all'][1] == len(ends['publishers']) + 1
+
+
+HAUNTED = """
+from test_msgs.action import Fibonacci
+from rclpy.action import ActionClient, ActionServer
+from labkit.rosgraph.servers import servers
+
+class Haunted:
+    # A node of the same name has ended: it is the one of which ROS speaks.
+    def __getattr__(self, name):
+        if name.endswith('_by_node'):
+            return lambda *whose: []
+        return getattr(node, name)
+
+    @property
+    def handle(self):
+        raise NodeNameNonExistentError
+
+ActionServer(lamp, Fibonacci, 'count', print)
+ActionClient(lamp, Fibonacci, '/add')
+nobody = Node('stranger', start_parameter_services=False)
+for name in ('/hall/lamp', '/stranger', '/nobody'):
+    for hidden in (False, True):
+        seen = listings.ends_of_node(Haunted(), name, include_hidden=hidden)
+        there = listings.ends_of_node(node, name, include_hidden=hidden)
+        print(name, hidden, seen == there)
+print(listings.has_ends(node, '/hall/lamp'), listings.has_ends(Haunted(), '/hall/lamp'))
+print([server.service for server in servers(Haunted())])
+"""
+
+
+def test_of_two_nodes_of_a_name_the_one_that_lives_is_looked_at(script):
+    result = script(LAMP + HAUNTED)
+    assert result.stdout.splitlines() == [
+        '/hall/lamp False True',
+        '/hall/lamp True True',
+        '/stranger False True',
+        '/stranger True True',
+        '/nobody False True',
+        '/nobody True True',
+        'True False',
+        "['/go', '/hall/count']",
+    ], result.stderr
