@@ -59,7 +59,9 @@ class ActionGoals:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._client.destroy()  # type: ignore[no-untyped-call]
+        # What a goal still sends, such as its last status, may wait to be taken at this moment.
+        with runtime.executor.between_callbacks():
+            self._client.destroy()  # type: ignore[no-untyped-call]
 
     def wait_until_ready(self, timeout_sec: float | None) -> bool:
         """Wait until goals can be sent.

@@ -407,8 +407,11 @@ class BackgroundExecutor(Executor):
             error = self._go_on(work) if isinstance(work, _UnderWay) else self._begin(work, entry)
             self._running = None
             # Not when the node was removed meanwhile, or an action: then the error is that it was.
-            ended = isinstance(error, InvalidHandle) and isinstance(what, Waitable)
-            if error is not None and entry.node in self._entries and not ended:
+            if (
+                error is not None
+                and entry.node in self._entries
+                and not _is_end(entry.node, what, error)
+            ):
                 self._console.show_error(entry.name, callback_name(what), error)
             if entry.budget is not None and entry.budget <= 0:
                 self.remove_node(entry.node)
@@ -500,3 +503,10 @@ def callback_name(what: Any) -> str:
     """Return the name of a callback, or of that of a timer, a subscription or a service."""
     callback = getattr(what, 'callback', None) or what
     return getattr(callback, '__name__', None) or type(what).__name__
+
+
+def _is_end(node: Node, what: object, error: BaseException) -> bool:
+    """Tell whether an error is only that an action's end was destroyed before it was taken."""
+    if isinstance(error, compat.RCLError):  # from what it is made of
+        return isinstance(what, Waitable) and what not in node.waitables
+    return isinstance(error, InvalidHandle) and isinstance(what, Waitable)
