@@ -54,18 +54,12 @@ LETTERS = {
     'figure': 'svg',
 }
 # How large the letters are: in a drawing that is scaled, as they are seen.
-SIZE = """(output, selector) => {
-  const element = output.querySelector(selector);
-  if (!element) return null;
-  return element.closest('svg') ? element.getBoundingClientRect().height
-    : Number.parseFloat(getComputedStyle(element).fontSize);
-}"""
+SIZE = """element => element.closest('svg')
+  ? element.getBoundingClientRect().height
+  : Number.parseFloat(getComputedStyle(element).fontSize)"""
 # Whether something is wider than the notebook.
-WIDER = """(output, selector) => {
-  const right = (element) => element.getBoundingClientRect().right;
-  return [...output.querySelectorAll(selector)].slice(0, 1).some(
-    (element) => right(element) > right(output.closest('.jp-Notebook')) + 1);
-}"""
+WIDER = """element => element.getBoundingClientRect().right
+  > element.closest('.jp-Notebook').getBoundingClientRect().right + 1"""
 
 
 @pytest.fixture
@@ -78,18 +72,20 @@ def notebook(open_cells):
     return found
 
 
+def ask(notebook, cell_id, question):
+    """Ask the first of the letters of an output, in one go: views draw their parts anew."""
+    answer = notebook.page.wait_for_function(
+        f"""([output, selector]) => {{
+          const element = output.querySelector(selector);
+          return element && [({question})(element)];
+        }}""",
+        arg=[notebook.output(cell_id).element_handle(), LETTERS[cell_id]],
+    )
+    return answer.json_value()[0]
+
+
 def sizes(notebook):
-    found = {}
-    for cell_id, selector in LETTERS.items():
-        # Asked of the output, in one go: a view draws its parts anew while it lives.
-        output = notebook.output(cell_id)
-        output.locator(selector).first.wait_for()
-        size = notebook.page.wait_for_function(
-            f'([output, selector]) => ({SIZE})(output, selector)',
-            arg=[output.element_handle(), selector],
-        )
-        found[cell_id] = size.json_value()
-    return found
+    return {cell_id: ask(notebook, cell_id, SIZE) for cell_id in LETTERS}
 
 
 def mode(notebook, on):
@@ -106,8 +102,8 @@ def test_type_grows_everywhere_and_goes_back(notebook):
     # A graph with a robot is as wide as the page already.
     assert larger.pop('graph') >= before['graph']
     assert {cell_id for cell_id in larger if larger[cell_id] < 1.5 * before[cell_id]} == set()
-    for cell_id, selector in LETTERS.items():
-        assert not notebook.output(cell_id).evaluate(WIDER, selector), cell_id
+    for cell_id in LETTERS:
+        assert not ask(notebook, cell_id, WIDER), cell_id
     # It stays while cells run, its own too.
     for cell_id in ('print', 'monitor', 'on'):
         notebook.run_cell(cell_id)
