@@ -410,7 +410,7 @@ class BackgroundExecutor(Executor):
             if (
                 error is not None
                 and entry.node in self._entries
-                and not _is_end(entry.node, what, error)
+                and not _was_destroyed(entry.node, what, error)
             ):
                 self._console.show_error(entry.name, callback_name(what), error)
             if entry.budget is not None and entry.budget <= 0:
@@ -505,8 +505,9 @@ def callback_name(what: Any) -> str:
     return getattr(callback, '__name__', None) or type(what).__name__
 
 
-def _is_end(node: Node, what: object, error: BaseException) -> bool:
+def _was_destroyed(node: Node, what: object, error: BaseException) -> bool:
     """Tell whether an error is only that an action's end was destroyed before it was taken."""
-    if isinstance(error, compat.RCLError):  # from what it is made of
-        return isinstance(what, Waitable) and what not in node.waitables
-    return isinstance(error, InvalidHandle) and isinstance(what, Waitable)
+    if not isinstance(what, Waitable):
+        return False
+    removed = isinstance(error, compat.RCLError) and what not in node.waitables
+    return removed or isinstance(error, InvalidHandle)
