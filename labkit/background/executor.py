@@ -15,11 +15,10 @@ What was measured of rclpy in a kernel, and decides the shape of this module:
 from __future__ import annotations
 
 import threading
-import time
 from collections import deque
 from collections.abc import Callable, Coroutine
-from contextlib import AbstractContextManager, suppress
-from dataclasses import dataclass, replace
+from contextlib import AbstractContextManager
+from dataclasses import replace
 from typing import Any, NoReturn
 
 from rclpy.exceptions import InvalidHandle
@@ -30,36 +29,19 @@ from rclpy.task import Task
 from rclpy.waitable import Waitable
 
 from labkit.background import compat
+from labkit.background.conditions import POLL_SEC, Conditions
 from labkit.background.console import Console
-from labkit.background.nodes import NodeEntry
+from labkit.background.nodes import NodeEntry, callback_name
+from labkit.background.under_way import UnderWay, Work
 from labkit.background.wait_set import KeptWaitSet, Ready
 from labkit.errors import LabError
 
-__all__ = ['BackgroundExecutor', 'callback_name']
+__all__ = ['BackgroundExecutor']
 
-# While nothing happens in ROS, a condition that depends on something else is looked at this often.
-POLL_SEC = 0.05
 # How long a thread may take to end that runs no callback, s: only a fault would make it longer.
 END_SEC = 30.0
 # How long to wait for a callback that keeps a removed node from being let go.
 RELEASE_SEC = 1.0
-
-
-@dataclass(eq=False)
-class _UnderWay:
-    """A coroutine that awaits something, or a function that belongs to no entity.
-
-    Attributes:
-        task: Gone on with after each callback, until it is done.
-        entry: The node that it is a part of.
-        what: The entity or the function, whose name is shown with an error.
-        entity: Keeps others of its callback group waiting; None for a function without entity.
-    """
-
-    task: Any
-    entry: NodeEntry
-    what: Any
-    entity: Any = None
 
 
 class BackgroundExecutor(Executor):
@@ -77,22 +59,17 @@ class BackgroundExecutor(Executor):
         super().__init__()
         self._console = console
         self._entries: dict[Node, NodeEntry] = {}
-        self._callback_lock = threading.RLock()
         self._round_begun = threading.Condition()
         self._rounds = 0
         self._round_awaited = 0
         self._running: tuple[NodeEntry, Any] | None = None
-        self._conditions: list[Callable[[], None]] = []
+        self._conditions = Conditions(console)
         self._closing = False
         self._settling: threading.Event | None = None
         self._settle_lock = threading.Lock()
-        # The thread that is looking at a condition of `wait` just now.
-        self._looking: int | None = None
         self._wait_set = KeptWaitSet(self)
-        self._ready: deque[Ready | _UnderWay] = deque()
-        self._under_way: list[_UnderWay] = []
-        # Whether something has happened since what is under way was gone on with.
-        self._stirred = False
+        self._under_way = UnderWay(self._wait_set.give_up)
+        self._ready: deque[Ready | Work] = deque()
         self._thread = threading.Thread(target=self._spin, name='labkit', daemon=True)
 
     def start(self) -> None:
@@ -125,14 +102,11 @@ class BackgroundExecutor(Executor):
         self.wake()
         left = timeout_sec
         while self._thread.is_alive() and not self.in_callback():
-            is_busy = self._running is not None or self._looking is not None
-            if left <= (0 if is_busy else -END_SEC):
+            if left <= (0 if self._is_busy else -END_SEC):
                 break
             self._thread.join(POLL_SEC)
             left -= POLL_SEC  # no clock: the whole machine may have stood still meanwhile
-        for work in self._under_way:
-            work.task.cancel()  # else Python complains of coroutines that were never awaited
-        self._under_way.clear()
+        self._under_way.cancel()
         self._wait_set.give_up()
         return not self._thread.is_alive()
 
@@ -151,7 +125,7 @@ class BackgroundExecutor(Executor):
 
     def _rouse(self) -> None:
         """End a wait, to look at what is under way. The entities are still the same."""
-        self._stirred = True
+        self._under_way.stir()
         super().wake()
 
     def remove_node(self, node: Node) -> None:
@@ -167,7 +141,7 @@ class BackgroundExecutor(Executor):
         super().remove_node(node)
         self.wake()
         # Who looks at a condition keeps the thread from its next round.
-        waits_in_vain = self.in_callback() or self._looking == threading.get_ident()
+        waits_in_vain = self.in_callback() or self._conditions.ask
         if self.is_open and not waits_in_vain:
             self._await_round_after(seen)
 
@@ -179,8 +153,7 @@ class BackgroundExecutor(Executor):
             try:
                 while not self._round_begun.wait_for(lambda: self._rounds > seen, RELEASE_SEC):
                     left -= RELEASE_SEC  # no clock: the whole machine may have stood still
-                    is_busy = self._running is not None or self._looking is not None
-                    if is_busy or not self.is_open or left <= 0:
+                    if self._is_busy or not self.is_open or left <= 0:
                         return
             finally:
                 self._round_awaited -= 1
@@ -207,29 +180,23 @@ class BackgroundExecutor(Executor):
             first = next(iter(self._entries.values()))
             owner = replace(first, cell=self._console.current_cell(), counts={}, budget=None)
         task = Task(callback, args, kwargs, executor=self)  # type: ignore[no-untyped-call]
-        self._under_way.append(_UnderWay(task, owner, compat.callback_of(task)))
+        self._under_way.add_function(task, owner)
         self._rouse()
         return task
 
-    def spin(self) -> NoReturn:
+    def spin(self, *_: Any, **__: Any) -> NoReturn:
         """Refuse to spin: the background does, and two at once would take from each other.
 
         Raises:
             LabError: Always.
         """
-        raise _spins_already('spin')
+        raise LabError(
+            'This executor can not be asked to spin: it spins in the background already.',
+            todo='Wait for what you expect: lab.wait_until(lambda: future.done()), or '
+            'lab.wait_for_message(...).',
+        )
 
-    def spin_once(self, timeout_sec: float | None = None) -> NoReturn:
-        """Refuse to spin, as `spin` does."""
-        raise _spins_already('spin_once')
-
-    def spin_once_until_future_complete(self, future: Any, timeout_sec: Any = None) -> NoReturn:
-        """Refuse to spin, as `spin` does."""
-        raise _spins_already('spin_once_until_future_complete')
-
-    def spin_until_future_complete(self, future: Any, timeout_sec: Any = None) -> NoReturn:
-        """Refuse to spin, as `spin` does."""
-        raise _spins_already('spin_until_future_complete')
+    spin_once = spin_until_future_complete = spin_once_until_future_complete = spin
 
     # -- waiting --------------------------------------------------------------------------------
 
@@ -246,49 +213,7 @@ class BackgroundExecutor(Executor):
         Raises:
             Exception: What `condition` raises.
         """
-        done = threading.Event()
-        failed: list[BaseException] = []
-        with self._console.waiting() as end:
-
-            def look() -> None:
-                self._looking = threading.get_ident()
-                try:
-                    if done.is_set() or not condition():
-                        return
-                except BaseException as error:  # it belongs to the caller, not to this thread
-                    failed.append(error)
-                finally:
-                    self._looking = None
-                end()
-                done.set()
-
-            self._conditions.append(look)
-            try:
-                self._wait_for(done, look, timeout_sec)
-            finally:
-                self._conditions.remove(look)
-        if failed:
-            raise failed[0]
-        return done.is_set()
-
-    def _wait_for(
-        self, done: threading.Event, look: Callable[[], None], timeout_sec: float | None
-    ) -> None:
-        endless = timeout_sec is None or timeout_sec < 0
-        end = float('inf') if endless else time.monotonic() + (timeout_sec or 0.0)
-        while True:
-            # Between callbacks only: one that is half way may have counted, but not yet printed.
-            try:
-                if self._callback_lock.acquire(timeout=POLL_SEC):
-                    look()
-            finally:
-                # The stop button may strike between acquiring and knowing of it, so the lock
-                # itself is asked: it refuses when this thread does not hold it.
-                with suppress(RuntimeError):
-                    self._callback_lock.release()
-            left = end - time.monotonic()
-            if done.wait(max(0.0, min(POLL_SEC, left))) or left <= 0 or self._closing:
-                return
+        return self._conditions.wait(condition, timeout_sec, lambda: self._closing)
 
     def settle(self, timeout_sec: float) -> bool:
         """Wait until nothing is left to run, nor has become ready through what was run.
@@ -313,7 +238,7 @@ class BackgroundExecutor(Executor):
 
     def between_callbacks(self) -> AbstractContextManager[bool]:
         """Return what keeps callbacks waiting for a `with` block, which must not wait itself."""
-        return self._callback_lock
+        return self._conditions.lock
 
     def in_callback(self) -> bool:
         """Tell whether the caller is the background thread itself, that is, a callback."""
@@ -326,7 +251,7 @@ class BackgroundExecutor(Executor):
             what: What can't be done there, such as `'Waiting'`.
             todo: What to do instead in a callback.
         """
-        if self._looking == threading.get_ident():
+        if self._conditions.ask:
             raise LabError(
                 f'{what} inside the condition of a wait can not work: a condition is looked at '
                 'between callbacks, and no message comes until it has answered.',
@@ -341,6 +266,11 @@ class BackgroundExecutor(Executor):
                 or 'Return from the callback. For a service, use call_async() and '
                 'add_done_callback().',
             )
+
+    @property
+    def _is_busy(self) -> bool:
+        """Whether a callback runs, or a condition is looked at."""
+        return self._running is not None or self._conditions.are_looked_at
 
     def caller(self) -> tuple[NodeEntry, str] | None:
         """Return the node whose callback calls this, and the callback's name."""
@@ -379,10 +309,9 @@ class BackgroundExecutor(Executor):
         if self._ready:
             self._run(self._ready.popleft())
             return
-        if self._under_way and self._stirred:
-            # Before the next wait: what they await may have come with the last callback.
-            self._stirred = False
-            self._ready.extend(self._under_way)
+        # Before the next wait: what they await may have come with the last callback.
+        if due := self._under_way.due():
+            self._ready.extend(due)
             return
         settling = self._settling
         ready = self._wait_set.wait(
@@ -395,16 +324,19 @@ class BackgroundExecutor(Executor):
             self._settling = None  # before the one who waits asks anew
             settling.set()
 
-    def _run(self, work: Ready | _UnderWay) -> None:
+    def _run(self, work: Ready | Work) -> None:
         """Run a callback, or go on with what is under way, and look what has come of it."""
         entry = self._entry_to_run(work)
         if entry is None:
             return
-        what = work.what if isinstance(work, _UnderWay) else work.entity
+        what = work.what if isinstance(work, Work) else work.entity
         self._console.speak_for(entry.cell)
-        with self._callback_lock:
+        with self._conditions.lock:
             self._running = (entry, what)
-            error = self._go_on(work) if isinstance(work, _UnderWay) else self._begin(work, entry)
+            if isinstance(work, Work):
+                error = self._under_way.go_on(work)
+            else:
+                error = self._begin(work, entry)
             self._running = None
             # Not when the node was removed meanwhile, or an action: then the error is that it was.
             if (
@@ -415,16 +347,12 @@ class BackgroundExecutor(Executor):
                 self._console.show_error(entry.name, callback_name(what), error)
             if entry.budget is not None and entry.budget <= 0:
                 self.remove_node(entry.node)
-            for look in tuple(self._conditions):
-                look()
+            self._conditions.look()
 
-    def _entry_to_run(self, work: Ready | _UnderWay) -> NodeEntry | None:
+    def _entry_to_run(self, work: Ready | Work) -> NodeEntry | None:
         """Return the node whose callback is to be run now, None if none is."""
-        if isinstance(work, _UnderWay):
-            if not work.entry.alive:
-                work.task.cancel()  # a goal, for one, goes on no more when its node has ended
-            if work.task.done() or work.task.cancelled():
-                self._end(work)
+        if isinstance(work, Work):
+            if self._under_way.is_over(work):
                 return None
             # Spun with `rclpy.spin_once()`, it goes on when its node is spun again.
             at_rest = work.entity is not None and work.entry.node not in self._entries
@@ -446,8 +374,8 @@ class BackgroundExecutor(Executor):
         if execute is None:
             self._wait_set.give_up()  # it was destroyed, perhaps past its node
             return None
-        self._stirred = True
-        self._count(entry, work.entity)
+        self._under_way.stir()
+        entry.count(work.entity)
         coroutine = execute()
         try:
             coroutine.send(None)
@@ -456,53 +384,8 @@ class BackgroundExecutor(Executor):
         except BaseException as error:
             return error
         task = Task(coroutine)  # type: ignore[no-untyped-call]
-        self._under_way.append(_UnderWay(task, entry, work.entity, work.entity))
-        work.entity.callback_group.beginning_execution(work.entity)
-        self._wait_set.give_up()
+        self._under_way.add_callback(task, entry, work.entity)
         return None
-
-    def _go_on(self, work: _UnderWay) -> BaseException | None:
-        """Go on with what is under way; return what it raises."""
-        task = work.task
-        try:
-            task()
-        except BaseException as let_through:  # by rclpy, such as that of sys.exit()
-            task.set_exception(let_through)
-        if not task.done():
-            return None
-        self._end(work)
-        self._stirred = True
-        if work.entity is None:
-            self._count(work.entry, None)
-        error: BaseException | None = task.exception()
-        return error
-
-    def _end(self, work: _UnderWay) -> None:
-        """Let others of its group run again."""
-        with suppress(ValueError):
-            self._under_way.remove(work)
-            if work.entity is not None:
-                work.entity.callback_group.ending_execution(work.entity)
-                self._wait_set.give_up()
-
-    def _count(self, entry: NodeEntry, entity: Any) -> None:
-        entry.counts[entity] = entry.counts.get(entity, 0) + 1
-        if entry.budget is not None:
-            entry.budget -= 1
-
-
-def _spins_already(method: str) -> LabError:
-    return LabError(
-        f'{method}() of this executor: it is the one that spins in the background already.',
-        todo='Wait for what you expect: lab.wait_until(lambda: future.done()), or '
-        'lab.wait_for_message(...).',
-    )
-
-
-def callback_name(what: Any) -> str:
-    """Return the name of a callback, or of that of a timer, a subscription or a service."""
-    callback = getattr(what, 'callback', None) or what
-    return getattr(callback, '__name__', None) or type(what).__name__
 
 
 def _was_destroyed(node: Node, what: object, error: BaseException) -> bool:

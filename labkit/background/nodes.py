@@ -24,6 +24,7 @@ from labkit.errors import LabError
 __all__ = [
     'NodeEntry',
     'after_destroy',
+    'callback_name',
     'check_node',
     'destroy_node',
     'existing_nodes',
@@ -64,6 +65,12 @@ class NodeEntry:
         """Return how many of its callbacks have been run."""
         return sum(self.counts.values())
 
+    def count(self, entity: Any) -> None:
+        """Count one more callback, of an entity or, with None, of none."""
+        self.counts[entity] = self.counts.get(entity, 0) + 1
+        if self.budget is not None:
+            self.budget -= 1
+
     @property
     def alive(self) -> bool:
         """Tell whether the node still exists, i.e. nobody has called `destroy_node()`."""
@@ -86,6 +93,12 @@ def full_name(node: Node) -> str:
         return node.get_fully_qualified_name()
     except (InvalidHandle, AttributeError):
         return ''
+
+
+def callback_name(what: Any) -> str:
+    """Return the name of a callback, or of that of a timer, a subscription or a service."""
+    callback = getattr(what, 'callback', None) or what
+    return getattr(callback, '__name__', None) or type(what).__name__
 
 
 class _Made:

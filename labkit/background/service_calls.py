@@ -11,7 +11,7 @@ from rclpy.node import Node
 
 from labkit.background.compat import RCLError
 from labkit.background.discovery import soon
-from labkit.background.executor import callback_name
+from labkit.background.nodes import callback_name
 from labkit.background.patience import answer_sec
 from labkit.background.runtime import runtime
 from labkit.errors import LabError, LabTimeout
