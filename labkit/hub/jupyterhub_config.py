@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 from labkit.hub.class_list import read_class
+from labkit.hub.containers import MOUNTED, mount_class
 from labkit.hub.passwords import HASHES
 from labkit.hub.proxy import proxy_command
 
@@ -35,17 +36,17 @@ c.Spawner.start_timeout = c.Spawner.http_timeout = 180
 c.Spawner.mem_limit = '2G'
 # Nothing else of the hub's own variables: they belong to root's Python.
 c.Spawner.env_keep = ['PATH', 'LANG', 'LC_ALL', 'VIRTUAL_ENV']
-class_folder = os.environ.get('LABKIT_CLASS_FOLDER')
-if class_folder:
-    # For `lab.join_class()` and `lab.classroom()`.
-    c.Spawner.environment = {'LABKIT_CLASS_FOLDER': class_folder}
 learner = [sys.executable, '-m', 'labkit.hub.learner']
 image = os.environ.get('LABKIT_IMAGE')
+class_folder = os.environ['LABKIT_CLASS_FOLDER']
+# For `lab.join_class()` and `lab.classroom()`.
+c.Spawner.environment = {'LABKIT_CLASS_FOLDER': MOUNTED if image else class_folder}
 if image:
     # A container for each learner: an own network, and `mem_limit` for all of it.
     c.JupyterHub.spawner_class = 'dockerspawner.DockerSpawner'
     c.DockerSpawner.image = image  # its CMD is the same as `learner` is here
     c.DockerSpawner.volumes = {'labkit-{username}': '/home/jovyan'}
+    c.DockerSpawner.pre_spawn_hook = mount_class(Path(class_folder))
     c.DockerSpawner.remove = True
     c.DockerSpawner.use_internal_ip = True
     c.DockerSpawner.extra_host_config = {

@@ -14,6 +14,7 @@ import numpy
 from labkit.errors import LabError
 from labkit.hub.accounts import make_accounts, make_class_folder
 from labkit.hub.class_list import read_class
+from labkit.hub.containers import make_class_volumes
 from labkit.hub.passwords import FIRST_PASSWORDS, make_passwords
 from labkit.setup.compiler import fix_exported_paths
 from labkit.setup.environment import ROOT, environment_variables
@@ -50,27 +51,28 @@ def main(words: Sequence[str]) -> int:
         for name in make_accounts(names):
             print(f'{name} has an account now.')
         _check_access(names[0])
-        make_class_folder(_class_folder(options.folder), members)
+        # Beside the hub's folder, which is closed to learners.
+        class_folder = options.folder.with_name(f'{options.folder.name}-class')
+        make_class_folder(class_folder, members)
+    else:
+        class_folder = options.folder / 'class'
+        make_class_volumes(class_folder, members)
     new = make_passwords(options.folder, names, anew=[anew] if anew else [])
     passwords = options.folder / FIRST_PASSWORDS
     if new:
         print(f'New passwords, for {", ".join(new)}: {passwords}')
     if anew is not None:
         return 0
-    variables = environment_variables() | {'LABKIT_CLASS': str(options.class_list)}
-    if options.image is None:
-        variables['LABKIT_CLASS_FOLDER'] = str(_class_folder(options.folder))
-    else:
+    variables = environment_variables() | {
+        'LABKIT_CLASS': str(options.class_list),
+        'LABKIT_CLASS_FOLDER': str(class_folder),
+    }
+    if options.image is not None:
         variables['LABKIT_IMAGE'] = options.image
     print(f'Starting JupyterHub for {len(names)}. To stop it, press Ctrl+C here.', flush=True)
     os.chdir(options.folder)
     command = [sys.executable, '-m', 'jupyterhub', '-f', str(_CONFIG), *options.arguments]
     os.execve(sys.executable, command, variables)
-
-
-def _class_folder(folder: Path) -> Path:
-    """Return the folder for what learners share: beside the hub's, which is closed to them."""
-    return folder.with_name(f'{folder.name}-class')
 
 
 def _check_access(name: str) -> None:

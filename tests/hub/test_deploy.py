@@ -6,6 +6,7 @@ import json
 import os
 import re
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import jsonschema
@@ -33,6 +34,7 @@ def configuration(folder: Path, monkeypatch: pytest.MonkeyPatch, **env: str) -> 
     """Return what JupyterHub reads."""
     (folder / 'robots.txt').write_text('anna\nmaria teacher\n')
     monkeypatch.setenv('LABKIT_CLASS', str(folder / 'robots.txt'))
+    monkeypatch.setenv('LABKIT_CLASS_FOLDER', str(folder / 'class'))
     for name, value in env.items():
         monkeypatch.setenv(name, value)
     path = str(HUB / 'jupyterhub_config.py')
@@ -74,7 +76,8 @@ def test_each_setting_is_one_that_jupyterhub_knows(
         for name, value in settings.items():
             if section in KNOWN:
                 trait = KNOWN[section].class_traits(config=True)[name]  # type: ignore[attr-defined]
-                trait.validate(HasTraits(), value)
+                if hasattr(trait, 'validate'):  # a hook may be anything
+                    trait.validate(HasTraits(), value)
     assert config.Authenticator.allowed_users == {'anna', 'maria'}
     assert config.Authenticator.admin_users == {'maria'}
     # A container runs what its image says.
@@ -163,3 +166,31 @@ def test_the_chart_runs_the_command_of_the_image() -> None:
     assert VALUES['singleuser']['cmd'] is None  # else it would be `jupyterhub-singleuser`
     assert VALUES['hub']['config']['NativeAuthenticator']['open_signup'] is False
     assert VALUES['proxy']['https']['enabled'] is True
+
+
+def test_pods_have_their_part_of_the_folder_of_the_class() -> None:
+    learner = VALUES['singleuser']
+    (volume,), (mount,) = (learner['storage'][f'extraVolume{what}'] for what in ('s', 'Mounts'))
+    claim = yaml.safe_load((HUB / 'class_volume.yaml').read_text())
+    assert volume['persistentVolumeClaim']['claimName'] == claim['metadata']['name']
+    assert claim['spec']['accessModes'] == ['ReadWriteMany']
+    assert mount['name'] == volume['name'] and mount['subPath'] == '{username}'
+    # `lab.join_class()` looks there: the name that one logs in with, in the folder of the class.
+    folder = learner['extraEnv']['LABKIT_CLASS_FOLDER']
+    assert mount['mountPath'] == f'{folder}/{{unescaped_username}}'
+    (first,) = learner['initContainers']
+    image = learner['image']
+    assert first['image'] == f'{image["name"]}:{image["tag"]}'
+    (seen,) = first['volumeMounts']
+    (own,) = set(re.findall(r' (/\S+)', first['command'][-1]))
+    assert own == f'{seen["mountPath"]}/{mount["subPath"]}'
+
+    config = Config()
+    exec(VALUES['hub']['extraConfig']['class'], {'c': config})
+    for is_admin, parts in ((False, [mount]), (True, [{**seen, 'readOnly': True}, mount])):
+        user = SimpleNamespace(admin=is_admin)
+        spawner = SimpleNamespace(user=user, volume_mounts=[mount])
+        for _ in range(2):  # one spawner starts a pod again and again
+            config.KubeSpawner.pre_spawn_hook(spawner)
+        expected = [{**part, 'mountPath': folder} if part != mount else part for part in parts]
+        assert spawner.volume_mounts == expected

@@ -47,6 +47,7 @@ def hub(
     (folder / 'robots.txt').write_text('anna\nben\n')
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv('LABKIT_CLASS', str(folder / 'robots.txt'))
+        patch.setenv('LABKIT_CLASS_FOLDER', str(folder / 'class'))
         config = PyFileConfigLoader(str(CONFIG)).load_config()
     (culler,) = config.JupyterHub.services
     hurry = culler | {'command': [*culler['command'][:-1], '--timeout=1', '--cull-every=1']}
