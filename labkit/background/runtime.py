@@ -1,4 +1,4 @@
-"""ROS in this process, started and stopped as a notebook needs it: `start`, `spin`, `remove`.
+"""ROS in this process, started and stopped as a notebook needs it.
 
 One context, one executor, one background thread (`executor`), one registry of nodes by name, so
 that a cell can be run again without leaving a second node behind.
@@ -11,7 +11,6 @@ import os
 import threading
 import time
 from collections.abc import Callable
-from typing import TypeVar
 
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
@@ -34,20 +33,11 @@ from labkit.background.nodes import (
 )
 from labkit.background.notebook_rclpy import ORIGINALS, install
 from labkit.background.registry import Registry
-from labkit.errors import LabError, nearest
+from labkit.errors import LabError
 from labkit.rosgraph.names import full_node_name
 from labkit.rosgraph.whose import foreign_nodes
 
-__all__ = [
-    'Runtime',
-    'remove',
-    'runtime',
-    'spin',
-    'start',
-    'stop',
-]
-
-AnyNode = TypeVar('AnyNode', bound=Node)
+__all__ = ['Runtime', 'runtime']
 
 # How long stop() waits for a callback that is still running.
 JOIN_SEC = 2.0
@@ -368,82 +358,3 @@ class Runtime:
 
 runtime = Runtime()
 atexit.register(runtime.stop)
-
-
-def start(*, domain_id: int | None = None) -> None:
-    """Start ROS in the background.
-
-    Everything in labkit that needs ROS does this by itself; call it to choose a domain.
-
-    Args:
-        domain_id: The ROS domain to take part in, 0 to 101, or that of another notebook. By
-            default `ROS_DOMAIN_ID` if it is set, else, in a notebook, a domain that no other
-            notebook on this machine has.
-
-    Raises:
-        LabError: ROS runs in another domain already, with nodes in it.
-    """
-    runtime.start(domain_id=domain_id)
-
-
-def spin(node: AnyNode) -> AnyNode:
-    """Run a node in the background: its callbacks are called while cells come and go.
-
-    A node of the same name that this notebook started before is destroyed first, so a cell may
-    be run again as often as you like.
-
-    Args:
-        node: An object of a class made on `rclpy.node.Node`.
-
-    Returns:
-        The node.
-
-    Raises:
-        LabError: It is not a node, or it has been destroyed.
-    """
-    runtime.add(node)
-    return node
-
-
-def remove(node: Node | str) -> None:
-    """End a node: it is taken from the background and destroyed.
-
-    Args:
-        node: The node, or its name: `'talker'` or `'/talker'`, with its namespace if it has one.
-
-    Raises:
-        LabError: No node of that name runs here.
-    """
-    if isinstance(node, Node):
-        runtime.destroy(node)
-        return
-    for each in _find(node):
-        runtime.destroy(each)
-
-
-def stop() -> None:
-    """Destroy all nodes, end the background thread and shut ROS down.
-
-    `lab.start()`, `lab.spin()` and the rest work again afterwards.
-    """
-    runtime.stop()
-
-
-def _find(name: str) -> list[Node]:
-    """Return the nodes of a name: mostly one, spun or not."""
-    running = [entry.node for entry in runtime.nodes()]
-    wanted = name if name.startswith('/') else f'/{name}'
-    found = [node for node in [*running, *runtime.unspun_nodes()] if full_name(node) == wanted]
-    if found:
-        return found
-    names = [full_name(node) for node in running]
-    near = nearest(wanted, names)
-    if wanted in runtime.foreign_nodes():
-        todo = 'It runs in another process: end it where that was started.'
-    elif near:
-        todo = f'Did you mean {near!r}?'
-    elif names:
-        todo = f'Running here: {", ".join(names)}.'
-    else:
-        todo = 'No node runs here.'
-    raise LabError(f'No node called {name!r} runs in this notebook.', todo=todo)

@@ -28,7 +28,7 @@ from rclpy.timer import Timer
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import BatteryState, CameraInfo, Image, Imu, JointState, LaserScan
 
-from labkit.background import runtime
+from labkit.background.runtime import runtime
 from labkit.errors import LabError
 from labkit.sim.camera import PI_CAMERA
 from labkit.sim.kinematics import Pose, Twist2

@@ -18,8 +18,9 @@ import psutil
 from IPython import get_ipython
 from rclpy.node import Node
 
+from labkit.background.control import remove
 from labkit.background.nodes import existing_nodes
-from labkit.background.runtime import remove, runtime
+from labkit.background.runtime import runtime
 
 _before: weakref.WeakSet[Node] = weakref.WeakSet()
 _foreign_before: set[str] = set()
