@@ -147,7 +147,11 @@ def install(
         if _NO_SPACE.search(text) or _READ_ONLY.search(text) or _WRONG_HASH.search(text):
             break  # pip would find the same
         if installer is not installers[-1]:
-            print('uv could not install the packages. Trying pip, which takes longer.', flush=True)
+            print(
+                f'uv could not install the packages: {_last_error(output)!r}. '
+                'Trying pip, which takes longer.',
+                flush=True,
+            )
     raise explain(output, root)
 
 
@@ -314,8 +318,7 @@ def explain(output: Sequence[str], root: Path) -> SetupError:
             'the package index or proxy of this network.\nThe last lines of the installer:\n  '
             + '\n  '.join(output[-15:]),
         )
-    errors = [line for line in output if re.match(r'\s*(ERROR|error|×)', line)]
-    last = (errors or [line for line in output if line.strip()] or ['no output'])[-1].strip()
+    last = _last_error(output)
     if _NO_NETWORK.search(text):
         return SetupError(
             'Packages could not be fetched: the network, or the package index, does not answer.',
@@ -326,3 +329,9 @@ def explain(output: Sequence[str], root: Path) -> SetupError:
         f'Packages could not be installed: {last!r}',
         todo='The last lines of the installer:\n  ' + '\n  '.join(output[-15:]),
     )
+
+
+def _last_error(output: Sequence[str]) -> str:
+    """Return the line of an installer's output that says most likely why it failed."""
+    errors = [line for line in output if re.match(r'\s*(ERROR|error|×)', line)]
+    return (errors or [line for line in output if line.strip()] or ['no output'])[-1].strip()
