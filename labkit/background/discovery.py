@@ -18,6 +18,7 @@ from labkit.rosgraph.whose import participant_of
 
 __all__ = [
     'DISCOVERY_SEC',
+    'SOON_SEC',
     'alone',
     'asking_node',
     'calm',

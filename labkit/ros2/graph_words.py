@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from argparse import Namespace
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
 
 from labkit import settings
+from labkit.background.discovery import SOON_SEC, soon
+from labkit.background.patience import answer_sec
 from labkit.background.runtime import runtime
 from labkit.ros2.asking import asking_node
 from labkit.rosgraph import interfaces, listings, snapshot
 from labkit.rosgraph.names import is_hidden
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
 __all__ = [
     'action_names',
@@ -30,8 +36,7 @@ def topic_names(args: Namespace) -> Iterable[str]:
 def types_of_topic(args: Namespace) -> Iterable[str]:
     """Return the type of the topic that stands before, or all types."""
     name = getattr(args, 'topic_name', '')
-    found = listings.topic_types(asking_node(args), name) if _may_ask() else []
-    return found or interfaces.names('msg')
+    return _found(listings.topic_types, args, name) or interfaces.names('msg')
 
 
 def node_names(args: Namespace) -> Iterable[str]:
@@ -48,8 +53,7 @@ def service_names(args: Namespace) -> Iterable[str]:
 def types_of_service(args: Namespace) -> Iterable[str]:
     """Return the type of the service that stands before, or all types."""
     name = getattr(args, 'service_name', '')
-    found = listings.service_types(asking_node(args), name) if _may_ask() else []
-    return found or interfaces.names('srv')
+    return _found(listings.service_types, args, name) or interfaces.names('srv')
 
 
 def action_names(args: Namespace) -> Iterable[str]:
@@ -60,8 +64,16 @@ def action_names(args: Namespace) -> Iterable[str]:
 def types_of_action(args: Namespace) -> Iterable[str]:
     """Return the type of the action that stands before, or all types."""
     name = getattr(args, 'action_name', '')
-    found = listings.action_types(asking_node(args), name) if _may_ask() else []
-    return found or interfaces.names('action')
+    return _found(listings.action_types, args, name) or interfaces.names('action')
+
+
+def _found(types_of: Callable[[Node, str], list[str]], args: Namespace, name: str) -> list[str]:
+    if not _may_ask():
+        return []
+    node = asking_node(args)
+    # A terminal's process has just come into the graph, and hears of it piece by piece.
+    patience = 0.0 if settings.in_kernel() else answer_sec(SOON_SEC)
+    return soon(lambda: types_of(node, name), patience)
 
 
 def _may_ask() -> bool:

@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from argparse import Namespace
 from pathlib import Path
 
 import pytest
 
 import labkit
-from labkit.ros2 import terminal
+from labkit.ros2 import graph_words, terminal
 from labkit.ros2.completion import complete_line
+from labkit.rosgraph import listings
 
 
 @pytest.mark.parametrize(
@@ -106,3 +108,11 @@ def test_bash_line(lab_env, tmp_path):
 def test_the_file_for_bash_completion_says_the_same():
     folder = Path(labkit.__file__).parent / 'data/share/bash-completion/completions'
     assert (folder / 'ros2').read_text().splitlines()[-1] == terminal.BASH
+
+
+def test_a_type_that_comes_a_moment_later_is_awaited(monkeypatch):
+    answers = iter([[], [], ['std_msgs/msg/Int16']])
+    monkeypatch.setattr(graph_words, 'asking_node', lambda args: None)
+    monkeypatch.setattr(listings, 'topic_types', lambda node, name: next(answers))
+    found = graph_words.types_of_topic(Namespace(topic_name='/odds'))
+    assert list(found) == ['std_msgs/msg/Int16']
