@@ -36,7 +36,7 @@ def make_class_volumes(folder: Path, members: Sequence[Member]) -> None:
         place.chmod(mode)
 
 
-def mount_class(folder: Path) -> Callable[[Any], None]:
+def mount_class(folder: Path, members: Sequence[Member]) -> Callable[[Any], None]:
     """Return what gives a container its part of the folder of a class, before it starts.
 
     Learners get a folder of their own, in which they write, and nothing beside it. Teachers also
@@ -44,12 +44,15 @@ def mount_class(folder: Path) -> Callable[[Any], None]:
 
     Args:
         folder: What `make_class_volumes` has made.
+        members: The class.
     """
+    teachers = {member.name for member in members if member.teaches}
 
     def mount(spawner: Any) -> None:
         name = spawner.user.name
         volumes: dict[str, Any] = {str(folder / name): f'{MOUNTED}/{name}'}
-        if spawner.user.admin:
+        # Not `user.admin`: the hub keeps that for somebody who teaches no more.
+        if name in teachers:
             volumes[str(folder)] = {'bind': MOUNTED, 'mode': 'ro'}
         spawner.volumes = {**spawner.volumes, **volumes}
 

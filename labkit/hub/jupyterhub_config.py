@@ -46,7 +46,7 @@ if image:
     c.JupyterHub.spawner_class = 'dockerspawner.DockerSpawner'
     c.DockerSpawner.image = image  # its CMD is the same as `learner` is here
     c.DockerSpawner.volumes = {'labkit-{username}': '/home/jovyan'}
-    c.DockerSpawner.pre_spawn_hook = mount_class(Path(class_folder))
+    c.DockerSpawner.pre_spawn_hook = mount_class(Path(class_folder), members)
     c.DockerSpawner.remove = True
     c.DockerSpawner.use_internal_ip = True
     c.DockerSpawner.extra_host_config = {
