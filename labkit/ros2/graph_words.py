@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from labkit import settings
-from labkit.background.discovery import SOON_SEC, soon
+from labkit.background.discovery import SOON_SEC, alone, soon
 from labkit.background.patience import answer_sec
 from labkit.background.runtime import runtime
 from labkit.ros2.asking import asking_node
@@ -72,7 +72,7 @@ def _found(types_of: Callable[[Node, str], list[str]], args: Namespace, name: st
         return []
     node = asking_node(args)
     # A terminal's process has just come into the graph, and hears of it piece by piece.
-    patience = 0.0 if settings.in_kernel() else answer_sec(SOON_SEC)
+    patience = 0.0 if settings.in_kernel() or alone() else answer_sec(SOON_SEC)
     return soon(lambda: types_of(node, name), patience)
 
 

@@ -111,6 +111,7 @@ def test_the_file_for_bash_completion_says_the_same():
 
 
 def test_a_type_that_comes_a_moment_later_is_awaited(monkeypatch):
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     answers = iter([[], [], ['std_msgs/msg/Int16']])
     monkeypatch.setattr(graph_words, 'asking_node', lambda args: None)
     monkeypatch.setattr(listings, 'topic_types', lambda node, name: next(answers))
