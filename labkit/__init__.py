@@ -17,8 +17,8 @@ from labkit.settings import prepare_environment
 if TYPE_CHECKING:
     # For editors and type checkers, which can't follow `__getattr__`.
     from labkit.background.child_processes import processes
-    from labkit.background.control import remove, spin, start, stop
     from labkit.background.joining import join
+    from labkit.background.spinning import remove, spin, start, stop
     from labkit.background.waiting import (
         listen,
         wait_for_message,
@@ -104,11 +104,11 @@ _HOMES = {
     'progress': 'labkit.exercises.progress',
     'projector': 'labkit.views.projector',
     'record': 'labkit.bags.recorder',
-    'remove': 'labkit.background.control',
+    'remove': 'labkit.background.spinning',
     'source': 'labkit.background.workspace',
-    'spin': 'labkit.background.control',
-    'start': 'labkit.background.control',
-    'stop': 'labkit.background.control',
+    'spin': 'labkit.background.spinning',
+    'start': 'labkit.background.spinning',
+    'stop': 'labkit.background.spinning',
     'teleop': 'labkit.views.teleop',
     'wait_for_message': 'labkit.background.waiting',
     'wait_for_subscribers': 'labkit.background.waiting',
@@ -126,7 +126,7 @@ def __getattr__(name: str) -> object:
     try:
         function = getattr(importlib.import_module(_HOMES[name]), name)
         if name in _START_ROS:
-            importlib.import_module('labkit.background.control').start()
+            importlib.import_module('labkit.background.spinning').start()
     except ModuleNotFoundError as error:
         raise SetupError(
             f'{error.name!r} is missing in this Python, {sys.executable}.',

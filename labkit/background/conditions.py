@@ -33,13 +33,13 @@ class Conditions:
         self._looking: int | None = None
 
     @property
-    def are_looked_at(self) -> bool:
+    def is_looking(self) -> bool:
         """Tell whether some thread is looking at a condition just now."""
         return self._looking is not None
 
     @property
-    def ask(self) -> bool:
-        """Tell whether the caller is a condition itself."""
+    def caller_is_looking(self) -> bool:
+        """Tell whether the caller is a condition itself, or called by one."""
         return self._looking == threading.get_ident()
 
     def look(self) -> None:

@@ -141,7 +141,7 @@ class BackgroundExecutor(Executor):
         super().remove_node(node)
         self.wake()
         # Who looks at a condition keeps the thread from its next round.
-        waits_in_vain = self.in_callback() or self._conditions.ask
+        waits_in_vain = self.in_callback() or self._conditions.caller_is_looking
         if self.is_open and not waits_in_vain:
             self._await_round_after(seen)
 
@@ -251,7 +251,7 @@ class BackgroundExecutor(Executor):
             what: What can't be done there, such as `'Waiting'`.
             todo: What to do instead in a callback.
         """
-        if self._conditions.ask:
+        if self._conditions.caller_is_looking:
             raise LabError(
                 f'{what} inside the condition of a wait can not work: a condition is looked at '
                 'between callbacks, and no message comes until it has answered.',
@@ -270,7 +270,7 @@ class BackgroundExecutor(Executor):
     @property
     def _is_busy(self) -> bool:
         """Whether a callback runs, or a condition is looked at."""
-        return self._running is not None or self._conditions.are_looked_at
+        return self._running is not None or self._conditions.is_looking
 
     def caller(self) -> tuple[NodeEntry, str] | None:
         """Return the node whose callback calls this, and the callback's name."""

@@ -1,4 +1,4 @@
-"""What a notebook says to its background: `start`, `spin`, `remove`, `stop`."""
+"""Spin nodes in the background: `start`, `spin`, `remove`, `stop`."""
 
 from __future__ import annotations
 

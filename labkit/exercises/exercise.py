@@ -188,7 +188,7 @@ class Exercise:
     def begin(self) -> None:
         """Get ready: called in the setup cell of the notebook."""
         if self._recorder is not None:
-            from labkit.background.control import start
+            from labkit.background.spinning import start
 
             start()
             self._recorder.keep()

@@ -18,9 +18,9 @@ import psutil
 from IPython import get_ipython
 from rclpy.node import Node
 
-from labkit.background.control import remove
 from labkit.background.nodes import existing_nodes
 from labkit.background.runtime import runtime
+from labkit.background.spinning import remove
 
 _before: weakref.WeakSet[Node] = weakref.WeakSet()
 _foreign_before: set[str] = set()
