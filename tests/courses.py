@@ -213,6 +213,14 @@ def base_python() -> str:
     return machine.find_interpreter().path
 
 
+def sentence(done: subprocess.CompletedProcess[str]) -> str:
+    """Return the message of a command that was refused in the proper way."""
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert 'Traceback' not in done.stderr
+    assert done.stderr.startswith('labkit: ')
+    return done.stderr
+
+
 def wait_for_line(process: subprocess.Popen[str], text: str) -> str:
     """Read what a process prints until a line has `text` in it; return that line."""
     lines = []

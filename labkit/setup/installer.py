@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import os
 import re
@@ -52,6 +53,19 @@ sys.argv[0] = 'pip'
 runpy.run_module('pip', run_name='__main__', alter_sys=True)
 """
 _READ_ONLY = re.compile(r'Read-only file system', re.IGNORECASE)
+# Settings of pip that say where packages come from, and the variables that tell uv the same:
+# a school's mirror and its certificate are often known to pip alone.
+_OF_UV = {
+    'index-url': 'UV_DEFAULT_INDEX',
+    'extra-index-url': 'UV_INDEX',
+    'find-links': 'UV_FIND_LINKS',
+    'no-index': 'UV_NO_INDEX',
+    'trusted-host': 'UV_INSECURE_HOST',
+    'cert': 'SSL_CERT_FILE',
+    'proxy': 'ALL_PROXY',
+}
+# pip lists a setting as `group.name='value'`; of two groups the later one here counts.
+_SETTING = re.compile(r"^(global|install|:env:)\.([\w-]+)=('.*'|\".*\")$", re.MULTILINE)
 
 
 class Progress:
@@ -123,6 +137,8 @@ def install(
     progress.show('Preparing', 0)
     pip = _pip(python)
     uv = shutil.which('uv') or (_fetch_uv(pip, python, root, variables, progress) if pip else None)
+    if uv:
+        variables = {**_sources(pip, root, variables), **variables}
     # pip does the last by itself. uv looks at the version and at pyproject.toml, not at the files
     # that are copied into the environment.
     own = ['--python', str(python), '--reinstall-package', 'labkit']
@@ -209,6 +225,30 @@ def _fetch_uv(
         _end(process)
     uv = python.parent / 'uv'
     return str(uv) if process.returncode == 0 and uv.exists() else None
+
+
+def _sources(pip: Sequence[str], root: Path, variables: dict[str, str]) -> dict[str, str]:
+    """Return the variables that let uv take packages from where pip takes them."""
+    if not pip:
+        return {}
+    listed = subprocess.run(
+        [*pip, 'config', 'list'],
+        cwd=root,
+        env=variables,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    ).stdout
+    # pip takes the best file of all places, uv would look no further than the first.
+    found = {'UV_INDEX_STRATEGY': 'unsafe-best-match'}
+    for group in ('global', 'install', ':env:'):
+        for of, name, value in _SETTING.findall(listed):
+            if of == group and name in _OF_UV:
+                # uv wants several paths with commas between, several addresses with spaces.
+                between = ',' if name == 'find-links' else ' '
+                found[_OF_UV[name]] = between.join(ast.literal_eval(value).split())
+    return found
 
 
 def _steps(root: Path, requirements: Sequence[str]) -> list[list[str]]:

@@ -19,6 +19,8 @@ from typing import Any
 
 import nbformat
 
+from tests.ports import free_port
+
 ROOT = Path(__file__).resolve().parents[2]
 START_SEC = 60.0
 # Variables of whoever runs the tests that a learner's terminal does not have.
@@ -36,14 +38,6 @@ learner_folder.WORK = Path(sys.argv[1])
 jupyterlab.make_environment = lambda: Path(sys.executable)
 jupyterlab.start_lab(sys.argv[2:])
 """
-
-
-def _free_port() -> int:
-    """Return a port that nobody uses; those from 8888 on, others may be about to take."""
-    with socket.socket() as probe:
-        probe.bind(('127.0.0.1', 0))
-        port: int = probe.getsockname()[1]
-        return port
 
 
 class JupyterLab:
@@ -73,7 +67,7 @@ class JupyterLab:
             **(env or {}),
         )
         # The app is put into the page, so that tests can ask it which cell is which.
-        options = ['--no-browser', '--LabApp.expose_app_in_browser=True', f'--port={_free_port()}']
+        options = ['--no-browser', '--LabApp.expose_app_in_browser=True', f'--port={free_port()}']
         self._process = subprocess.Popen(
             [sys.executable, '-c', _START, str(self.work), *options],
             env=variables,

@@ -9,7 +9,6 @@ import json
 import os
 import re
 import shutil
-import socket
 import subprocess
 import time
 import urllib.error
@@ -23,6 +22,7 @@ import pytest
 import websocket
 from courses import BARE_PATH, ROOT, START, base_python
 from hub.person import Notebook
+from ports import free_port
 
 from labkit.setup.machine import VERSIONS, clean_environment
 
@@ -155,12 +155,6 @@ class Server:
     def close(self) -> None:
         self.process.terminate()
         self.process.communicate(timeout=TIMEOUT_SEC)
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(('127.0.0.1', 0))
-        return int(probe.getsockname()[1])
 
 
 @pytest.fixture(scope='module')

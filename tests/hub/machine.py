@@ -11,7 +11,6 @@ import os
 import random
 import shlex
 import shutil
-import socket
 import subprocess
 import sys
 import time
@@ -19,6 +18,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from ports import free_port
 
 ROOT = Path(__file__).resolve().parents[2]
 START_SEC = 180.0
@@ -131,13 +131,6 @@ def _laid_open(folder: Path) -> list[str]:
         for path, place in zip(paths, kept, strict=True):
             lines += [f'mkdir -p {path}', f'mount --move {place} {path}']
     return lines
-
-
-def free_port() -> int:
-    """Return a port that nobody uses."""
-    with socket.socket() as probe:
-        probe.bind(('127.0.0.1', 0))
-        return int(probe.getsockname()[1])
 
 
 class Hub:

@@ -12,7 +12,16 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from courses import BARE_PATH, ROOT, TIMEOUT_SEC, Course, Gate, base_python, wait_for_line
+from courses import (
+    BARE_PATH,
+    ROOT,
+    TIMEOUT_SEC,
+    Course,
+    Gate,
+    base_python,
+    sentence,
+    wait_for_line,
+)
 
 from labkit.course.run_tests import REQUIREMENTS
 from labkit.errors import SetupError
@@ -21,23 +30,10 @@ from labkit.setup.requirements import applicable
 
 
 @pytest.fixture
-def course(tmp_path: Path) -> Course:
-    return Course(tmp_path / 'course')
-
-
-@pytest.fixture
 def gate(course: Course) -> Iterator[Gate]:
     gate = Gate(course.folder)
     yield gate
     gate.close()
-
-
-def sentence(done: subprocess.CompletedProcess[str]) -> str:
-    """Return the message of a command that was refused in the proper way."""
-    assert done.returncode == 2, done.stdout + done.stderr
-    assert 'Traceback' not in done.stderr
-    assert done.stderr.startswith('labkit: ')
-    return done.stderr
 
 
 def test_made_once_then_completed_then_updated(course: Course) -> None:
@@ -61,84 +57,6 @@ def test_made_once_then_completed_then_updated(course: Course) -> None:
     assert 'environment.txt has changed' in course.make().stdout
     assert course.installed() == {'alpha-2.0', 'beta-1.0', 'checker-1.0'}
     assert course.python(f'labkit.setup.environment.make_environment({files})').stdout == ''
-
-
-def test_installed_with_pip_where_there_is_no_uv(course: Course) -> None:
-    done = course.make(PATH=BARE_PATH)
-    assert done.returncode == 0, done.stderr
-    assert course.installed() == {'alpha-1.0'}
-    course.require('./missing-1.0-py3-none-any.whl')
-    assert 'missing-1.0' in sentence(course.make(PATH=BARE_PATH))
-    course.require('http://127.0.0.1:9/beta-1.0-py3-none-any.whl')
-    assert 'Connect to the internet' in sentence(course.make(PATH=BARE_PATH))
-    assert course.installed() == {'alpha-1.0'}
-
-
-@pytest.fixture
-def without_uv(course: Course) -> Course:
-    """Give a course whose environment was made with pip, and can build labkit itself."""
-    course.env['PATH'] = BARE_PATH
-    for name in ('pyproject.toml', 'LICENSE'):
-        shutil.copy(ROOT / name, course.folder)
-    assert course.make().returncode == 0
-    course.lend_packages()
-    return course
-
-
-@pytest.mark.parametrize('works', [True, False], ids=['works', 'fails'])
-def test_uv_is_fetched_first_and_pip_helps_where_it_fails(without_uv: Course, works: bool) -> None:
-    course = without_uv
-    asked = course.folder / 'asked.txt'
-    run = f'exec {course.folder}/uv/uv "$@"' if works else 'echo "error: no luck"; exit 1'
-    program = f'#!/bin/sh\necho "$@" >> {asked}\n{run}\n'
-    course.lock(course.wheel('uv', program=program), course.wheel('alpha', '2.0'))
-    course.require('uv==1.0', 'alpha==2.0', '-e .')
-    done = course.make()
-    assert done.returncode == 0, done.stderr
-    assert 'Installed    3 of 3 packages' in done.stdout
-    said = "uv could not install the packages: 'error: no luck'. Trying pip"
-    assert ('Trying pip' in done.stdout, said in done.stdout) == (not works, not works)
-    assert len(asked.read_text().splitlines()) == (2 if works else 1)
-    assert {'alpha-2.0', 'uv-1.0'} <= course.installed()
-    assert (course.venv / 'bin' / 'labkit').is_file()
-    assert course.make().stdout == ''
-
-
-@pytest.mark.parametrize('installer', ['uv', 'pip'])
-def test_a_package_that_is_not_the_tested_one_is_refused(
-    without_uv: Course, installer: str
-) -> None:
-    course = without_uv
-    if installer == 'uv':
-        course.env['PATH'] = f'{course.folder / "uv"}:{BARE_PATH}'
-    course.lock(course.wheel('alpha', '2.0'))
-    course.wheel('alpha', '2.0', size=1)
-    course.require('alpha==2.0', '-e .')
-    said = ' '.join(sentence(course.make()).split())
-    assert 'is not the one that the course was tested with' in said
-    assert 'alpha-1.0' in course.installed()
-
-
-@pytest.mark.parametrize('installer', ['uv', 'pip'])
-def test_a_lock_beside_another_file_is_used_as_well(without_uv: Course, installer: str) -> None:
-    course = without_uv
-    if installer == 'uv':
-        course.env['PATH'] = f'{course.folder / "uv"}:{BARE_PATH}'
-    course.lock(course.wheel('alpha', '2.0'))
-    course.require('alpha==2.0', '-e .')
-    (course.folder / 'tests' / 'requirements.txt').write_text('checker==1.0\n')
-    course.lock(course.wheel('checker'), file='tests/requirements.lock')
-    files = "('environment.txt', 'tests/requirements.txt')"
-    make = f'labkit.setup.environment.make_environment({files})'
-    done = course.python(make)
-    assert done.returncode == 0, done.stderr
-    assert {'alpha-2.0', 'checker-1.0'} <= course.installed()
-    (course.folder / 'tests' / 'requirements.txt').write_text('checker==2.0\n')
-    course.lock(course.wheel('checker', '2.0'), file='tests/requirements.lock')
-    course.wheel('checker', '2.0', size=1)
-    said = ' '.join(sentence(course.python(make)).split())
-    assert 'is not the one that the course was tested with' in said
-    assert 'checker-1.0' in course.installed()
 
 
 def test_failed_install_leaves_nothing(course: Course) -> None:
