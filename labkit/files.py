@@ -10,7 +10,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO, Union
+from typing import IO, BinaryIO, Union
 
 __all__ = ['is_inside', 'locked', 'rename_to_free', 'write_atomically']
 
@@ -72,25 +72,21 @@ def write_atomically(
 def locked(path: Path, timeout_sec: float) -> Iterator[None]:
     """Keep other processes out, as long as all of them ask here.
 
+    Who has just had the lock queues up behind who waits: one that wants it again and again would
+    else keep the others out for as long as it likes.
+
     Args:
-        path: An empty file for the lock. It stays.
+        path: An empty file for the lock. It stays, and so does one beside it, for the queue.
         timeout_sec: Seconds to wait for others.
 
     Raises:
         OSError: Another process keeps it.
     """
-    import fcntl  # only there on Unix
-
+    end = time.monotonic() + timeout_sec
     with path.open('w') as file:
-        end = time.monotonic() + timeout_sec
-        while True:
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                break
-            except BlockingIOError:
-                if time.monotonic() > end:
-                    raise OSError('another notebook keeps the file locked') from None
-                time.sleep(0.005)
+        with path.with_name(f'{path.name}-queue').open('w') as queue:
+            _lock_until(end, queue)
+            _lock_until(end, file)
         yield
 
 
@@ -200,6 +196,18 @@ def _lock(handle: int, *, wait: bool) -> bool:
     except (ImportError, OSError):
         return False
     return True
+
+
+def _lock_until(end: float, file: IO[str]) -> None:
+    import fcntl
+
+    while True:
+        try:
+            return fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            if time.monotonic() > end:
+                raise OSError('another notebook keeps the file locked') from None
+            time.sleep(0.005)
 
 
 def _take(path: Path, *, folder: bool) -> None:

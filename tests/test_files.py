@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from labkit.files import is_inside, rename_to_free, write_atomically
+from labkit.files import is_inside, locked, rename_to_free, write_atomically
 
 TIMEOUT_SEC = 60
 # Writes a file, but says so and waits when all of it is on its way and nothing in its place.
@@ -333,6 +333,39 @@ def test_what_is_not_there_can_not_be_renamed(
     with pytest.raises(FileNotFoundError):
         rename_to_free(tmp_path / 'old', tmp_path / 'new')
     assert names(tmp_path) == []
+
+
+# --- One at a time -------------------------------------------------------------------------------
+
+
+def test_who_wants_a_lock_again_and_again_keeps_nobody_out(tmp_path: Path) -> None:
+    path = tmp_path / 'a.lock'
+    rounds = 0
+    stop, held = threading.Event(), threading.Event()
+
+    def insist() -> None:
+        nonlocal rounds
+        while not stop.is_set():
+            with locked(path, TIMEOUT_SEC):
+                rounds += 1
+                held.set()
+                stop.wait(0.02)
+
+    thread = threading.Thread(target=insist)
+    thread.start()
+    try:
+        waited = []
+        for _ in range(20):
+            held.clear()
+            assert held.wait(TIMEOUT_SEC)  # now it has the lock, and will want it again
+            before = rounds
+            with locked(path, TIMEOUT_SEC):
+                waited.append(rounds - before)
+    finally:
+        stop.set()
+        thread.join()
+    # Before this one has queued up, on a busy machine, it may have had some more; not hundreds.
+    assert sum(waited) <= 100, waited
 
 
 # --- What lies where -----------------------------------------------------------------------------

@@ -21,7 +21,7 @@ from labkit.files import locked, rename_to_free, write_atomically
 __all__ = ['Store']
 
 VERSION = 1
-LOCK_TIMEOUT_SEC = 1.0
+LOCK_TIMEOUT_SEC = 2.0
 
 Data = dict[str, Any]
 

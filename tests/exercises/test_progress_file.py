@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from labkit.exercises import progress_file
 from labkit.exercises.attempts import ProgressStore
 from labkit.exercises.progress_file import Store
 
@@ -133,9 +134,10 @@ def test_home_that_is_a_file_is_said(tmp_path: Path) -> None:
     assert note.startswith('Your progress could not be saved')
 
 
-def test_locked_file_is_said_and_not_waited_for(store: Store) -> None:
+def test_file_that_stays_locked_is_said(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
     import fcntl
 
+    monkeypatch.setattr(progress_file, 'LOCK_TIMEOUT_SEC', 0.1)
     with store.path.with_suffix('.lock').open('w') as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         note = ProgressStore(store).note_check('odds', 'count_up', 'PASS')
