@@ -59,7 +59,8 @@ class Stimulus:
         topic: Full name of the topic.
         msg_type: Name of the type.
         fields: Its fields, see `watch.build`.
-        answers: Topics on which an answer is waited for, in real time if need be.
+        answers: Topics on which an answer may come.
+        due: Whether one is due there: then it is waited for, in real time if need be.
     """
 
     at: float
@@ -67,6 +68,7 @@ class Stimulus:
     msg_type: str
     fields: Mapping[str, Any]
     answers: Sequence[str] = ()
+    due: bool = True
 
 
 @dataclass(frozen=True)
@@ -332,6 +334,8 @@ class _Course:
 
     def send(self, sender: Callable[..., float], stimulus: Stimulus, life: Life) -> None:
         """Send a test, and see what comes of it at once."""
+        from labkit.background.patience import answer_sec
+
         # A test on the topic of its answers is none of them.
         before = self._count(stimulus.answers) + (stimulus.topic in stimulus.answers)
         sender(stimulus.fields)
@@ -343,11 +347,11 @@ class _Course:
         if not stimulus.answers or self._count(stimulus.answers) > before:
             return
         # A node that keeps what it hears for its timer answers soon in virtual time, one with a
-        # thread in real time.
+        # thread that sleeps in real time.
         if not self.go(self.passing.seconds + 0.5) or self._count(stimulus.answers) > before:
             return
-        if self.patience:
-            end = time.monotonic() + PATIENCE_SEC
+        if stimulus.due and self.patience:
+            end = time.monotonic() + answer_sec(PATIENCE_SEC)
             while self._count(stimulus.answers) == before and time.monotonic() < end:
                 time.sleep(POLL_SEC)
                 self._look()

@@ -13,15 +13,14 @@ callback of the node's, takes notice of it.
 from __future__ import annotations
 
 import sys
-import threading
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary, WeakSet
 
-if TYPE_CHECKING:
-    from types import FrameType
+from labkit.exercises.threads import OtherThreads, waits
 
+if TYPE_CHECKING:
     from rclpy.executors import Executor
     from rclpy.node import Node
     from rclpy.timer import Timer
@@ -44,8 +43,6 @@ SLOW_FLOOD, SLOW_FLOOD_SEC = 200, 2.0
 RATE_SEC = 3.0
 IDLE_SEC = 0.1
 IDLE_LOOKS = 50
-# What a thread does in the module threading while it waits for something.
-_WAITS = ('join', 'wait', 'wait_for', '_wait_for_tstate_lock')
 # How long an executor of the learner's own may take to go round, s of real time.
 ROUND_SEC = 2.0
 # So often in a row nothing may be done by the background before it counts as hanging, though no
@@ -97,6 +94,7 @@ class VirtualTime:
         self._start = self._now = self._told = 0
         self._was_active: list[Node] = []
         self._stuck: set[Executor] = set()
+        self._threads = OtherThreads()
         self.flooded = False
         self.hanging = False
 
@@ -128,6 +126,7 @@ class VirtualTime:
         self._told = self._now
         if self._remote is not None:
             self._remote.set(self._now)
+        self._threads.__enter__()
         self.settle()
         return self
 
@@ -135,6 +134,7 @@ class VirtualTime:
         from labkit.background import compat
         from labkit.background.nodes import node_exists
 
+        self._threads.__exit__()
         _latest.update(dict.fromkeys(self._moving, self._now))
         for node in self._all:
             if node not in self._was_active and node_exists(node):
@@ -238,6 +238,13 @@ class VirtualTime:
             _wait_for_rate(timer, threads)
         if sleepers:
             self._settle()
+        # A callback may have handed its work to a thread, and the thread may set off callbacks. An
+        # executor of the learner's own spins in such a thread.
+        for _ in range(FLOOD):
+            if not self._threads.settle():
+                return
+            self._settle_background()
+        self.flooded = True
 
     def _settle(self) -> None:
         for executor in {node.executor for node in self._all}:
@@ -313,13 +320,7 @@ def _is_at_work(timer: Timer, threads: set[int]) -> bool:
 
     frames = sys._current_frames()
     inside = rate_sleepers(timer)
-    return any(ident in inside or not _waits(frames[ident]) for ident in threads & frames.keys())
-
-
-def _waits(frame: FrameType) -> bool:
-    """Tell whether a thread waits for another one, by its innermost frame."""
-    code = frame.f_code
-    return code.co_filename == threading.__file__ and code.co_name in _WAITS
+    return any(ident in inside or not waits(frames[ident]) for ident in threads & frames.keys())
 
 
 def _settle_other(executor: Executor) -> bool:

@@ -84,7 +84,13 @@ class Answers(Clause):
         spun(evidence.probe, hears)
         values = self.draw()
         tests = [
-            Test(self.inner, hears.msg_type, {self.field: value}, (self.outer,))
+            Test(
+                self.inner,
+                hears.msg_type,
+                {self.field: value},
+                (self.outer,),
+                due=self.answer(value) is not None,
+            )
             for value in values
         ]
         for other in _others(evidence.probe, hears)[:MAX_OTHERS]:

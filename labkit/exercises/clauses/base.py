@@ -34,6 +34,7 @@ class Test:
     msg_type: str
     fields: dict[str, Any]
     answers: Sequence[str] = ()
+    due: bool = True
 
 
 @dataclass(frozen=True)
@@ -206,7 +207,7 @@ class Evidence:
 def _in_turn(tests: Sequence[Test]) -> list[Stimulus]:
     """Return tests with the times at which they are sent, one after the other."""
     return [
-        Stimulus(TEST_EVERY_SEC * number, test.topic, test.msg_type, test.fields, test.answers)
+        Stimulus(at=TEST_EVERY_SEC * number, **vars(test))
         for number, test in enumerate(tests, start=1)
     ]
 

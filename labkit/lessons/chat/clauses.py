@@ -57,7 +57,11 @@ class Replies(Clause):
         """Return messages of others."""
         hears = evidence.subscription(self.topic)
         expect.spun(evidence.probe, hears)
-        return [Test(self.topic, STRING, {'data': text}, (self.topic,)) for text in self.draw()]
+        texts = self.draw()
+        return [
+            Test(self.topic, STRING, {'data': text}, (self.topic,), due=right is not None)
+            for text, right in zip(texts, self.replies(texts), strict=True)
+        ]
 
     def judge(self, evidence: Evidence) -> str:
         """Compare what was published with what is due."""

@@ -175,7 +175,9 @@ lab.spin(node)
                     'self.heard.put, 10)\n'
                     '        threading.Thread(target=self.work, daemon=True).start()\n\n'
                     '    def work(self):\n        while True:\n'
-                    '            self.on_message(self.heard.get())\n',
+                    '            msg = self.heard.get()\n'
+                    '            sum(range(1_000_000))  # it takes its time\n'
+                    '            self.on_message(msg)\n',
                 ),
                 (
                     "        self.greeted = {'Ada'}\n",

@@ -153,6 +153,22 @@ threading.Thread(target=work, args=[publisher], daemon=True).start()
 """,
         ),
         Style(
+            'a timer that wakes a thread',
+            changed(
+                _ODDS,
+                ('\nfrom rclpy', '\nimport queue\nimport threading\n\nfrom rclpy'),
+                ('self.on_timer)\n', 'lambda: self.ticks.put(1))\n'),
+                (
+                    'self.number = 1\n',
+                    'self.number = 1\n        self.ticks = queue.Queue()\n'
+                    '        threading.Thread(target=self.work, daemon=True).start()\n\n'
+                    '    def work(self):\n        while self.ticks.get():\n'
+                    '            sum(range(100_000))  # it takes its time\n'
+                    '            self.on_timer()\n',
+                ),
+            ),
+        ),
+        Style(
             'a fast timer, and every fourth call counts',
             """
 import rclpy

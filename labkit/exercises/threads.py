@@ -1,0 +1,118 @@
+"""Threads of the learner's: whether they rest, whatever time they get on a busy machine.
+
+A callback may hand its work to a thread, by a queue or an event. Such a thread is not part of any
+executor, so nobody says when it is done. The operating system knows: a thread that rests is
+asleep, and has not run between two looks.
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+import time
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary, WeakSet
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from types import FrameType
+
+__all__ = ['OtherThreads', 'waits']
+
+# What a thread does in the module threading while it waits for something.
+_WAITS = ('join', 'wait', 'wait_for', '_wait_for_tstate_lock')
+# How long threads may take to come to rest, s of real time on a calm machine.
+REST_SEC = 1.0
+# A thread that waits for Python's lock asks for it anew after so long. So with more than that
+# between two looks, it is seen.
+SWITCH_SEC = 0.0005
+LOOK_SEC = 3 * SWITCH_SEC
+# Whose threads do nothing of the learner's: those of the notebook, of the tests, and our own.
+OTHERS = ('IPython', 'execnet', 'ipykernel', 'jupyter_client', 'labkit', 'tornado', 'zmq')
+
+
+class OtherThreads:
+    """The learner's threads but the one that asks, for a `with` block."""
+
+    def __init__(self) -> None:
+        self._seen: WeakKeyDictionary[threading.Thread, object] = WeakKeyDictionary()
+        # They are not waited for: they do nothing of the learner's, or they never rest.
+        self._left: WeakSet[threading.Thread] = WeakSet()
+        self._usual_sec = sys.getswitchinterval()
+
+    def __enter__(self) -> OtherThreads:
+        self._usual_sec = sys.getswitchinterval()
+        sys.setswitchinterval(SWITCH_SEC)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        sys.setswitchinterval(self._usual_sec)
+
+    def settle(self) -> bool:
+        """Wait until each of them rests: it sleeps, or waits for something.
+
+        Returns:
+            Whether one has run since this was asked before.
+        """
+        from labkit.background.patience import answer_sec
+
+        end = time.monotonic() + answer_sec(REST_SEC)
+        ran = False
+        # All of them, each time: one may hand its work to another one.
+        while busy := [thread for thread in self._threads() if self._is_new(thread)]:
+            ran = True
+            if time.monotonic() > end:
+                self._left.update(busy)
+                break
+            time.sleep(LOOK_SEC)
+        return ran
+
+    def _threads(self) -> Iterator[threading.Thread]:
+        this, frames = threading.current_thread(), None
+        for thread in threading.enumerate():
+            if thread is this or thread in self._left:
+                continue
+            if thread not in self._seen:
+                frames = frames or sys._current_frames()
+                if _is_of_others(thread, frames.get(thread.ident or 0)):
+                    self._left.add(thread)
+                    continue
+            yield thread
+
+    def _is_new(self, thread: threading.Thread) -> bool:
+        """Tell whether a thread is about to run, or has run since the look before."""
+        before, self._seen[thread] = self._seen.get(thread), _look(thread)
+        return self._seen[thread] is None or self._seen[thread] != before
+
+
+def waits(frame: FrameType) -> bool:
+    """Tell whether a thread waits for another one, by its innermost frame."""
+    code = frame.f_code
+    return code.co_filename == threading.__file__ and code.co_name in _WAITS
+
+
+def _look(thread: threading.Thread) -> object:
+    """Return what is the same again if a thread has not run since; None if it does not sleep."""
+    try:
+        with open(f'/proc/self/task/{thread.native_id}/status', 'rb', buffering=0) as file:
+            status = file.read()
+    except OSError:
+        # Not Linux, or the thread has just ended.
+        frame = sys._current_frames().get(thread.ident or 0)
+        return (id(frame), frame.f_lasti) if frame is not None else ()
+    lines = dict(line.split(b':', 1) for line in status.splitlines())
+    if lines[b'State'].split()[0] != b'S':
+        return None
+    return lines[b'voluntary_ctxt_switches'], lines[b'nonvoluntary_ctxt_switches']
+
+
+def _is_of_others(thread: threading.Thread, frame: FrameType | None) -> bool:
+    """Tell whether a thread does nothing of the learner's, by where its work begins."""
+    if thread is threading.main_thread():
+        return False
+    begins = ''
+    while frame is not None:
+        module = str(frame.f_globals.get('__name__', ''))
+        begins = begins if module == 'threading' else module
+        frame = frame.f_back
+    return begins.partition('.')[0] in OTHERS
