@@ -15,7 +15,7 @@ from labkit.exercises import (
 from labkit.exercises.clauses import Clause, Evidence, Publishes
 from labkit.lessons._script import started_by_asyncio, started_by_subprocess
 from labkit.lessons.my_name_is.programs import ended_program
-from labkit.lessons.my_name_is.two_stages import STRING, says_opening
+from labkit.lessons.my_name_is.two_stages_clauses import STRING, says_opening
 
 __all__ = ['own_process']
 

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 from labkit.exercises import Exercise, Outcome, Probe, Solution, Style, Wrong, changed, expect
-from labkit.exercises.clauses import Answers, Evidence
 from labkit.exercises.draws import draw_texts
 from labkit.exercises.life import Stimulus, live
 from labkit.exercises.variants import varied
 from labkit.lessons._script import in_process, started_by_subprocess
-from labkit.lessons.my_name_is.two_stages import STRING
+from labkit.lessons.my_name_is.third_stage_clauses import ENDING, AtTheEnd, explain
+from labkit.lessons.my_name_is.two_stages_clauses import STRING
 
 __all__ = ['third_stage']
 
-ENDING = '. Nice to meet you.'
 
 _POLITE = """
 from rclpy.node import Node
@@ -38,41 +36,6 @@ polite = lab.spin(Polite())
 _SUM = "msg.data + '. Nice to meet you.'"
 
 
-@dataclass(frozen=True, eq=False)
-class _AtTheEnd(Answers):
-    """The last stage of a chain hears the one before it, and no earlier one."""
-
-    def find(self, evidence: Evidence) -> None:
-        """Look for the stage."""
-        probe = evidence.probe
-        names = {endpoint.node for endpoint in probe.publishers(self.outer)}
-        hears = {endpoint.node for endpoint in probe.subscriptions(self.inner)}
-        for endpoint in probe.subscriptions('/incomplete'):
-            expect.that(
-                endpoint.node not in names - hears,
-                expected=f'a third stage that subscribes to {self.inner}',
-                seen=f'{endpoint.node} subscribes to /incomplete',
-                why='It hears stage one and goes past stage two, so the first name is missing.',
-                todo=f"Write the topic as '{self.inner}'.",
-            )
-        super().find(evidence)
-
-
-def _explain(text: str, came: Sequence[str], ending: str = ENDING) -> tuple[str, str]:
-    if not came:
-        return '', ''
-    if text in came:
-        return 'The text is passed on as it came: nothing is added.', f'msg.data + {ending!r}'
-    if not any(text in other for other in came):
-        return (
-            'What goes out does not hold the text that came in: the string is made beforehand, or '
-            'the text is changed.',
-            'Make the string in the callback, of msg.data as it is.',
-        )
-    beginning = next((other for other in came if other.startswith(text)), '')
-    return expect.text_trouble(beginning, text + ending), 'Compare the two texts.'
-
-
 _USUAL = Exercise(
     name='third_stage',
     task=f'A node that appends {ENDING!r} to each text of /complete, and publishes it on '
@@ -80,14 +43,14 @@ _USUAL = Exercise(
     subscribes={'/complete': STRING},
     publishes={'/greeting': STRING},
     clauses=(
-        _AtTheEnd(
+        AtTheEnd(
             '/complete',
             '/greeting',
             f'for each text on `/complete`, publish that text with `{ENDING}` right behind it on '
             '`/greeting` (both `std_msgs/msg/String`), once, within a second',
             answer=lambda text: f'{text}{ENDING}',
             draw=draw_texts,
-            explain=_explain,
+            explain=explain,
         ),
     ),
     hints=[
@@ -384,13 +347,13 @@ def _variant(*, ending: str) -> Exercise:
         _USUAL,
         task=_USUAL.task.replace(repr(ENDING), repr(ending)),
         clauses=(
-            _AtTheEnd(
+            AtTheEnd(
                 '/complete',
                 '/greeting',
                 _USUAL.clauses[0].text.replace(ENDING, ending),
                 answer=lambda text: f'{text}{ending}',
                 draw=draw_texts,
-                explain=partial(_explain, ending=ending),
+                explain=partial(explain, ending=ending),
             ),
         ),
         hints=[hint.replace(repr(ENDING), repr(ending)) for hint in _USUAL.hints],
