@@ -189,14 +189,20 @@ class Drawing {
 function makeSwitches(send) {
   const place = element('div', { className: 'labkit-graph-switches' });
   const inputs = {};
+  // What was asked for. News that were on their way before do not know of it.
+  const asked = {};
   const show = (states) => {
     Object.entries(states).forEach(([name, on]) => {
       if (!inputs[name]) {
         inputs[name] = element('input', { type: 'checkbox' });
-        inputs[name].addEventListener('change', () => send({ [name]: inputs[name].checked }));
+        inputs[name].addEventListener('change', () => {
+          asked[name] = inputs[name].checked;
+          send({ [name]: asked[name] });
+        });
         place.append(element('label', {}, inputs[name], `${name[0].toUpperCase()}${name.slice(1)}`));
       }
-      inputs[name].checked = on;
+      if (asked[name] === on) delete asked[name];
+      inputs[name].checked = asked[name] ?? on;
     });
     Object.entries(inputs).forEach(([name, input]) => {
       input.parentElement.hidden = !(name in states);

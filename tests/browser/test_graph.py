@@ -150,6 +150,34 @@ def test_keys_and_the_pointer_tell_more(notebook: Notebook):
     )
 
 
+def test_a_switch_stays_where_it_was_put(notebook: Notebook):
+    for cell in ('nodes', 'service', 'graph'):
+        notebook.run_cell(cell)
+    box = live(notebook).get_by_label('Services')
+    expect(box).not_to_be_checked()
+    # The kernel answers what it was told before, and then first knows of the switch.
+    box.evaluate("""box => {
+      const { get, set } = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'checked');
+      window.was_set = [];
+      Object.defineProperty(box, 'checked', {
+        get() { return get.call(this); },
+        set(on) { window.was_set.push(on); set.call(this, on); },
+      });
+      for (const value of ['hidden', 'visible']) {
+        Object.defineProperty(document, 'visibilityState', { value, configurable: true });
+        document.dispatchEvent(new Event('visibilitychange'));
+      }
+      delete document.visibilityState;
+      box.click();
+    }""")
+    expect(part(live(notebook), 'Service /fire')).to_have_count(1)
+    answers = notebook.page.evaluate('window.was_set')
+    assert len(answers) >= 3 and all(answers)
+    box.evaluate('box => box.click()')
+    expect(part(live(notebook), 'Service /fire')).to_have_count(0)
+    expect(box).not_to_be_checked()
+
+
 def test_nothing_is_cut_off_and_nothing_scrolls(notebook: Notebook):
     for cell in ('nodes', 'more', 'service', 'apart', 'many', 'graph'):
         notebook.run_cell(cell)
