@@ -16,7 +16,7 @@ CELLS = {
     'teleop': 'pilot = lab.teleop()\npilot',
     'place': 'robot.place()',
     'before-a-wall': 'robot.place(x=2.2)',
-    'both': 'display(lab.arena(), lab.teleop())',
+    'both': 'robot.place()\ndisplay(lab.arena(), lab.teleop())',
     'to-a-corner': 'robot.place(x=2.0, y=-2.0)',
     'other-arena': 'lab.arena()',
     'other-teleop': 'lab.teleop()',
@@ -248,6 +248,14 @@ def test_map_and_keys_are_beside_each_other_where_there_is_room(stage):
             assert beside() == expected
             # Nothing is wider than what there is.
             assert area.evaluate('place => place.scrollWidth <= place.clientWidth')
+        # A page of 1400 x 900 at 150 %: the cell, its map, keys and stick fit into it.
+        stage.page.set_viewport_size({'width': 933, 'height': 600})
+        assert not beside()
+        assert stage.notebook.cell('both').evaluate("""cell => {
+          const { bottom } = cell.querySelector('.labkit-teleop-pad').getBoundingClientRect();
+          const { height } = cell.closest('.jp-WindowedPanel-outer').getBoundingClientRect();
+          return bottom - cell.getBoundingClientRect().top <= height;
+        }""")
     finally:
         stage.page.set_viewport_size(size)
     # With the map, its keys go to the full screen.
