@@ -33,6 +33,31 @@ def test_first_lesson_opens_ready_to_run(tmp_path, browser):
         assert len(re.findall('token=', jupyter.log)) == 1
 
 
+def test_a_kernel_gets_ready_while_its_page_is_loaded(jupyter, browser):
+    code = """
+import sys
+left = [name for name in globals() if 'lab' in name]
+print('labkit.background.runtime' in sys.modules, left)
+"""
+    for name in ('other', 'usual'):
+        jupyter.write_notebook(name, {'look': code})
+    path = jupyter.work / 'other.ipynb'
+    path.write_text(path.read_text().replace('"python3"', '"julia"'))
+    for name in ('other', 'usual'):
+        # No page is shown, and nothing but the server can start a kernel.
+        with urllib.request.urlopen(jupyter.address(f'lab/tree/{name}.ipynb')) as page:
+            assert page.status == 200
+    while 'usual.ipynb' not in (paths := [s['path'] for s in jupyter.request('api/sessions')]):
+        pass
+    assert 'other.ipynb' not in paths
+    notebook = Notebook(browser.new_page()).open(jupyter.address('lab/tree/usual.ipynb'))
+    notebook.run_cell('look')
+    expect(notebook.output('look')).to_have_text(re.compile(r'^\s*True \[\]\s*$'))
+    notebook.close()
+    paths = [session['path'] for session in jupyter.request('api/sessions')]
+    assert paths.count('usual.ipynb') == 1
+
+
 def _look_at_first_lesson(notebook: Notebook) -> None:
     page = notebook.page
     expect(page.locator('.jp-NotebookPanel:visible')).to_have_count(1)
