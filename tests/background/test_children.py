@@ -24,13 +24,18 @@ def env() -> Iterator[dict[str, str]]:
     claim.close()
 
 
+# It has its publisher when it has all else: Ctrl-C while a node is made ends it in disorder.
 CHILD = """
 import rclpy
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
+from std_msgs.msg import String
 rclpy.init()
 try:
-    rclpy.spin(Node('child'))
-except KeyboardInterrupt:
+    node = Node('child')
+    node.create_publisher(String, 'ready', 1)
+    rclpy.spin(node)
+except (KeyboardInterrupt, ExternalShutdownException):
     pass
 """
 STARTED = {
@@ -55,8 +60,8 @@ def test_a_child_is_seen_starting_and_can_be_interrupted(
         'python, path = sys.executable, "child.py"\nlab.start()\n'
         f'open(path, "w").write({CHILD!r})\n'
         'def gids():\n'
-        '    infos = runtime.helper.get_publishers_info_by_topic("/parameter_events")\n'
-        '    return [bytes(i.endpoint_gid) for i in infos if i.node_name == "child"]\n'
+        '    infos = runtime.helper.get_publishers_info_by_topic("/ready")\n'
+        '    return [bytes(info.endpoint_gid) for info in infos]\n'
     )
     starting = kernel.run(f'child = {STARTED[how]}\nprint(starting_children([]))')
     assert (starting.error, starting.text) == ('', '(True, False)\n')

@@ -3,8 +3,10 @@
 Somebody publishes as fast as is heard, and never is more than a window ahead, so that nothing is
 lost on the way: small messages another process, which knows from a file in memory how many have
 come; large ones a thread of this process, since the middleware takes them apart on their way
-between processes, and is slower than either. Both hear raw messages, with the same QoS, and take
-turns, and a recording has ended when all is written; what counts is the ratio.
+between processes, and is slower than either. Of large ones it waits until they are written, too:
+they come faster than a disk takes them, and a recorder then leaves some out, and says so. Both
+hear raw messages, with the same QoS, and take turns, and a recording has ended when all is
+written; what counts is the ratio.
 """
 
 from __future__ import annotations
@@ -102,7 +104,7 @@ if size < 10000:
     publisher.stdout.readline()
 else:
     node = lab.spin(helper_node('flood'))
-    threading.Thread(target=flood, args=(node, size, count, window, came), daemon=True).start()
+    threading.Thread(target=flood, args=(node, size, count, window, done), daemon=True).start()
 process = psutil.Process()
 cpu, begin = sum(process.cpu_times()[:2]), time.perf_counter()
 rss, last, moved = [], 0, begin

@@ -152,6 +152,7 @@ def test_other_domains_stay_apart(network: Network) -> None:
     for learner in (ada, bo):
         learner.do(f'lab.wait_until(lambda: len(heard) >= 3, timeout_sec={MEET_SEC})')
         assert learner.do('print(heard[2:], room.others)').startswith("['still two']")
+    chidi.do(f'lab.wait_until(lambda: heard, timeout_sec={MEET_SEC})')
     assert chidi.do('print(heard, room.others)') == "['chidi'] []"
 
 
