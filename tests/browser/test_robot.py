@@ -350,6 +350,27 @@ def test_keys_drive_the_robot_and_leave_the_notebook_alone(stage):
         assert len(cells) == count and {cell['cell_type'] for cell in cells} == {'code'}
 
 
+def test_what_is_under_the_mouse_stays_there(stage):
+    def places():
+        controls = stage.teleop.locator('button, .labkit-teleop-pad').all()
+        return [control.bounding_box() for control in controls]
+
+    def click(title):
+        stage.teleop.get_by_title(title).click()
+
+    words = stage.teleop.locator('output')
+    expect(words).to_have_text('100 %: 0.22 m/s, 1.42 rad/s')
+    before = places()
+    assert len(before) == 8
+    click('slower (key -)')
+    expect(words).to_have_text('75 %: 0.17 m/s, 1.06 rad/s')
+    assert places() == before
+    click('faster (key +)')
+    # So it is before the kernel has told the speeds.
+    words.evaluate("words => { words.textContent = ''; }")
+    assert places() == before
+
+
 def test_mouse_drives_the_robot(stage):
     box = stage.page.locator('.labkit-teleop-pad').bounding_box()
     x, y = box['x'] + box['width'] / 2, box['y'] + box['height'] / 2
