@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 
 from playwright.sync_api import Browser, BrowserContext, Locator, Page, expect, sync_playwright
 
@@ -91,9 +92,14 @@ class Notebook:
         self.was_reloaded = False
 
     def open(self, address: str) -> Notebook:
-        """Load JupyterLab, which opens a notebook, and wait until its kernel is idle."""
+        """Load JupyterLab, which opens a notebook, and wait until its kernel is idle.
+
+        JupyterLab first opens again what was open in an earlier page. Only an address that names
+        the notebook tells which one is meant.
+        """
         self.page.goto(address)
-        self.page.wait_for_function(READY, arg='')
+        named = re.search(r'/lab/tree/([^?]+)', address)
+        self.page.wait_for_function(READY, arg=unquote(named[1]) if named else '')
         return self
 
     def open_beside(self, name: str) -> Notebook:

@@ -13,7 +13,7 @@ from playwright.sync_api import expect
 from labkit.course.jupyterlab import HOME
 from labkit.course.learner_folder import FIRST
 from tests.browser.jupyter import JupyterLab
-from tests.browser.page import Notebook
+from tests.browser.page import Notebook, open_notebook
 
 
 def test_first_lesson_opens_ready_to_run(tmp_path, browser):
@@ -50,7 +50,7 @@ print('labkit.background.runtime' in sys.modules, left)
     while 'usual.ipynb' not in (paths := [s['path'] for s in jupyter.request('api/sessions')]):
         pass
     assert 'other.ipynb' not in paths
-    notebook = Notebook(browser.new_page()).open(jupyter.address('lab/tree/usual.ipynb'))
+    notebook = open_notebook(jupyter, browser, 'usual')
     notebook.run_cell('look')
     expect(notebook.output('look')).to_have_text(re.compile(r'^\s*True \[\]\s*$'))
     notebook.close()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import ssl
 import threading
+import time
 import urllib.error
 import urllib.parse
 import urllib.request
@@ -141,7 +142,7 @@ class Notebook:
         self.kernel_id = kernel_id
         self._address = f'{address}/channels'
         self._header = [f'Authorization: token {token}']
-        self._running: dict[str, websocket.WebSocket] = {}
+        self._running: dict[str, tuple[str, websocket.WebSocket]] = {}
 
     def run(self, code: str) -> str:
         """Run a cell to its end; return what it shows, an error included."""
@@ -175,19 +176,31 @@ class Notebook:
             self._address, timeout=START_SEC, header=self._header
         )
         connection.send(json.dumps(message))
-        self._running[header['msg_id']] = connection
+        # Less than the server lets pass between two pings: they would prolong each wait.
+        connection.settimeout(5)
+        self._running[header['msg_id']] = code, connection
         return header['msg_id']
 
     def finish(self, request: str) -> str:
         """Wait for the end of a started cell; return what it shows."""
-        shown = ''
-        with closing(self._running.pop(request)) as connection:
+        shown, others = '', 0
+        code, connection = self._running.pop(request)
+        end = time.monotonic() + START_SEC
+        with closing(connection):
             while True:
-                text = connection.recv()
+                assert time.monotonic() < end, (
+                    f'no end of {code!r} in {self._address}; '
+                    f'shown: {shown!r}; other messages: {others}'
+                )
+                try:
+                    text = connection.recv()
+                except websocket.WebSocketTimeoutException:
+                    continue
                 if isinstance(text, bytes):
                     continue  # a picture for a widget
                 message = json.loads(text)
                 if message['parent_header'].get('msg_id') != request:
+                    others += 1
                     continue
                 kind, content = message['msg_type'], message['content']
                 if kind == 'status' and content['execution_state'] == 'idle':
