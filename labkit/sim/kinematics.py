@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 __all__ = [
     'BURGER',
+    'STANDING',
     'DriveLimits',
     'Motion',
     'Pose',
@@ -54,6 +55,9 @@ class Twist2(NamedTuple):
     w: float = 0.0
 
 
+STANDING = Twist2()
+
+
 class DriveLimits(NamedTuple):
     """The most that the drive can do, forwards and backwards, to the left and to the right.
 
@@ -71,6 +75,8 @@ class DriveLimits(NamedTuple):
 
     def clip(self, target: Twist2) -> Twist2:
         """Return what the drive makes of a command: each component cut to its limit."""
+        if abs(target.v) <= self.v and abs(target.w) <= self.w:
+            return target
         return Twist2(
             min(max(target.v, -self.v), self.v),
             min(max(target.w, -self.w), self.w),
@@ -130,6 +136,8 @@ BURGER = Robot(
 
 def wrap_angle(angle: float) -> float:
     """Return the same direction as an angle in (-pi, pi], rad."""
+    if -math.pi < angle <= math.pi:
+        return angle
     wrapped = math.remainder(angle, math.tau)
     return math.pi if wrapped <= -math.pi else wrapped
 
@@ -150,8 +158,9 @@ def yaw_from_quaternion(x: float, y: float, z: float, w: float) -> float:
 
 def wheel_speeds(twist: Twist2, robot: Robot = BURGER) -> tuple[float, float]:
     """Return how fast the left and the right wheel turn, rad/s."""
-    half = twist.w * robot.wheel_separation / 2
-    return (twist.v - half) / robot.wheel_radius, (twist.v + half) / robot.wheel_radius
+    (v, w), radius = twist, robot.wheel_radius
+    half = w * robot.wheel_separation / 2
+    return (v - half) / radius, (v + half) / radius
 
 
 def believed(twist: Twist2, mismatch: float, robot: Robot = BURGER) -> Twist2:
@@ -189,7 +198,7 @@ def ramp(twist: Twist2, target: Twist2, limits: DriveLimits) -> tuple[Twist2, fl
         are there.
     """
     if twist == target:
-        return Twist2(), math.inf
+        return STANDING, math.inf
     v_gap, w_gap = target.v - twist.v, target.w - twist.w
     v_time = abs(v_gap) / limits.v_rate if v_gap else math.inf
     w_time = abs(w_gap) / limits.w_rate if w_gap else math.inf
@@ -211,7 +220,7 @@ class Motion(NamedTuple):
 
     start: Pose
     twist: Twist2
-    acceleration: Twist2 = Twist2()
+    acceleration: Twist2 = STANDING
 
     def twist_at(self, time: float) -> Twist2:
         """Return the twist after `time` seconds."""
@@ -237,18 +246,27 @@ class Motion(NamedTuple):
         """Return the pose after `time` seconds."""
         if time == 0:
             return self.start
-        yaw = wrap_angle(self.start.yaw + self.turned(time))
-        if self.acceleration.w or (self.acceleration.v and self.twist.w):
+        (x, y, yaw), (v, w), (v_rate, w_rate) = self
+        if w_rate or (v_rate and w):
+            angle = self.turned(time)
             ahead, aside = self._integrate(time)
         else:
-            # An arc; or a straight line, on which the speed may change.
-            length = (self.twist.v + self.acceleration.v * time / 2) * time
-            ahead, aside = _chord(length, self.twist.w * time)
-        cos, sin = math.cos(self.start.yaw), math.sin(self.start.yaw)
+            # An arc; or a straight line, on which the speed may change. The chord of an arc of
+            # length s that turns by a is s sin(a/2) / (a/2) long and points along a/2. Unlike
+            # v/w (sin ...) this loses no digits when the arc is nearly straight.
+            # Source: Thrun, Burgard and Fox, "Probabilistic Robotics" (2005), equation 5.9,
+            # rearranged.
+            angle = w * time
+            half = angle / 2
+            # Where sin(half)/half would divide 0 by 0, its series is exact to rounding.
+            factor = math.sin(half) / half if abs(half) > 1e-4 else 1 - half * half / 6
+            chord = (v + v_rate * time / 2) * time * factor
+            ahead, aside = chord * math.cos(half), chord * math.sin(half)
+        cos, sin = math.cos(yaw), math.sin(yaw)
         return Pose(
-            self.start.x + cos * ahead - sin * aside,
-            self.start.y + sin * ahead + cos * aside,
-            yaw,
+            x + cos * ahead - sin * aside,
+            y + sin * ahead + cos * aside,
+            wrap_angle(yaw + angle),
         )
 
     def _integrate(self, time: float) -> tuple[float, float]:
@@ -267,19 +285,6 @@ class Motion(NamedTuple):
                 ahead += way * math.cos(angle)
                 aside += way * math.sin(angle)
         return ahead, aside
-
-
-def _chord(length: float, angle: float) -> tuple[float, float]:
-    """Return the end of an arc, ahead and to the left of its start, m.
-
-    The chord of an arc of length s that turns by a is s sin(a/2) / (a/2) long and points along
-    a/2. Unlike v/w (sin ...) this loses no digits when the arc is nearly straight.
-    Source: Thrun, Burgard and Fox, "Probabilistic Robotics" (2005), equation 5.9, rearranged.
-    """
-    half = angle / 2
-    # Where sin(half)/half would divide 0 by 0, its series is exact to rounding.
-    factor = math.sin(half) / half if abs(half) > 1e-4 else 1 - half * half / 6
-    return length * factor * math.cos(half), length * factor * math.sin(half)
 
 
 # Nodes and weights on [-1, 1]. Source: Abramowitz and Stegun (1964), table 25.4, n = 6.

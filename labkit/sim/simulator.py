@@ -9,6 +9,7 @@ import numpy as np
 from labkit.errors import LabError
 from labkit.sim.kinematics import (
     BURGER,
+    STANDING,
     Motion,
     Pose,
     Robot,
@@ -126,7 +127,7 @@ class Simulator:
                 todo='Let it start further away from walls and posts.',
             )
         self.pose = self.odometry = Pose(x, y, wrap_angle(yaw))
-        self.twist = self.target = self.acceleration = Twist2()
+        self.twist = self.target = self.acceleration = STANDING
         self.wheels = (0.0, 0.0)
         self.collisions: list[Contact] = []
         self._command_left = math.inf
@@ -153,7 +154,7 @@ class Simulator:
         """
         # Written so that NaN, for which every comparison is false, is refused too.
         sensible = abs(v) <= NONSENSE and abs(w) <= NONSENSE
-        self.target = self.robot.limits.clip(Twist2(v, w)) if sensible else Twist2()
+        self.target = self.robot.limits.clip(Twist2(v, w)) if sensible else STANDING
         self._command_left = self.command_timeout
         return sensible
 
@@ -180,6 +181,8 @@ class Simulator:
         hlds_laser_publisher.cpp (millimetres in whole numbers), and a scan of a real one in
         github.com/ROBOTIS-GIT/turtlebot3/issues/404.
         """
+        if not self.world.things(self.name):
+            return [self.scan_nothing] * self.robot.scan_beams
         ranges = self.world.ranges(self.pose, robot=self.robot, but=self.name)
         if self.noise:
             ranges += self._random.normal(0.0, self.noise, len(ranges))
@@ -202,9 +205,9 @@ class Simulator:
 
     def _advance(self, dt: float) -> float:
         """Move until something changes: a speed is reached, a contact, the command ends."""
-        if self.twist == self.target == Twist2():
+        if self.twist == self.target == STANDING:
             # However long it stands, this is one piece.
-            self.acceleration = Twist2()
+            self.acceleration = STANDING
             self._pass(dt)
             return dt
         if self.target == self._pushes:
@@ -212,16 +215,15 @@ class Simulator:
             self._pass(used)
             return used
         acceleration, change = ramp(self.twist, self.target, self.robot.limits)
-        longest = min(dt, self._command_left, LONGEST_PIECE)
-        used = min(longest, change)
+        used = min(dt, self._command_left, LONGEST_PIECE, change)
         motion = Motion(self.pose, self.twist, acceleration)
         contact = self.world.first_contact(motion, used, self.robot.radius, but=self.name)
         if contact is None:
             self._move(motion, used)
-        elif contact.time == 0 and self.twist == Twist2():
+        elif contact.time == 0 and self.twist == STANDING:
             # It pushes against what it touches: time passes, the robot stands.
-            used = longest
-            self.acceleration = Twist2()
+            used = min(dt, self._command_left, LONGEST_PIECE)
+            self.acceleration = STANDING
             if contact.thing in self.world.fixed:
                 self._pushes = self.target
             self._pass(used)
@@ -230,13 +232,13 @@ class Simulator:
             self._move(motion, used)
             if self.twist.v:
                 self.collisions.append(contact._replace(time=self.time))
-            self.twist = self.acceleration = Twist2()
+            self.twist = self.acceleration = STANDING
         return used
 
     def _move(self, motion: Motion, time: float) -> None:
         self._pushes = None
         acceleration = motion.acceleration
-        steady = acceleration == Twist2()
+        steady = acceleration == STANDING
         mean = motion.twist if steady else motion.twist_at(time / 2)
         left, right = wheel_speeds(believed(mean, self.drift, self.robot), self.robot)
         self.wheels = (self.wheels[0] + left * time, self.wheels[1] + right * time)
@@ -262,12 +264,13 @@ class Simulator:
         self.time += time
         self._command_left -= time
         if self._command_left <= 0:
-            self.target = Twist2()
+            self.target = STANDING
             self._command_left = math.inf
 
     def _show(self) -> None:
         """Let the other robots in the world see where this one is."""
-        self._post = Post(self.pose.x, self.pose.y, self.robot.radius)
+        x, y, _ = self.pose
+        self._post = Post(x, y, self.robot.radius)
         self.world.robots[self.name] = self._post
 
 

@@ -154,10 +154,10 @@ class World:
             The first contact, its time counted from the start of the motion. None if there is
             none: the disc does not come near anything, or moves away from what it touches.
         """
-        x, y, _ = motion.start
         others = self._others(but)
         if not self.fixed and not others:
             return None
+        x, y, _ = motion.start
         path = _Path(motion, motion.fastest(duration), duration)
         far = path.reach + radius + TOUCH
         first: Contact | None = None
@@ -173,6 +173,8 @@ class World:
         return first
 
     def _others(self, but: str) -> list[Post]:
+        if len(self.robots) == (but in self.robots):
+            return []  # it is alone, as it mostly is
         return [post for name, post in list(self.robots.items()) if name != but]
 
     def _near(self, x: float, y: float, distance: float, who: str) -> tuple[Wall | Post, ...]:

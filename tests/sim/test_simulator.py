@@ -267,6 +267,14 @@ def test_scan_follows_the_convention_for_what_it_cannot_measure() -> None:
     assert scan[90] == pytest.approx(2.0)
 
 
+@pytest.mark.parametrize('nothing', [math.inf, 0.0])
+def test_scan_of_an_empty_world_has_all_beams(nothing: float) -> None:
+    alone = Simulator(open_field(), noise=0.01, scan_nothing=nothing)
+    # The wall is far beyond the range.
+    far = Simulator(World([Wall(99, -1, 99, 1)]), noise=0.01, scan_nothing=nothing)
+    assert alone.scan() == far.scan() == [nothing] * 360
+
+
 def test_noise_is_the_same_for_the_same_seed() -> None:
     def scans(seed: int, noise: float = 0.01) -> list[list[float]]:
         robot = Simulator(noise=noise, seed=seed)
