@@ -311,9 +311,12 @@ class Notebook:
         """Return the text alternatives of a cell's pictures that can not be shown."""
         place = self.cell(cell_id)
         self.wait_for_pictures()
-        found: list[str] = place.locator('img').evaluate_all(
-            'pictures => pictures.filter(p => !p.naturalWidth).map(p => p.alt)'
-        )
+        # That of a camera may come at any time, and is no picture before.
+        found: list[str] = place.locator('img').evaluate_all("""async pictures => {
+          const comes = (picture) => !picture.naturalWidth && !picture.complete;
+          while (pictures.some(comes)) await new Promise(requestAnimationFrame);
+          return pictures.filter((p) => !p.naturalWidth && !p.hidden).map((p) => p.alt);
+        }""")
         return found
 
     def screenshot(self, path: str | os.PathLike[str]) -> None:
