@@ -54,6 +54,8 @@ def start_lab(arguments: Sequence[str]) -> NoReturn:
         *lesson_options(),
         '--ServerApp.ip=127.0.0.1',
         f'--LabApp.default_url=/lab/tree/{first}',
+        # What is open in another JupyterLab of the learner's is not looked for here.
+        f'--LabApp.workspaces_dir={state_dir() / "workspaces"}',
         # Else each kernel warns that others on this machine could listen to it.
         '--KernelManager.transport_encryption=auto',
     ]

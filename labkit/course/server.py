@@ -2,7 +2,8 @@
 
 The kernel of a notebook starts as soon as its page is asked for, that of the notebook on which
 JupyterLab opens with the server: while the page is loaded, which takes longer, it gets ready, and
-loads what the first cell of a lesson needs.
+loads what the first cell of a lesson needs. The first page of all finds its notebook in the
+workspace, too: JupyterLab opens what lies there at once, what its address names a second later.
 
 It is run by its path and imports nothing of labkit: what labkit sets for ROS is for kernels, not
 for the terminals that JupyterLab starts.
@@ -10,6 +11,7 @@ for the terminals that JupyterLab starts.
 
 from __future__ import annotations
 
+import asyncio
 import json
 import logging
 import re
@@ -28,6 +30,7 @@ _ADDRESS = re.compile(r'\s*(https?://\S+)\s*')
 _NO_MATTER = re.compile(r'The websocket_ping_timeout|Notebook .* is not trusted')
 # The page of a notebook.
 _PAGE = re.compile(r'.*/lab/tree/(.+\.ipynb)')
+_WORKSPACE = 'default'
 _KERNEL = 'python3'
 # It leaves no name behind.
 _PRELOAD = "if __import__('labkit.background.runtime'): pass"
@@ -68,45 +71,67 @@ def main(arguments: Sequence[str]) -> None:
         arguments: Its options. With `--debug`, or a level of the log, nothing is held back.
     """
     from jupyterlab.labapp import LabApp
+    from jupyterlab_server.workspaces_handler import WorkspacesManager
 
     # Its options and its log are called by this name.
     class ServerApp(LabApp.serverapp_class):  # type: ignore[misc]
         def start_app(self) -> None:
             super().start_app()
-            self._starting: set[str] = set()
+            self._starting: dict[str, asyncio.Task[Any]] = {}
             log = self.web_app.settings['log_function']
 
             def follow(handler: Any) -> None:
                 log(handler)
                 if handler.get_status() == 200 and (page := _PAGE.fullmatch(handler.request.path)):
-                    self.io_loop.add_callback(self._start_kernel, unquote(page[1]))
+                    path = unquote(page[1])
+                    self._open_at_once(path)
+                    self.io_loop.add_callback(self._start_kernel, path)
 
             self.web_app.settings['log_function'] = follow
             self.io_loop.add_callback(
                 self._start_kernel, self.default_url.partition('/lab/tree/')[2]
             )
 
+        def _open_at_once(self, path: str) -> None:
+            [lab] = self.extension_manager.extension_apps['jupyterlab']
+            workspaces = WorkspacesManager(lab.workspaces_dir)
+            # What can't be read or written here, the page says, or does without.
+            with suppress(OSError, ValueError):
+                if Path(self.root_dir, path).is_file() and not workspaces.load(_WORKSPACE)['data']:
+                    workspaces.save(_WORKSPACE, json.dumps(_workspace(path)))
+
         async def _start_kernel(self, path: str) -> None:
             # The page takes the kernel that its notebook has. What fails here, it says.
             if path in self._starting or _kernel_of(Path(self.root_dir, path)) != _KERNEL:
                 return
-            self._starting.add(path)
+            self._starting[path] = asyncio.create_task(self._create_session(path))
             try:
-                if not await self.session_manager.session_exists(path=path):
-                    await self._start_ready(path)
+                session = await self._starting[path]
             finally:
-                self._starting.remove(path)
+                del self._starting[path]
+            if session is not None:
+                await self._make_ready(session['kernel']['id'])
 
-        async def _start_ready(self, path: str) -> None:
-            session = await self.session_manager.create_session(
+        async def _create_session(self, path: str) -> dict[str, Any] | None:
+            if self._stopping or await self.session_manager.session_exists(path=path):
+                return None
+            session: dict[str, Any] = await self.session_manager.create_session(
                 path=path, name=path.rpartition('/')[2], type='notebook', kernel_name=_KERNEL
             )
-            client = self.kernel_manager.get_kernel(session['kernel']['id']).client()
+            return session
+
+        async def _make_ready(self, kernel_id: str) -> None:
+            client = self.kernel_manager.get_kernel(kernel_id).client()
             client.start_channels(iopub=False, stdin=False, control=False, hb=False)
             client.execute(_PRELOAD, silent=True, store_history=False)
             with suppress(Empty):  # it has ended meanwhile
                 await client.get_shell_msg(timeout=_PRELOAD_SEC)
             client.stop_channels()
+
+        async def cleanup_kernels(self) -> None:
+            # A kernel that has not quite started can't be ended, and the server would stay.
+            await asyncio.gather(*self._starting.values(), return_exceptions=True)
+            await super().cleanup_kernels()
 
     LabApp.serverapp_class = ServerApp
     if not any(re.match(r'--debug$|--(\w+\.)?log[-_]level', word) for word in arguments):
@@ -114,6 +139,20 @@ def main(arguments: Sequence[str]) -> None:
         for name in _LOGGERS:
             logging.getLogger(name).addFilter(quiet)
     LabApp.launch_instance(list(arguments))
+
+
+def _workspace(path: str) -> dict[str, Any]:
+    """Return the workspace that JupyterLab saves itself when a notebook is all that is open."""
+    tab = f'notebook:{path}'
+    dock = {'type': 'tab-area', 'currentIndex': 0, 'widgets': [tab]}
+    files = {'collapsed': False, 'visible': True, 'current': 'filebrowser'}
+    return {
+        'data': {
+            'layout-restorer:data': {'main': {'dock': dock, 'current': tab}, 'left': files},
+            tab: {'data': {'path': path, 'factory': 'Notebook'}},
+        },
+        'metadata': {'id': _WORKSPACE},
+    }
 
 
 def _kernel_of(notebook: Path) -> str:

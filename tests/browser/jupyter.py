@@ -50,11 +50,13 @@ class JupyterLab:
     Attributes:
         work: The learner's folder, with the lessons.
         url: The address, token included, that `labkit lab` opens in the learner's browser.
+        hangs: Whether it did not end when it was asked to.
     """
 
     def __init__(self, folder: Path, env: dict[str, str] | None = None) -> None:
         self.work = folder / 'work'
         self.url = ''
+        self.hangs = False
         self._log: list[str] = []
         self._ready = threading.Event()
         home = folder / 'home'
@@ -162,6 +164,7 @@ class JupyterLab:
         try:
             self._process.wait(START_SEC)
         except subprocess.TimeoutExpired:
+            self.hangs = True
             os.killpg(self._process.pid, signal.SIGKILL)
             self._process.wait()
         self._reader.join(START_SEC)

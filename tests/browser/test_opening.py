@@ -58,6 +58,60 @@ print('labkit.background.runtime' in sys.modules, left)
     assert paths.count('usual.ipynb') == 1
 
 
+def test_the_first_page_finds_its_notebook_in_the_workspace(tmp_path, browser):
+    workspace, tab = 'lab/api/workspaces/default', f'notebook:{FIRST}'
+    with JupyterLab(tmp_path / 'fresh') as jupyter:
+        assert jupyter.request(workspace)['data'] == {}
+        for name in ('missing.ipynb', 'images', FIRST):
+            try:
+                urllib.request.urlopen(jupyter.address(f'lab/tree/{name}')).close()
+            except urllib.error.HTTPError as error:
+                assert name == 'missing.ipynb' and error.code == 404
+        given = jupyter.request(workspace)['data']
+        assert given[tab] == {'data': {'path': FIRST, 'factory': 'Notebook'}}
+        # JupyterLab takes it for what it has written itself.
+        notebook = Notebook(browser.new_page()).open(jupyter.url)
+        page = notebook.page
+        expect(page.locator('#jp-main-dock-panel .lm-TabBar-tab')).to_have_text([FIRST])
+        expect(page.locator('.jp-DirListing-item').filter(has_text=FIRST)).to_be_visible()
+        while 'docmanager:recents' not in (saved := jupyter.request(workspace)['data']):
+            pass
+        assert saved[tab] == given[tab]
+        before, after = (data['layout-restorer:data'] for data in (given, saved))
+        assert before['main'] == after['main']
+        assert before['left'].items() <= after['left'].items()
+        notebook.close()
+        # What is there is left alone.
+        urllib.request.urlopen(jupyter.address('lab/tree/01_theory.ipynb')).close()
+        assert tab in jupyter.request(workspace)['data']
+
+
+SLOW_START = """
+import asyncio
+from jupyter_client.provisioning import LocalProvisioner
+
+start = LocalProvisioner.launch_kernel
+
+async def start_slowly(self, *arguments, **options):
+    print('a kernel starts', flush=True)
+    await asyncio.sleep(1)
+    return await start(self, *arguments, **options)
+
+LocalProvisioner.launch_kernel = start_slowly
+"""
+
+
+def test_it_ends_while_a_second_kernel_starts(tmp_path):
+    (tmp_path / 'jupyter_server_config.py').write_text(SLOW_START)
+    with JupyterLab(tmp_path / 'short', {'JUPYTER_CONFIG_PATH': str(tmp_path)}) as jupyter:
+        while not jupyter.request('api/sessions'):
+            pass
+        urllib.request.urlopen(jupyter.address('lab/tree/01_theory.ipynb')).close()
+        while jupyter.log.count('a kernel starts') < 2:
+            pass
+    assert not jupyter.hangs, jupyter.log
+
+
 def _look_at_first_lesson(notebook: Notebook) -> None:
     page = notebook.page
     expect(page.locator('.jp-NotebookPanel:visible')).to_have_count(1)
