@@ -11,23 +11,21 @@ sent them; but each publisher numbers its own, so an own one is known by its num
 
 from __future__ import annotations
 
-import os
 import secrets
 import threading
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
-from rclpy.context import Context
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.exceptions import InvalidNodeNameException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import QoSProfile
-from rclpy.signals import SignalHandlerOptions
 from rclpy.validate_node_name import validate_node_name
 
-from labkit.background.domains import DomainClaim, claim_domain, number_for_ros
-from labkit.background.nodes import destroy_node, helper_node
+from labkit.background.domains import DomainClaim, claim_domain
+from labkit.background.guest import enter
+from labkit.background.nodes import destroy_node
 from labkit.background.notebook_rclpy import ORIGINALS
 from labkit.background.runtime import runtime
 from labkit.background.session import Session, end_earlier, going_on
@@ -55,8 +53,6 @@ SPIN_SEC = 0.1
 # Variables that ROS reads when it takes part in a domain.
 _RANGE, _PEERS = 'ROS_AUTOMATIC_DISCOVERY_RANGE', 'ROS_STATIC_PEERS'
 _SERVER = 'ROS_DISCOVERY_SERVER'
-
-_environment_lock = threading.Lock()
 
 
 class Joined(Session):
@@ -90,7 +86,7 @@ class Joined(Session):
         self.programs: list[Process] = []
         self.topic = full_topic_name(topic, self._node)
         try:
-            self._context, self._guest = _enter(domain_id, name, variables)
+            self._context, self._guest = enter(domain_id, name, variables)
         except BaseException:
             self._end_node()
             raise
@@ -376,40 +372,3 @@ def _refuse_own_domain(domain_id: int | None, topic: str) -> None:
                 f'{name} is shared in domain {domain_id} already.',
                 todo='End that first with its leave().',
             )
-
-
-def _enter(domain_id: int, name: str, variables: dict[str, str]) -> tuple[Context, Node]:
-    """Take part in a domain with a node that has nothing yet."""
-    context = Context()
-    with _environment(variables):
-        ORIGINALS['init'](
-            context=context,
-            domain_id=number_for_ros(domain_id),
-            args=['--ros-args', '--disable-external-lib-logs', '--disable-stdout-logs'],
-            signal_handler_options=SignalHandlerOptions.NO,
-        )
-        try:
-            return context, helper_node(name, context=context)
-        except BaseException:
-            ORIGINALS['try_shutdown'](context=context)
-            raise
-
-
-@contextmanager
-def _environment(variables: dict[str, str]) -> Iterator[None]:
-    """Set variables while ROS reads them; one that is empty is taken away."""
-    with _environment_lock:
-        before = {name: os.environ.get(name) for name in variables}
-        try:
-            _set(variables)
-            yield
-        finally:
-            _set({name: value or '' for name, value in before.items()})
-
-
-def _set(variables: dict[str, str]) -> None:
-    for name, value in variables.items():
-        if value:
-            os.environ[name] = value
-        else:
-            os.environ.pop(name, None)

@@ -13,7 +13,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import rclpy
 import rclpy.action.client
@@ -41,11 +41,10 @@ if TYPE_CHECKING:
     from rclpy.signals import SignalHandlerOptions
     from rclpy.task import Future
 
-    from labkit.background.console import Console
-    from labkit.background.executor import BackgroundExecutor
     from labkit.background.nodes import NodeEntry
+    from labkit.background.protocol import Background
 
-__all__ = ['ORIGINALS', 'Background', 'install', 'is_installed', 'uninstall']
+__all__ = ['ORIGINALS', 'install', 'is_installed', 'uninstall']
 
 # Python runs the handler of the stop button only between two waits in C.
 SLICE_SEC = 0.1
@@ -79,50 +78,6 @@ ORIGINALS: dict[str, Callable[..., Any]] = {
     safe: getattr(owner, name) for owner, name, safe in REPLACED
 }
 """The functions of rclpy as they are in a script, by the name of what stands in for each."""
-
-
-class Background(Protocol):
-    """What the functions here need of the runtime, which installs them."""
-
-    helper: Node | None
-    console: Console
-
-    @property
-    def executor(self) -> BackgroundExecutor:
-        """Return the background executor."""
-
-    foreign_threads: set[threading.Thread]
-
-    @property
-    def started(self) -> bool:
-        """Tell whether ROS is up."""
-
-    def start(self, *, domain_id: int | None = None, args: list[str] | None = None) -> None:
-        """Start ROS in the background; without effect when it is up."""
-
-    def stop(self) -> None:
-        """Destroy all nodes, and shut ROS down."""
-
-    def end_caller(self) -> bool:
-        """End the node whose callback calls this; return False when none does."""
-
-    def add(self, node: Node, *, budget: int | None = None) -> NodeEntry:
-        """Run a node in the background."""
-
-    def release(self, entry: NodeEntry) -> None:
-        """Run a node no more, and leave it alive."""
-
-    def entry_of(self, node: Node) -> NodeEntry | None:
-        """Return the entry of a node, None if it does not run in the background."""
-
-    def make_room(self, name: str) -> None:
-        """Destroy the node of a name before another one of that name is made."""
-
-    def wait(self, condition: Callable[[], object], timeout_sec: float | None) -> bool:
-        """Wait until a condition is true."""
-
-    def refuse_in_callback(self, what: str, todo: str = '') -> None:
-        """Raise a LabError when called by a callback."""
 
 
 def install(background: Background) -> None:

@@ -10,25 +10,20 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
-from datetime import datetime, timezone
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from labkit import settings
 from labkit.background.progress_bar import ProgressBar
 from labkit.bags.reader import open_bag
 from labkit.errors import LabError
-from labkit.views.arena_picture import Scene
 from labkit.views.bag_picture import to_png
 from labkit.views.bag_reading import (
     ODOMETRY,
     SCAN,
+    Content,
     Samples,
-    Strip,
-    Track,
     check_field,
     chosen_topic,
     number_paths,
@@ -36,10 +31,11 @@ from labkit.views.bag_reading import (
     read_strip,
     read_track,
 )
+from labkit.views.bag_words import about, bag_in_words, ordinal, printable, row_of
 from labkit.views.live import Live
 from labkit.views.message_tree import rows
 from labkit.views.plot_fields import Source, parse
-from labkit.views.plot_picture import COLOURS, in_words, thin
+from labkit.views.plot_picture import COLOURS, thin
 from labkit.views.robot_messages import beam_ends, motion_of
 from labkit.views.stored import Stored
 from labkit.views.widget import widget_class
@@ -52,16 +48,6 @@ __all__ = ['BagView', 'bag']
 
 # So many columns a line has at most; what is in between can't be seen.
 COLUMNS = 800
-
-
-@dataclass(frozen=True)
-class _Content:
-    """What was read for the picture."""
-
-    strips: Sequence[Strip]
-    samples: Sequence[Samples]
-    track: Track | None
-    problems: Sequence[str]
 
 
 class BagView(Live):
@@ -93,7 +79,7 @@ class BagView(Live):
             self._bag.close()
             raise
         self.note = self._bag.note
-        self._content: _Content | None = None
+        self._content: Content | None = None
         self._widget: PageWidget | None = None
         if self._watched:
             self._widget = widget_class(self._name)()
@@ -131,7 +117,7 @@ class BagView(Live):
         return self._bag.messages(topics, start_sec, end_sec)
 
     def __repr__(self) -> str:
-        return _in_words(self, self._read())
+        return bag_in_words(self._bag, self._read(), self.note)
 
     def _repr_mimebundle_(self, **_: object) -> dict[str, object]:
         content = self._read()
@@ -160,17 +146,17 @@ class BagView(Live):
 
     # -- reading --------------------------------------------------------------------------------
 
-    def _read(self) -> _Content:
+    def _read(self) -> Content:
         """Read what the picture shows, once."""
         if self._content is None:
-            progress = ProgressBar(f'Reading {_printable(self._bag.path.name)}')
+            progress = ProgressBar(f'Reading {printable(self._bag.path.name)}')
             try:
                 self._content = self._read_all(progress)
             finally:
                 progress.close()
         return self._content
 
-    def _read_all(self, progress: ProgressBar) -> _Content:
+    def _read_all(self, progress: ProgressBar) -> Content:
         strips, problems = [], []
         track = None
         topics = self._bag.topics
@@ -186,11 +172,11 @@ class BagView(Live):
         samples = self._samples(self._sources, progress)
         problems += [each.problem for each in samples if each.problem]
         problems += [
-            f'Every {_ordinal(each.step)} message of {each.source.topic} is drawn.'
+            f'Every {ordinal(each.step)} message of {each.source.topic} is drawn.'
             for each in samples
             if each.step > 1
         ]
-        return _Content(strips, samples, track, list(dict.fromkeys(problems)))
+        return Content(strips, samples, track, list(dict.fromkeys(problems)))
 
     def _samples(self, sources: Sequence[Source], progress: ProgressBar) -> list[Samples]:
         """Return the numbers of fields, in their order; each topic is read once."""
@@ -239,9 +225,9 @@ class BagView(Live):
             buffers.append(table.astype('<f8').tobytes())
         state |= {
             'name': bag.path.name,
-            'about': _about(bag),
+            'about': about(bag),
             'seconds': bag.duration_sec,
-            'topics': [_row(strip) for strip in content.strips],
+            'topics': [row_of(strip) for strip in content.strips],
             'track': content.track.topic if content.track is not None else '',
             'scan': self._scan,
             'note': ' '.join([*[self.note] * bool(self.note), *content.problems]),
@@ -309,60 +295,6 @@ def bag(
     return BagView(path, fields, odom=odom, scan=scan)
 
 
-# --- Words ---------------------------------------------------------------------------------------
-
-
-def _in_words(view: BagView, content: _Content) -> str:
-    """Return what a bag has as text; for a program, without what each recording has anew."""
-    bag, timeless = view._bag, settings.audience().same_each_time
-    topics = f'{len(bag.topics)} topic{"s" * (len(bag.topics) != 1)}'
-    head = f'{bag.path.name}: {_messages(bag.message_count)} of {topics}'
-    lines = [f'{head}, {bag.storage}' if timeless else f'{head}. {_about(bag)}']
-    table = [_row(strip)[:-1] for strip in content.strips]
-    if timeless:
-        table = [row[:3] for row in table]
-    table = [[row[0], f'[{row[1]}]', _messages(int(row[2])), *row[3:]] for row in table]
-    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-    for row in table:
-        cells = [text.ljust(width) for text, width in zip(row, widths, strict=True)]
-        lines.append(f'  {"  ".join(cells)}'.rstrip())
-    for each in content.samples:
-        if len(each.values):
-            count = f'{len(each.values)} numbers'
-            lines.append(
-                f'{each.source.text}: {count}, {in_words(each.values.tolist(), each.unit)}'
-            )
-    if content.track is not None and len(content.track.times):
-        pose = content.track.pose_at(float('inf'))
-        lines.append(f'At the end: {Scene(pose=pose).words().partition(". ")[0]}.')
-    lines += [view.note] * bool(view.note)
-    return '\n'.join(_printable(line) for line in [*lines, *content.problems])
-
-
-def _about(bag: Any) -> str:
-    """Return when a bag was recorded, how long, and how large it is."""
-    if not bag.message_count:
-        return f'It is empty. {bag.storage}, {_size(bag.size_bytes)}.'
-    began = datetime.fromtimestamp(bag.start_ns / 1e9, timezone.utc)
-    return (
-        f'{bag.duration_sec:.1f} s from {began:%Y-%m-%d %H:%M:%S} UTC, {bag.storage}, '
-        f'{_size(bag.size_bytes)}.'
-    )
-
-
-def _row(strip: Strip) -> list[str]:
-    """Return name, type, count, rate and times of a topic, and the same as a sentence."""
-    topic, rate = strip.topic, strip.rate
-    rate_text = '' if rate is None else f'{rate:.3g} Hz' if rate < 99.5 else f'{rate:.0f} Hz'
-    times = f'{strip.first_sec:.1f} s to {strip.last_sec:.1f} s' if topic.count else ''
-    words = f'{_messages(topic.count)} of {topic.name}'
-    if topic.count:
-        words += f' from {times}'
-    if strip.gap is not None:
-        words += f', longest pause {strip.gap[0]:.2g} s, from {strip.gap[1]:.1f} s on'
-    return [topic.name, topic.msg_type, str(topic.count), rate_text, times, words]
-
-
 def _told(samples: Sequence[Samples], seconds: float) -> tuple[dict[str, Any], list[bytes]]:
     """Return what the page is told of fields."""
     buffers = []
@@ -384,24 +316,3 @@ def _checked(sources: Sequence[Source]) -> list[Source]:
     if len(found) > len(COLOURS):
         raise LabError(f'A plot has at most {len(COLOURS)} fields, but got {len(found)}.')
     return found
-
-
-def _messages(count: int) -> str:
-    return f'{count} message{"s" * (count != 1)}'
-
-
-def _size(count: int) -> str:
-    """Return a number of bytes as text, in units of 1000."""
-    size, units = float(count), ['B', 'kB', 'MB', 'GB', 'TB']
-    while size >= 999.5 and len(units) > 1:
-        size, units = size / 1000, units[1:]
-    return f'{size:.3g} {units[0]}'
-
-
-def _ordinal(number: int) -> str:
-    ending = {1: 'st', 2: 'nd', 3: 'rd'}.get(number % 10, 'th')
-    return f'{number}{"th" if 10 <= number % 100 <= 20 else ending}'
-
-
-def _printable(text: str) -> str:
-    return ''.join(char if char.isprintable() else '?' for char in text)

@@ -29,6 +29,7 @@ __all__ = [
     'BINS',
     'ODOMETRY',
     'SCAN',
+    'Content',
     'Samples',
     'Strip',
     'Track',
@@ -116,6 +117,23 @@ class Track:
         """Return the last pose at a time or before it, None if there is none."""
         index = int(np.searchsorted(self.times, seconds, side='right')) - 1
         return None if index < 0 else Pose(*map(float, self.numbers[index, :3]))
+
+
+@dataclass(frozen=True)
+class Content:
+    """What was read for the picture of a bag.
+
+    Attributes:
+        strips: When messages came, a strip for each topic.
+        samples: Numbers of the fields that are drawn.
+        track: The way of a robot, if the bag has one.
+        problems: What could not be read, as sentences.
+    """
+
+    strips: Sequence[Strip]
+    samples: Sequence[Samples]
+    track: Track | None
+    problems: Sequence[str]
 
 
 def read_strip(bag: Bag, topic: BagTopic) -> Strip:

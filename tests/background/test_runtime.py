@@ -6,39 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-SETUP = """
-import labkit as lab
-from rclpy.node import Node
-from std_msgs.msg import String
-"""
-
-TALKER = """
-class Talker(Node):
-    def __init__(self):
-        super().__init__('talker')
-        self.count = 0
-        self.publisher = self.create_publisher(String, 'chatter', 10)
-        self.timer = self.create_timer(0.02, self.on_timer)
-
-    def on_timer(self):
-        self.publisher.publish(String(data=f'Hello World: {self.count}'))
-        self.count += 1
-
-talker = lab.spin(Talker())
-"""
-
-LISTENER = """
-class Listener(Node):
-    def __init__(self):
-        super().__init__('listener')
-        self.heard = []
-        self.create_subscription(String, 'chatter', self.on_message, 10)
-
-    def on_message(self, message):
-        self.heard.append(message.data)
-
-listener = lab.spin(Listener())
-"""
+from tests.background.cells import LISTENER, SETUP, TALKER
 
 COUNTS = """
 import threading
@@ -153,72 +121,6 @@ def test_stop_button_ends_the_cell_and_ros_still_works(kernel, waiting):
         LISTENER + 'lab.wait_until(lambda: len(listener.heard) >= 3)\nprint("works")'
     )
     assert (after.error, after.text) == ('', 'works\n')
-
-
-PASTED = """
-import rclpy
-from rclpy.node import Node
-from std_msgs.msg import String
-
-class Minimal(Node):
-    def __init__(self):
-        super().__init__('minimal')
-        self.publisher = self.create_publisher(String, 'topic', 10)
-        self.timer = self.create_timer(0.02, self.on_timer)
-
-    def on_timer(self):
-        self.publisher.publish(String(data='tick'))
-        self.get_logger().info('tick')
-
-def main(args=None):
-    rclpy.init(args=args)
-    node = Minimal()
-    rclpy.spin(node)
-    node.destroy_node()
-    rclpy.shutdown()
-
-main()
-print('the end')
-"""
-
-
-def test_pasted_tutorial_works_twice_and_labkit_after_it(kernel):
-    kernel.run('import labkit as lab\nlab.start()')
-    for _ in range(2):
-        cell = kernel.start(PASTED)
-        kernel.wait_for_output(cell, '[INFO] [minimal]: tick')
-        kernel.interrupt()
-        result = kernel.finish(cell)
-        assert (result.error, result.text.splitlines()[-1]) == ('', 'the end')
-    result = kernel.run(SETUP + TALKER + 'lab.wait_until(lambda: talker.count >= 2)')
-    assert result.error == ''
-
-
-def test_functions_of_rclpy_do_what_their_documentation_says(kernel):
-    kernel.run(SETUP + 'import rclpy\nlab.start()')
-    kernel.run(TALKER.replace('lab.spin(Talker())', 'Talker()'))
-    counts = kernel.run(
-        'rclpy.init()\n'
-        'for _ in range(3):\n'
-        '    rclpy.spin_once(talker)\n'
-        'print(talker.count)\n'
-        'while talker.count < 5:\n'
-        '    rclpy.spin_once(talker, timeout_sec=0)\n'
-        'print(talker.count)'
-    )
-    assert (counts.error, counts.text) == ('', '3\n5\n')
-    future = kernel.run(
-        'from std_srvs.srv import Trigger\n'
-        'server = lab.spin(Node("server"))\n'
-        'server.create_service(Trigger, "fire", lambda request, response: response)\n'
-        'client = talker.create_client(Trigger, "fire")\n'
-        'future = client.call_async(Trigger.Request())\n'
-        'rclpy.spin_until_future_complete(talker, future)\n'
-        'print(future.result())'
-    )
-    assert 'Trigger_Response' in future.text
-    ended = kernel.run('rclpy.shutdown()\nprint(rclpy.ok())\nrclpy.init()\nprint(rclpy.ok())')
-    assert (ended.error, ended.text) == ('', 'False\nTrue\n')
 
 
 def test_waiting_inside_a_callback_is_refused(kernel):
@@ -348,27 +250,6 @@ def test_headless_output_of_callbacks_is_cut_where_the_wait_ended(
         result = kernel.run(f'{loud}lab.wait_until(lambda: talker.count >= 3)')
         assert kernel.run('1').error == ''
         assert ''.join(o['text'] for o in kernel.outputs_of(result.msg_id)) == '1\n2\n3\n'
-
-
-def test_pasted_threads_and_executors_work_and_end_with_the_kernel(kernel):
-    kernel.run(SETUP + 'lab.start()')
-    thread = kernel.run(
-        TALKER.replace('lab.spin(Talker())', 'Talker()') + 'import rclpy, threading\n'
-        'threading.Thread(target=rclpy.spin, args=(talker,), daemon=True).start()\n'
-        'lab.wait_until(lambda: talker.count > 3)'
-    )
-    assert thread.error == ''
-    executor = kernel.run(
-        'from rclpy.executors import MultiThreadedExecutor\n'
-        'ticks, other = [], Node("other")\n'
-        'other.create_timer(0.01, lambda: ticks.append(1))\n'
-        'executor = MultiThreadedExecutor()\n'
-        'executor.add_node(other)\n'
-        'threading.Thread(target=executor.spin, daemon=True).start()\n'
-        'lab.wait_until(lambda: len(ticks) > 3)'
-    )
-    assert executor.error == ''
-    assert kernel.shutdown() == 0
 
 
 @pytest.mark.parametrize(

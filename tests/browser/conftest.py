@@ -10,6 +10,7 @@ import pytest
 
 from tests.browser.jupyter import JupyterLab
 from tests.browser.page import Notebook, chromium_path, open_browser, open_notebook
+from tests.browser.robot_stage import CELLS, Stage
 
 _numbers = itertools.count()
 
@@ -74,3 +75,9 @@ def open_cells(
         return open_lesson(name)
 
     return open_
+
+
+@pytest.fixture
+def stage(open_cells: Callable[..., Notebook]) -> Stage:
+    """Return a notebook in which a robot, its map and its keys run."""
+    return Stage(open_cells(**CELLS))

@@ -1,54 +1,13 @@
-"""The robot in the browser: the arena is drawn, keys and mouse drive, whoever leaves stops it."""
+"""The robot in the browser: its map, its camera, and two of them at once."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 
-import pytest
-from playwright.sync_api import Locator, expect
+from playwright.sync_api import expect
 
-from tests.browser.page import Notebook, open_notebook
+from tests.browser.robot_stage import STANDS
 
-CELLS = {
-    'setup': 'import labkit as lab\nrobot = lab.spin(lab.Turtlebot())',
-    'arena': 'view = lab.arena(goals=[(1.0, 0.5)])\nview',
-    'teleop': 'pilot = lab.teleop()\npilot',
-    'place': 'robot.place()',
-    'before-a-wall': 'robot.place(x=2.2)',
-    'both': 'robot.place()\ndisplay(lab.arena(), lab.teleop())',
-    'to-a-corner': 'robot.place(x=2.0, y=-2.0)',
-    'other-arena': 'lab.arena()',
-    'other-teleop': 'lab.teleop()',
-    'camera': "display(lab.image('/camera/image_raw'), lab.teleop())",
-    'close-camera': 'lab.remove(robot)',
-    'busy': """
-print('busy')
-try:
-    lab.wait_until(lambda: robot.pose.x > 0.1, timeout_sec=50)
-    print('drove')
-except lab.LabTimeout:
-    print('stood')
-""",
-    'standing': """
-lab.wait_until(lambda: robot.twist == (0, 0), timeout_sec=50)
-print('standing', pilot.published)
-""",
-    'no-ears': """
-import asyncio
-from labkit.background.runtime import runtime
-
-def ears():
-    return {s.topic_name for s in runtime.helper.subscriptions}
-
-while {'/odom', '/scan'} & ears():
-    await asyncio.sleep(0.02)
-print('nobody listens')
-""",
-    'close': 'view.close()\npilot.close()',
-    'stop': 'lab.stop()',
-}
-STANDS = 'linear.x = 0.00 m/s  angular.z = 0.00 rad/s'
 # What is drawn, by the colours of the pixels: what is but a few of them is not the ground.
 COLOURS = """canvas => {
   const { width, height } = canvas;
@@ -60,46 +19,6 @@ COLOURS = """canvas => {
   }
   return counts;
 }"""
-
-
-class Stage:
-    """A notebook in which a robot, its arena and its teleop run."""
-
-    def __init__(self, notebook: Notebook) -> None:
-        self.notebook, self.page = notebook, notebook.page
-        for cell_id in ('setup', 'arena', 'teleop'):
-            notebook.run_cell(cell_id)
-        self.look()
-
-    def look(self) -> None:
-        """Find the views in the page."""
-        self.canvas: Locator = self.page.locator('.labkit-arena canvas')
-        self.teleop: Locator = self.page.locator('.labkit-teleop')
-        self.published: Locator = self.page.locator('.labkit-teleop-published')
-        expect(self.canvas).to_have_attribute('data-pose', '0.000 0.000 0.000 0.000 0.000')
-
-    def focus(self) -> None:
-        self.teleop.click(position={'x': 4, 'y': 4})
-
-    def hold(self, key: str, shown: str) -> None:
-        self.focus()
-        self.page.keyboard.down(key)
-        expect(self.published).to_contain_text(shown)
-
-    def expect_stop(self) -> None:
-        expect(self.published).to_contain_text(STANDS)
-        self.page.wait_for_function(
-            "canvas => canvas.dataset.pose.endsWith('0.000 0.000')",
-            arg=self.canvas.element_handle(),
-        )
-
-    def pose(self) -> list[float]:
-        return [float(number) for number in (self.canvas.get_attribute('data-pose')).split()]
-
-
-@pytest.fixture
-def stage(open_cells: Callable[..., Notebook]) -> Stage:
-    return Stage(open_cells(**CELLS))
 
 
 def test_arena_is_drawn_and_follows_the_theme(stage):
@@ -318,122 +237,6 @@ def test_two_maps_and_two_sets_of_keys_work(stage):
             arg=canvas.element_handle(),
         )
     expect(stage.page.locator('.labkit-live-note:visible')).to_have_count(0)
-
-
-def test_keys_drive_the_robot_and_leave_the_notebook_alone(stage):
-    count = len(stage.notebook.cells())
-    stage.hold('w', 'linear.x = 0.22 m/s  angular.z = 0.00 rad/s')
-    stage.page.wait_for_function(
-        'canvas => parseFloat(canvas.dataset.pose) > 0.1', arg=stage.canvas.element_handle()
-    )
-    stage.page.keyboard.down('ArrowLeft')
-    expect(stage.published).to_contain_text('linear.x = 0.22 m/s  angular.z = 1.42 rad/s')
-    stage.page.keyboard.press('-')
-    stage.page.keyboard.press('-')
-    expect(stage.published).to_contain_text('angular.z = 0.71 rad/s')
-    stage.page.keyboard.up('w')
-    expect(stage.published).to_contain_text('linear.x = 0.00 m/s  angular.z = 0.71 rad/s')
-    stage.page.keyboard.up('ArrowLeft')
-    stage.expect_stop()
-    assert stage.pose()[0] > 0.1
-    for key, shown in (('ArrowDown', '= -0.11 m/s'), ('d', '= -0.71 rad/s'), ('x', '= -0.11')):
-        stage.hold(key, shown)
-        stage.page.keyboard.press(' ')
-        stage.expect_stop()
-        stage.page.keyboard.up(key)
-    for press_in in (stage.focus, stage.canvas.click):
-        press_in()
-        # In JupyterLab's command mode these insert, cut and delete cells, and change their type.
-        for key in ('a', 'b', 'x', 'd', 'd', 'm', 'y', 'ArrowUp', 'Enter'):
-            stage.page.keyboard.press(key)
-        cells = stage.notebook.cells()
-        assert len(cells) == count and {cell['cell_type'] for cell in cells} == {'code'}
-
-
-def test_what_is_under_the_mouse_stays_there(stage):
-    def places():
-        controls = stage.teleop.locator('button, .labkit-teleop-pad').all()
-        return [control.bounding_box() for control in controls]
-
-    def click(title):
-        stage.teleop.get_by_title(title).click()
-
-    words = stage.teleop.locator('output')
-    expect(words).to_have_text('100 %: 0.22 m/s, 1.42 rad/s')
-    before = places()
-    assert len(before) == 8
-    click('slower (key -)')
-    expect(words).to_have_text('75 %: 0.17 m/s, 1.06 rad/s')
-    assert places() == before
-    click('faster (key +)')
-    # So it is before the kernel has told the speeds.
-    words.evaluate("words => { words.textContent = ''; }")
-    assert places() == before
-
-
-def test_mouse_drives_the_robot(stage):
-    box = stage.page.locator('.labkit-teleop-pad').bounding_box()
-    x, y = box['x'] + box['width'] / 2, box['y'] + box['height'] / 2
-    stage.page.mouse.move(x, y)
-    stage.page.mouse.down()
-    stage.page.mouse.move(x, y - 200)
-    expect(stage.published).to_contain_text('linear.x = 0.22 m/s  angular.z = 0.00 rad/s')
-    stage.page.mouse.up()
-    stage.expect_stop()
-    button = stage.page.locator('.labkit-teleop-keys [data-action=right]')
-    button.hover()
-    stage.page.mouse.down()
-    expect(stage.published).to_contain_text('linear.x = 0.00 m/s  angular.z = -1.42 rad/s')
-    # Let go beside the button.
-    stage.page.mouse.move(x, y)
-    stage.page.mouse.up()
-    stage.expect_stop()
-
-
-LEAVING = {
-    'click elsewhere': lambda stage: stage.page.locator('.labkit-arena-words').click(),
-    'focus moves': lambda stage: stage.canvas.focus(),
-    'window loses focus': lambda stage: stage.page.evaluate(
-        "window.dispatchEvent(new Event('blur'))"
-    ),
-    'tab is hidden': lambda stage: stage.page.evaluate(
-        """Object.defineProperty(document, 'hidden', { value: true, configurable: true });
-        document.dispatchEvent(new Event('visibilitychange'));
-        delete document.hidden"""
-    ),
-}
-
-
-def test_whoever_leaves_stops_the_robot(stage):
-    for name, leave in LEAVING.items():
-        stage.hold('w', 'linear.x = 0.22')
-        leave(stage)
-        stage.expect_stop()
-        stage.page.keyboard.up('w')
-        assert stage.notebook.error_of('teleop') == '', name
-
-
-def test_closing_the_tab_stops_the_robot_and_leaves_no_subscription(stage, jupyter, browser):
-    stage.hold('w', 'linear.x = 0.22')
-    name = stage.page.evaluate('window.jupyterapp.shell.currentWidget.context.path')
-    # It goes without a word, like one that has crashed: the kernel finds out.
-    stage.page.close(run_before_unload=False)
-    other = open_notebook(jupyter, browser, name.removesuffix('.ipynb'))
-    assert other.run_cell('standing') == 'standing (0.0, 0.0)'
-    assert other.run_cell('no-ears') == 'nobody listens'
-    # The fixture goes on with this tab.
-    stage.notebook.page = other.page
-
-
-def test_drives_while_a_cell_is_running(stage):
-    stage.notebook.start_cell('busy')
-    stage.notebook.wait_output('busy', 'busy')
-    stage.hold('w', 'linear.x = 0.22')
-    stage.notebook.wait_for_end('busy')
-    assert stage.notebook.output_text('busy') == 'busy\ndrove'
-    stage.focus()
-    stage.page.keyboard.up('w')
-    stage.expect_stop()
 
 
 def test_closed_views_say_so(stage):

@@ -13,7 +13,7 @@ from functools import reduce
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from labkit.exercises.clauses.base import Clause, Evidence, Test
-from labkit.exercises.expect.timing import hanging, spun
+from labkit.exercises.expect.spinning import hanging, spun
 from labkit.exercises.expect.values import show, text_trouble
 from labkit.exercises.verdict import Fail
 from labkit.exercises.watch import Sample

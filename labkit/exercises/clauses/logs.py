@@ -8,7 +8,7 @@ from typing import NoReturn
 
 from labkit.exercises.clauses.answering import WITHIN_SEC, Explain, value_of
 from labkit.exercises.clauses.base import Clause, Evidence, Test
-from labkit.exercises.expect.timing import hanging, spun
+from labkit.exercises.expect.spinning import hanging, spun
 from labkit.exercises.expect.values import show
 from labkit.exercises.verdict import Fail
 from labkit.exercises.watch import Sample

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from labkit.exercises import expect
 from labkit.exercises.clauses.base import Clause, Evidence
-from labkit.exercises.expect import timing
+from labkit.exercises.expect import spinning
 from labkit.exercises.verdict import Fail
 
 __all__ = ['Named', 'NobodyElse', 'Runs', 'Subscribes']
@@ -111,8 +111,8 @@ class Runs(Clause):
         """Ask the node."""
         probe = evidence.probe
         name = self.node or evidence.publisher(self.topic).node
-        timing.hanging(probe)
-        if not timing.runs(probe, name):
+        spinning.hanging(probe)
+        if not spinning.runs(probe, name):
             raise Fail(
                 f'{name} runs: its callbacks are called when their time has come',
                 f'{name} is there, but it is not spun',
@@ -121,5 +121,5 @@ class Runs(Clause):
                 if probe.node_object(name) is not None
                 else 'Its program does something else, such as a loop that waits. So it neither '
                 'takes messages nor answers questions.',
-                todo=timing.how_to_spin(probe, name),
+                todo=spinning.how_to_spin(probe, name),
             )

@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from labkit.errors import LabError, nearest
+from labkit.errors import nearest
 from labkit.exercises import expect
 from labkit.exercises.clauses.base import Clause, Evidence, Stream
+from labkit.exercises.clauses.parameter_client import Values, asked, get_values, kept, set_values
 from labkit.exercises.clauses.publishing import Publishes
-from labkit.exercises.expect import timing
+from labkit.exercises.expect import spinning
 from labkit.exercises.life import LIFE_SEC
 from labkit.exercises.verdict import Fail
 
 if TYPE_CHECKING:
     from labkit.exercises.probe import Probe
 
-__all__ = ['Follows', 'HasParameter', 'Refuses', 'Values']
-
-Values = Mapping[str, Any]
-"""Values of parameters, by their names."""
+__all__ = ['Follows', 'HasParameter', 'Refuses']
 
 # How many messages of a changed rate are looked at, and how long at least, s.
 MESSAGES, LEAST_SEC = 12, 3.0
@@ -68,14 +65,14 @@ class HasParameter(Clause):
         from labkit.rosgraph.parameters import type_word
 
         probe, node = evidence.probe, self.node
-        if not timing.runs(probe, node):
+        if not spinning.runs(probe, node):
             expect.hanging(probe)
             raise Fail(
                 f'{node} answers questions about its parameters',
                 f'{node} is there, but it is not spun',
-                todo=timing.how_to_spin(probe, node),
+                todo=spinning.how_to_spin(probe, node),
             )
-        with _asked(probe, node):
+        with asked(probe, node):
             names = parameter_names(probe.spun_node, node)
             if self.name not in names:
                 self._refuse_missing(names)
@@ -161,7 +158,7 @@ class Follows(Clause):
     def judge(self, evidence: Evidence) -> str:
         """Set the parameters, and look at what is published then."""
         sets = self.draw()
-        with _kept(evidence.probe, self.node, list(sets[0])) as before:
+        with kept(evidence.probe, self.node, list(sets[0])) as before:
             self.look(evidence, before, before)
             for values in sets:
                 self._set(evidence.probe, values)
@@ -170,7 +167,7 @@ class Follows(Clause):
         return f'{self.node} follows {_show(sets[0])}, and {len(sets) - 1} more.'
 
     def _set(self, probe: Probe, values: Values) -> None:
-        complaint = _set(probe, self.node, values)
+        complaint = set_values(probe, self.node, values)
         if complaint is not None:
             if complaint == INVALID:
                 raise Fail(
@@ -274,8 +271,8 @@ class Refuses(Clause):
         """Try to set each of them."""
         probe, node = evidence.probe, self.node
         keeps, sets = self.draw()
-        with _kept(probe, node, list(keeps)):
-            complaint = _set(probe, node, keeps)
+        with kept(probe, node, list(keeps)):
+            complaint = set_values(probe, node, keeps)
             expect.that(
                 complaint is None,
                 expected=f'{node} takes {_show(keeps)}',
@@ -289,9 +286,9 @@ class Refuses(Clause):
 
     def _is_refused(self, probe: Probe, keeps: Values, values: Values) -> bool:
         """Try to set values; tell whether they are refused, with a reason, and nothing changes."""
-        complaint = _set(probe, self.node, values)
+        complaint = set_values(probe, self.node, values)
         if complaint is None:
-            _set(probe, self.node, keeps)
+            set_values(probe, self.node, keeps)
             return False
         tried = f'{_show(values)}, while it has {_show(keeps)}'
         expect.that(
@@ -309,7 +306,7 @@ class Refuses(Clause):
             why='Whoever has set the value knows now that it is wrong, and not why.',
             todo="Say it: SetParametersResult(successful=False, reason='...')",
         )
-        after = _get(probe, self.node, list(keeps))
+        after = get_values(probe, self.node, list(keeps))
         expect.that(
             after == keeps,
             expected=f'{self.node} still has {_show(keeps)}',
@@ -361,63 +358,3 @@ def _show(values: Values) -> str:
 
 def _is_nan(value: Any) -> bool:
     return isinstance(value, float) and math.isnan(value)
-
-
-def _messages(values: Values) -> list[Any]:
-    from rclpy.parameter import Parameter
-
-    make: Any = Parameter
-    return [make(name, value=value).to_parameter_msg() for name, value in values.items()]
-
-
-def _set(probe: Probe, node: str, values: Values) -> str | None:
-    """Set parameters at once; return None, or why the node refuses."""
-    from labkit.background.parameters import set_parameters, set_parameters_atomically
-
-    with _asked(probe, node):
-        if len(values) > 1:
-            result = set_parameters_atomically(probe.spun_node, node, _messages(values))
-        else:
-            result = set_parameters(probe.spun_node, node, _messages(values))[0]
-    return None if result.successful else str(result.reason)
-
-
-def _get(probe: Probe, node: str, names: list[str]) -> dict[str, Any]:
-    from labkit.background.parameters import get_parameters
-    from labkit.rosgraph.parameters import python_value
-
-    with _asked(probe, node):
-        found = get_parameters(probe.spun_node, node, names)
-    return dict(zip(names, map(python_value, found), strict=False))
-
-
-@contextmanager
-def _kept(probe: Probe, node: str, names: list[str]) -> Iterator[Values]:
-    """Give parameters back the values that they had before; these are what the block gets."""
-    before = _get(probe, node, names)
-    try:
-        yield before
-    finally:
-        if before:
-            _set(probe, node, before)
-
-
-@contextmanager
-def _asked(probe: Probe, node: str) -> Iterator[None]:
-    """Say what is wrong with a node that does not answer.
-
-    Raises:
-        LearnerError: One of its callbacks has raised.
-        Fail: It does not answer.
-    """
-    try:
-        yield
-    except LabError as error:
-        probe.callbacks.raise_new_error(probe.scope)
-        expect.hanging(probe)
-        raise Fail(
-            f'{node} answers questions about its parameters',
-            error.message,
-            why='A callback for parameters has not returned, or it has raised an error.',
-            todo='Let it return soon. Look at the output of the node, too.',
-        ) from None

@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from labkit.exercises.clauses.base import Clause, Evidence, Stream
-from labkit.exercises.expect import timing
+from labkit.exercises.expect import spinning, timing
 from labkit.exercises.life import LIFE_SEC, Life, live
 from labkit.exercises.verdict import Fail, NotAttempted
 from labkit.exercises.watch import Sample, streams_of
@@ -226,7 +226,7 @@ class Publishes(Clause):
         if len(found) >= len(nodes):
             samples = [sample for stream in found for sample in stream]
             return Stream(topic, tuple(samples), False, 0.0)
-        timing.hanging(probe)
+        spinning.hanging(probe)
         why, todo = timing.reason(probe, source)
         # Those that follow ROS time are known. If somebody else talks, it may be this one.
         if len(found) > len(self._right(evidence.life)):

@@ -8,14 +8,8 @@ from __future__ import annotations
 
 from labkit.exercises.expect.endpoints import alone, node, publisher, qos, subscription
 from labkit.exercises.expect.services import server
-from labkit.exercises.expect.timing import (
-    describe_rate,
-    ends_with_node,
-    hanging,
-    messages,
-    rate,
-    spun,
-)
+from labkit.exercises.expect.spinning import hanging, spun
+from labkit.exercises.expect.timing import describe_rate, ends_with_node, messages, rate
 from labkit.exercises.expect.values import (
     each,
     equal,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from labkit.errors import nearest
 from labkit.exercises.expect.endpoints import name_trouble
-from labkit.exercises.expect.timing import hanging, how_to_spin, runs
+from labkit.exercises.expect.spinning import hanging, how_to_spin, runs
 from labkit.exercises.probe import Probe
 from labkit.exercises.scope import SERVICE
 from labkit.exercises.verdict import Fail, NotAttempted

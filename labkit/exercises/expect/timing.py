@@ -9,6 +9,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from labkit.exercises.expect.endpoints import alone
+from labkit.exercises.expect.spinning import hanging
 from labkit.exercises.probe import Probe
 from labkit.exercises.verdict import Fail, NotAttempted
 from labkit.exercises.watch import Sample, Watch
@@ -19,13 +20,9 @@ if TYPE_CHECKING:
 __all__ = [
     'at_rate',
     'ends_with_node',
-    'hanging',
-    'how_to_spin',
     'messages',
     'rate',
     'reason',
-    'runs',
-    'spun',
 ]
 
 # How long a topic may be silent before that is a finding, where no rate is asked for.
@@ -43,8 +40,6 @@ VAIN_TICKS = 5
 VAIN_SEC = 0.5
 # How long messages of a known rate may be collected.
 COLLECT_SEC = 2.5
-# How long a node of another process may take to answer, if it is spun.
-ANSWER_SEC = 2.5
 # How long a node may take to end.
 END_SEC = 3.0
 
@@ -197,56 +192,6 @@ def ends_with_node(probe: Probe, source: Endpoint) -> Watch:
             todo='Let the loop end when rclpy.ok() is False or the node is destroyed.',
         )
     return watch
-
-
-def hanging(probe: Probe) -> None:
-    """Raise Fail if a callback of this notebook is running and does not return."""
-    found = probe.callbacks.hanging()
-    if found is not None:
-        node, callback, line = found
-        raise Fail(
-            'callbacks that return at once',
-            f'the callback {callback} of {node} is still running' + (f' ({line})' if line else ''),
-            why='While a callback runs, no other one can: no message is taken, no timer ticks. '
-            'A callback that waits or loops holds everything up.',
-            todo='Do one small step in the callback and return. For "again later" use a timer.',
-        )
-
-
-def spun(probe: Probe, endpoint: Endpoint) -> None:
-    """Raise Fail if nobody runs the callbacks of an endpoint's node."""
-    if not runs(probe, endpoint.node):
-        raise Fail(
-            f'{endpoint.node} takes its messages and calls its callbacks',
-            f'{endpoint.node} is there, but it is not spun',
-            why='Messages come and wait in the queue. Nothing takes them out.',
-            todo=how_to_spin(probe, endpoint.node),
-        )
-
-
-def how_to_spin(probe: Probe, name: str) -> str:
-    """Say how a node of this process, or of another one, is spun."""
-    if probe.node_object(name) is None:
-        return 'Call rclpy.spin(node) in its program.'
-    return 'Hand the node over: lab.spin(node)'
-
-
-def runs(probe: Probe, name: str) -> bool:
-    """Tell whether somebody runs the callbacks of a node.
-
-    A node of another process is asked a question. One without parameter services can't be asked,
-    and counts as spun.
-    """
-    node = probe.node_object(name)
-    if node is not None:
-        return node.executor is not None
-    from labkit.background.patience import answer_sec
-    from labkit.background.service_calls import wait_until_spun
-
-    service, asker = f'{name}/list_parameters', probe.spun_node
-    # Services come into the graph after the name of their node.
-    found = probe.wait_to_appear(lambda: service in dict(asker.get_service_names_and_types()))
-    return not found or wait_until_spun(asker, name, answer_sec(ANSWER_SEC))
 
 
 def _intervals(stream: Sequence[Sample]) -> list[float]:

@@ -10,7 +10,7 @@ from typing import NoReturn
 
 from labkit.exercises import Fail
 from labkit.exercises.clauses import Clause, Evidence, Test, find_stage
-from labkit.exercises.expect.timing import hanging, spun
+from labkit.exercises.expect.spinning import hanging, spun
 from labkit.exercises.watch import Sample
 
 __all__ = ['FLOAT64', 'INNER', 'ODOMETRY', 'OUTER', 'NoJumps', 'SumOfSteps']

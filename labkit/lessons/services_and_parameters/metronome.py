@@ -10,7 +10,7 @@ from functools import partial
 
 from labkit.exercises import Exercise, Probe, Solution, Style, Wrong, changed
 from labkit.exercises.clauses import Clause, Follows, HasParameter, Named, Refuses
-from labkit.exercises.clauses.parameters import Values
+from labkit.exercises.clauses.parameter_client import Values
 from labkit.exercises.draws import draw_float
 from labkit.exercises.variants import varied
 from labkit.lessons._script import in_process, started_by_subprocess

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from labkit.exercises import Exercise, Fail, Outcome, Solution, Style, Wrong, changed, expect
 from labkit.exercises.clauses import Follows, HasParameter, Named, Refuses, Stream
-from labkit.exercises.clauses.parameters import Values
+from labkit.exercises.clauses.parameter_client import Values
 from labkit.exercises.draws import draw_float
 from labkit.lessons._script import in_process, started_by_subprocess
 

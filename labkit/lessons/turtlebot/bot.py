@@ -9,9 +9,9 @@ from labkit.lessons.turtlebot.clauses import (
     Begins,
     Hears,
     Stops,
-    driven,
 )
 from labkit.lessons.turtlebot.drive import EMPTY, ODOMETRY, TWIST
+from labkit.lessons.turtlebot.judge import driven
 from labkit.lessons.turtlebot.mistakes import first_time_only, int_for_float
 
 __all__ = ['bot']

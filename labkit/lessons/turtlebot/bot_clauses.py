@@ -13,8 +13,7 @@ from labkit.lessons.turtlebot.clauses import (
     Rate,
     short,
 )
-from labkit.lessons.turtlebot.drive import TWIST, Drive
-from labkit.lessons.turtlebot.trials import Trial
+from labkit.lessons.turtlebot.drive import TWIST, Drive, Trial
 
 __all__ = ['Gain', 'Steps', 'draw', 'tell']
 

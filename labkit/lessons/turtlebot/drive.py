@@ -1,4 +1,4 @@
-"""One drive of the robot, as its topics told it: where it was, what was commanded, what it saw."""
+"""One drive of the robot: what is to be made, and how its topics told it."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ __all__ = [
     'Drive',
     'EndOfDrive',
     'Point',
+    'Trial',
     'command_of',
 ]
 
@@ -43,6 +44,25 @@ ZERO = 1e-9
 STANDS = 1e-5
 # Fields of a Twist, in the order of a `Command`.
 FIELDS = ('linear.x', 'linear.y', 'linear.z', 'angular.x', 'angular.y', 'angular.z')
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A drive that is to be made.
+
+    Attributes:
+        start: Where the robot is put: x and y in m, yaw in rad.
+        fields: Fields of the message that gives the sign.
+        goals: Where the robot should come by, m.
+        from_start: Whether that, and all that is told, is seen from the start.
+        short_sighted: Whether the scanner says 0.0 where it sees nothing.
+    """
+
+    start: tuple[float, float, float]
+    fields: Mapping[str, Any] = field(default_factory=dict)
+    goals: Sequence[Point] = ()
+    from_start: bool = False
+    short_sighted: bool = False
 
 
 @dataclass(frozen=True)

@@ -16,12 +16,11 @@ from labkit.lessons.turtlebot.clauses import (
     Rate,
     Sensible,
     Stops,
-    driven,
     look_at_time,
 )
-from labkit.lessons.turtlebot.drive import ODOMETRY, TWIST, Drive, Point
+from labkit.lessons.turtlebot.drive import ODOMETRY, TWIST, Drive, Point, Trial
+from labkit.lessons.turtlebot.judge import driven
 from labkit.lessons.turtlebot.mistakes import first_time_only, int_for_float
-from labkit.lessons.turtlebot.trials import Trial
 from labkit.sim.kinematics import wrap_angle
 
 __all__ = ['go_to']

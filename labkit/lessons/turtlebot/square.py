@@ -9,9 +9,9 @@ from labkit.lessons.turtlebot.clauses import (
     Rate,
     Sensible,
     Stops,
-    driven,
 )
 from labkit.lessons.turtlebot.drive import EMPTY, TWIST
+from labkit.lessons.turtlebot.judge import driven
 from labkit.lessons.turtlebot.mistakes import first_time_only, int_for_float
 from labkit.lessons.turtlebot.square_clauses import SECONDS, Closes, Sides, draw, tell
 

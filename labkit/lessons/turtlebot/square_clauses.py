@@ -15,8 +15,7 @@ from labkit.lessons.turtlebot.clauses import (
     DriveClause,
     look_at_time,
 )
-from labkit.lessons.turtlebot.drive import Drive, Point
-from labkit.lessons.turtlebot.trials import Trial
+from labkit.lessons.turtlebot.drive import Drive, Point, Trial
 from labkit.sim.kinematics import Motion, Pose, wrap_angle
 from labkit.views.arena_picture import two
 

@@ -11,7 +11,7 @@ import contextlib
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from labkit.exercises import Fail, Probe, expect
@@ -24,7 +24,7 @@ from labkit.lessons.turtlebot.drive import (
     Command,
     Drive,
     EndOfDrive,
-    Point,
+    Trial,
 )
 from labkit.lessons.turtlebot.robot import OtherDrivers, place, short_sighted, walls_near
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from labkit.exercises.watch import Sample, Watch
     from labkit.rosgraph.endpoints import Endpoint
 
-__all__ = ['Trial', 'Trials']
+__all__ = ['Trials']
 
 # The sign is given when time has passed for so long, s; no timer of a node ticks just then.
 SIGN_SEC = 0.25
@@ -63,25 +63,6 @@ BEGIN_SEC = 1.0
 # More commands a second than this are a loop without a pause.
 FLOOD_HZ = 200.0
 POLL_SEC = 0.005
-
-
-@dataclass(frozen=True)
-class Trial:
-    """A drive that is to be made.
-
-    Attributes:
-        start: Where the robot is put: x and y in m, yaw in rad.
-        fields: Fields of the message that gives the sign.
-        goals: Where the robot should come by, m.
-        from_start: Whether that, and all that is told, is seen from the start.
-        short_sighted: Whether the scanner says 0.0 where it sees nothing.
-    """
-
-    start: tuple[float, float, float]
-    fields: Mapping[str, Any] = field(default_factory=dict)
-    goals: Sequence[Point] = ()
-    from_start: bool = False
-    short_sighted: bool = False
 
 
 @dataclass

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from labkit.exercises import Exercise, Solution, Style, Wrong, changed
 from labkit.lessons._script import in_process
-from labkit.lessons.turtlebot.clauses import Begins, Stops, driven
+from labkit.lessons.turtlebot.clauses import Begins, Stops
 from labkit.lessons.turtlebot.drive import EMPTY, SCAN, TWIST
+from labkit.lessons.turtlebot.judge import driven
 from labkit.lessons.turtlebot.mistakes import first_time_only, int_for_float
 from labkit.lessons.turtlebot.wall_clauses import (
     SIGN,

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from labkit.exercises import Fail
 from labkit.exercises.clauses import Clause, Evidence
 from labkit.lessons.turtlebot.clauses import DriveClause, short
-from labkit.lessons.turtlebot.drive import SCAN, TWIST, Drive
-from labkit.lessons.turtlebot.trials import Trial
+from labkit.lessons.turtlebot.drive import SCAN, TWIST, Drive, Trial
 from labkit.sim.kinematics import BURGER
 
 __all__ = ['SIGN', 'DrivesOn', 'Scans', 'Speed', 'StopsInTime', 'draw', 'tell']
