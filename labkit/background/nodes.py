@@ -18,6 +18,7 @@ from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+from labkit.background import compat
 from labkit.background.console import Cell
 from labkit.errors import LabError
 
@@ -215,6 +216,7 @@ def destroy_node(node: Node) -> BaseException | None:
     error: BaseException | None = None
     usable = node_exists(node)
     try:
+        compat.end_type_descriptions(node)
         if not (node in half_made or _is_destroyed(node)):
             node.destroy_node()  # type: ignore[no-untyped-call]
             if not _is_destroyed(node):

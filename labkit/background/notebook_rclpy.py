@@ -71,6 +71,7 @@ REPLACED: tuple[tuple[Any, str, str], ...] = (
     (rclpy.executors.Executor, 'spin', 'spin_executor'),
     (rclpy.timer.Rate, 'sleep', 'sleep'),
     (rclpy.node.Node, '__init__', 'make_node'),
+    (rclpy.node.Node, 'destroy_node', 'destroy_node'),
     (rclpy.node.Node, 'create_publisher', 'create_publisher'),
     (rclpy.node.Node, 'create_subscription', 'create_subscription'),
 )
@@ -296,6 +297,11 @@ class _NotebookSafe:
             self._background.make_room(full_node_name(node_name, kwargs.get('namespace') or ''))
         made.add(node)
         ORIGINALS['make_node'](node, node_name, *args, **kwargs)
+
+    def destroy_node(self, node: Node) -> None:
+        """Destroy a node, and all of it."""
+        compat.end_type_descriptions(node)
+        ORIGINALS['destroy_node'](node)
 
     def create_publisher(
         self, node: Node, msg_type: Any, topic: str, *args: Any, **kwargs: Any

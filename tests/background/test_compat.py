@@ -313,6 +313,70 @@ task.cancel()
     assert result.stdout == 'True True\n', result.stderr
 
 
+TYPE_DESCRIPTIONS = """
+import threading
+
+def described():
+    return sorted(
+        name for name, _ in observer.get_service_names_and_types() if name.endswith('description')
+    )
+
+observer = Node('observer')
+"""
+
+
+def test_what_describes_types_leaves_the_graph_with_its_node(script):
+    """Without it the service of each node that was ever destroyed stays, with 0.1 MB."""
+    result = script(
+        READY
+        + TYPE_DESCRIPTIONS
+        + """
+print(described())
+compat.end_type_descriptions(node)
+print(described())
+compat.end_type_descriptions(node)
+node.destroy_node()
+compat.end_type_descriptions(node)
+print(described(), [name for name in observer.get_node_names() if name == 'node'])
+bare = Node('bare', parameter_overrides=[
+    rclpy.parameter.Parameter('start_type_description_service', value=False)
+])
+compat.end_type_descriptions(bare)
+observer.destroy_node()
+rclpy.shutdown()
+"""
+    )
+    before, after = "['/node/get_type_description', ", "['/observer/get_type_description']"
+    assert result.stdout == f'{before}{after[1:]}\n{after}\n{after} []\n', result.stderr
+    assert result.stderr == ''
+
+
+def test_what_describes_types_is_ended_while_an_executor_waits(script):
+    result = script(
+        READY
+        + TYPE_DESCRIPTIONS
+        + """
+waiting = threading.Event()
+node.create_guard_condition(waiting.set).trigger()
+thread = threading.Thread(target=executor.spin)
+thread.start()
+for number in range(50):
+    waiting.wait()
+    compat.end_type_descriptions(node)
+    node.destroy_node()
+    executor.remove_node(node)
+    print(*described())
+    waiting.clear()
+    node = Node('node')
+    node.create_guard_condition(waiting.set).trigger()
+    executor.add_node(node)
+executor.shutdown()
+thread.join()
+"""
+    )
+    assert result.stdout == '/observer/get_type_description\n' * 50, result.stderr
+
+
 def test_an_action_server_knows_its_node(script):
     result = script(
         READY

@@ -50,6 +50,14 @@ ENDS = {
     'stopped': 'lab.stop()\nlab.start()',
 }
 
+LEAVES = {
+    'removed': 'lab.remove(mover)',
+    'stopped': 'lab.stop()\nlab.start()',
+    'destroyed in a cell': 'mover.destroy_node()',
+    'destroyed in a callback': "helper = Node('helper')\n"
+    'helper.create_timer(0.01, lambda: mover.destroy_node())\nlab.spin(helper)',
+}
+
 
 @pytest.mark.parametrize('wrong', WRONG)
 def test_a_node_whose_end_fails_is_gone_and_its_error_is_shown(kernel, wrong):
@@ -68,6 +76,22 @@ def test_a_node_whose_end_fails_is_gone_and_its_error_is_shown(kernel, wrong):
             assert not kernel.run("lab.remove('mover')").text
         assert kernel.run('gone()').error == '', way
     assert kernel.run(RIGHT).text == ''
+
+
+@pytest.mark.parametrize('how', LEAVES)
+def test_no_service_of_a_node_that_has_ended_is_left(kernel, how):
+    """rclpy leaves the one that describes the node's types, and what it takes of memory."""
+
+    def services():
+        lines = kernel.run('%ros2 service list').text.splitlines()
+        return [line for line in lines if line.startswith('/mover/')]
+
+    kernel.run(SETUP)
+    for _ in range(2):
+        assert kernel.run(RIGHT).error == ''
+        assert len(services()) == 7
+    assert kernel.run(LEAVES[how] + '\ngone()').error == ''
+    assert services() == []
 
 
 def test_the_kernel_ends_with_such_a_node(kernel):
