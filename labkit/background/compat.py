@@ -135,7 +135,7 @@ def end_type_descriptions(node: Node) -> None:
     Args:
         node: The node. Whether it has such a service, or was destroyed before, does not matter.
     """
-    owner = getattr(node, '_type_description_service', None)
+    owner: Any = getattr(node, '_type_description_service', None)
     inner = getattr(owner, '_type_description_srv', None)
     if inner is None:
         return
