@@ -14,6 +14,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from rclpy._rclpy_pybind11 import RCLError
+from rclpy.event_handler import EventHandler
 from rclpy.exceptions import InvalidHandle
 from rclpy.impl.implementation_singleton import rclpy_implementation
 
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
     from rclpy.task import Task
     from rclpy.timer import Timer
-    from rclpy.waitable import NumberOfEntities
+    from rclpy.waitable import NumberOfEntities, Waitable
 
 __all__ = [
     'RCLError',
@@ -36,6 +37,7 @@ __all__ = [
     'callback_of',
     'display_under',
     'end_type_descriptions',
+    'event_of',
     'forget_executor',
     'handler_of',
     'hear_while_cells_run',
@@ -95,6 +97,14 @@ def new_wait_set(context_handle: Any, count: NumberOfEntities) -> Any:
         count.num_events,
         context_handle,
     )
+
+
+def event_of(waitable: Waitable) -> Any:
+    """Return what a handler of an event waits for; None if the waitable is something else.
+
+    An `EventHandler` is asked twice a wait, and each publisher and subscription has two of them.
+    """
+    return waitable._EventHandler__event if type(waitable) is EventHandler else None  # type: ignore[attr-defined]
 
 
 def handler_of(task: Task) -> Any:

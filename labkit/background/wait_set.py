@@ -91,6 +91,8 @@ class KeptWaitSet:
         self._wait_set: Any = None
         self._entered: list[Any] = []
         self._handles: dict[str, list[Any]] = {}
+        self._add: list[tuple[Callable[[Any], Any], Any]] = []
+        self._events: list[Ready] = []
         self._waitables: list[Ready] = []
         self._by_pointer: dict[int, Ready] = {}
         self._waiting = False
@@ -150,7 +152,8 @@ class KeptWaitSet:
             for waitable in node.waitables:
                 if (may_run is None or may_run(waitable)) and self._enter(waitable):
                     turn += 1
-                    self._waitables.append(Ready(waitable, node, self._takers['waitable'], turn))
+                    known = self._waitables if compat.event_of(waitable) is None else self._events
+                    known.append(Ready(waitable, node, self._takers['waitable'], turn))
                     count += waitable.get_num_entities()
         for kinds in (_KINDS, (_TIMERS,)):
             for node in nodes:
@@ -170,6 +173,17 @@ class KeptWaitSet:
         context = self._executor.context.handle
         if self._enter(context):
             self._wait_set = compat.new_wait_set(context, count)
+            self._plan(self._wait_set)
+
+    def _plan(self, wait_set: Any) -> None:
+        """Note what to put in before each wait, so that no handler of an event need be asked."""
+        for event in self._events:
+            # It notes its place, which stays the same: events come first, in this order.
+            event.entity.add_to_wait_set(wait_set)
+            self._add.append((wait_set.add_event, compat.event_of(event.entity)))
+        for kind, handles in self._handles.items():
+            add = getattr(wait_set, f'add_{kind}')
+            self._add += [(add, handle) for handle in handles]
 
     def _take_timer(self, timer: Any) -> Any:
         # One that an earlier callback of this round has cancelled or reset is not due any more.
@@ -191,7 +205,8 @@ class KeptWaitSet:
         """Let what was entered be destroyed."""
         self._stale = True
         self._wait_set = None
-        self._waitables, self._by_pointer, self._handles = [], {}, {}
+        self._waitables, self._events, self._add = [], [], []
+        self._by_pointer, self._handles = {}, {}
         while self._entered:
             self._entered.pop().__exit__(None, None, None)
 
@@ -201,17 +216,17 @@ class KeptWaitSet:
         if wait_set is None:
             raise InvalidHandle('ROS is shut down')
         wait_set.clear_entities()
-        for kind, handles in self._handles.items():
-            if handles:
-                add = getattr(wait_set, f'add_{kind}')
-                for handle in handles:
-                    add(handle)
+        for add, handle in self._add:
+            add(handle)
         for waitable in self._waitables:
             waitable.entity.add_to_wait_set(wait_set)
         return wait_set
 
     def _ready(self, wait_set: Any) -> list[Ready]:
         ready = [waitable for waitable in self._waitables if waitable.entity.is_ready(wait_set)]
+        for place, event in enumerate(self._events):
+            if wait_set.is_ready('event', place) and event.entity.is_ready(wait_set):
+                ready.append(event)
         for kind, handles in self._handles.items():
             if handles:
                 for pointer in wait_set.get_ready_entities(kind):

@@ -313,6 +313,34 @@ task.cancel()
     assert result.stdout == 'True True\n', result.stderr
 
 
+def test_the_event_that_a_handler_waits_for_is_known(script):
+    result = script(
+        READY
+        + """
+from rclpy.action import ActionClient
+from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.waitable import NumberOfEntities
+from std_msgs.msg import String
+from test_msgs.action import Fibonacci
+events = PublisherEventCallbacks(matched=print)
+publisher = node.create_publisher(String, '/topic', 10, event_callbacks=events)
+[*_, matched] = [one for one in publisher.event_handlers if one.callback is print]
+event = compat.event_of(matched)
+count = NumberOfEntities()
+count.num_events = 1
+wait_set = compat.new_wait_set(executor.context.handle, count)
+for add in (lambda: matched.add_to_wait_set(wait_set), lambda: wait_set.add_event(event)):
+    node.create_subscription(String, '/topic', print, 10)
+    wait_set.clear_entities()
+    add()
+    wait_set.wait(10**9)
+    print(wait_set.is_ready('event', 0), matched.is_ready(wait_set), matched.take_data() is None)
+print(compat.event_of(ActionClient(node, Fibonacci, 'fibonacci')))
+"""
+    )
+    assert result.stdout == 'True True False\nTrue True False\nNone\n', result.stderr
+
+
 TYPE_DESCRIPTIONS = """
 import threading
 
