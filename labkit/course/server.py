@@ -2,7 +2,7 @@
 
 The kernel of a notebook starts as soon as its page is asked for, that of the notebook on which
 JupyterLab opens with the server: while the page is loaded, which takes longer, it gets ready, and
-loads what the first cell of a lesson needs. The first page of all finds its notebook in the
+loads what the first cells of a lesson need. The first page of all finds its notebook in the
 workspace, too: JupyterLab opens what lies there at once, what its address names a second later.
 
 It is run by its path and imports nothing of labkit: what labkit sets for ROS is for kernels, not
@@ -32,8 +32,9 @@ _NO_MATTER = re.compile(r'The websocket_ping_timeout|Notebook .* is not trusted'
 _PAGE = re.compile(r'.*/lab/tree/(.+\.ipynb)')
 _WORKSPACE = 'default'
 _KERNEL = 'python3'
-# It leaves no name behind.
-_PRELOAD = "if __import__('labkit.background.runtime'): pass"
+# ROS, exercises and views: what the first cells of each lesson load. It leaves no name behind.
+_PRELOADED = ('labkit.background.runtime', 'labkit.exercises.lesson', 'labkit.views.live_page')
+_PRELOAD = f'if all(map(__import__, {_PRELOADED})): pass'
 _PRELOAD_SEC = 60.0
 _LOGGERS = (
     *('ServerApp', 'LabApp', 'LabServerApp', 'ExtensionApp'),
