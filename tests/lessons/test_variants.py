@@ -15,6 +15,7 @@ from labkit.background.nodes import existing_nodes
 from labkit.background.runtime import runtime
 from labkit.exercises import Exercise, Outcome
 from labkit.exercises.variants import ANOTHER, Variants
+from labkit.sim.turtlebot import Turtlebot
 
 VARIED = {
     f'{lesson.name}-{exercise.name}': exercise
@@ -43,9 +44,9 @@ def variants_of(name: str) -> Variants:
 
 
 def run(lab: ModuleType, code: str) -> None:
-    """Run an answer as a cell does, without anything of the one before."""
+    """Run an answer as a cell does, without anything of the one before but the robot."""
     for node in list(existing_nodes()):
-        if node is not runtime.helper:
+        if node is not runtime.helper and not isinstance(node, Turtlebot):
             lab.remove(node)
     exec(compile(code, '<cell>', 'exec'), {'lab': lab})
 
@@ -62,6 +63,8 @@ def neighbour(variants: Variants, seed: str) -> Exercise:
 def test_own_answer_passes_and_a_neighbours_is_told(lab: ModuleType, name: str, seed: str) -> None:
     variants = variants_of(name)
     mine = variants.of(seed)
+    if name.startswith('turtlebot-'):
+        lab.spin(lab.Turtlebot())
     run(lab, mine.answer.code)
     verdict = mine.check()
     assert verdict.outcome is Outcome.PASS, verdict

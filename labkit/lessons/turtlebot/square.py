@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Exercise, Solution, Style, Wrong, changed
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from labkit.exercises import Exercise, Probe, Solution, Style, Wrong, changed
+from labkit.exercises.clauses import Clause, Evidence
+from labkit.exercises.variants import varied
 from labkit.lessons._script import in_process
 from labkit.lessons.turtlebot.clauses import (
     Begins,
@@ -10,14 +17,18 @@ from labkit.lessons.turtlebot.clauses import (
     Sensible,
     Stops,
 )
-from labkit.lessons.turtlebot.drive import EMPTY, TWIST
+from labkit.lessons.turtlebot.drive import EMPTY, TWIST, Drive
 from labkit.lessons.turtlebot.judge import driven
 from labkit.lessons.turtlebot.mistakes import first_time_only, int_for_float
-from labkit.lessons.turtlebot.square_clauses import SECONDS, Closes, Sides, draw, tell
+from labkit.lessons.turtlebot.robot import find_robot
+from labkit.lessons.turtlebot.square_clauses import Closes, Outline, Sides, draw, tell
+from labkit.lessons.turtlebot.trials import Trials
 
 __all__ = ['square']
 
 SIGN = '/go_square'
+# Sides of variants, m: so far apart that no corner of one is near a side of another.
+SIDES = (0.24, 0.4, 0.56, 0.72)
 
 _SQUARE = """
 from geometry_msgs.msg import Twist
@@ -100,14 +111,41 @@ lab.spin(node)
 """
 
 
-_CLAUSES = (
-    Begins(SIGN, EMPTY),
-    Sensible(),
-    Rate(pause=1.0, pauses=8),
-    Sides(),
-    Stops(rests=True),
-    Closes(),
-)
+def _clauses(outline: Outline) -> tuple[Clause, ...]:
+    return (
+        Begins(SIGN, EMPTY),
+        Sensible(),
+        Rate(pause=1.0, pauses=8),
+        Sides(outline),
+        Stops(rests=True),
+        Closes(outline),
+    )
+
+
+def _task(outline: Outline) -> str:
+    return (
+        f'On /go_square a node drives a square of {outline.side} m to the {outline.turn}, and '
+        'stops where it began.'
+    )
+
+
+def _hints(outline: Outline) -> list[str]:
+    side, turn = outline.side, outline.turn
+    sign = '' if turn == 'left' else '-'
+    return [
+        f'A square is four times the same: a side, then a turn of 90 degrees to the {turn}.',
+        f'Way = speed * time. 0.2 m/s for {side / 0.2:g} s are {side} m: {side / 0.02:.0f} steps '
+        f'of 0.1 s. Angle = turning rate * time. {sign}1.57 rad/s for 1 s are 90 degrees to the '
+        f'{turn}: 10 steps.',
+        'Make a list of (v, w), one for each step, and let the timer take one at a time. '
+        'Let it rest for some steps, (0.0, 0.0), after each side and each turn.',
+    ]
+
+
+def _judge(outline: Outline) -> Callable[[Probe], str]:
+    drives = partial(draw, outline)
+    return driven((SIGN, EMPTY), _clauses(outline), drives, tell, seconds=outline.seconds)
+
 
 _LOOP = """
 import threading
@@ -143,22 +181,16 @@ node.create_subscription(Empty, '/go_square', lambda msg: started.set(), 10)
 threading.Thread(target=work, daemon=True).start()
 """
 
-square = Exercise(
+_USUAL = Exercise(
     name='square',
-    task='On /go_square a node drives a square of 0.4 m to the left, and stops where it began.',
+    task=_task(Outline()),
     subscribes={'/go_square': EMPTY},
     publishes={'/cmd_vel': TWIST},
     shared=['/cmd_vel'],
     reliable=['/cmd_vel'],
-    clauses=_CLAUSES,
-    judge=driven((SIGN, EMPTY), _CLAUSES, draw, tell, seconds=SECONDS),
-    hints=[
-        'A square is four times the same: a side, then a turn of 90 degrees to the left.',
-        'Way = speed * time. 0.2 m/s for 2 s are 0.4 m: 20 steps of 0.1 s. Angle = turning rate '
-        '* time. 1.57 rad/s for 1 s are 90 degrees: 10 steps.',
-        'Make a list of (v, w), one for each step, and let the timer take one at a time. '
-        'Let it rest for some steps, (0.0, 0.0), after each side and each turn.',
-    ],
+    clauses=_clauses(Outline()),
+    judge=_judge(Outline()),
+    hints=_hints(Outline()),
     answer=Solution(
         _SQUARE,
         'Nothing is measured here: it relies on speed and time. By odometry it would be more '
@@ -267,5 +299,51 @@ square = Exercise(
             'after the message',
         ),
         int_for_float(_SQUARE, '(0.0, 1.5708)', '(0, 1.5708)'),
+    ],
+)
+
+
+def _variant(*, outline: tuple[float, str]) -> Exercise:
+    wanted = Outline(*outline)
+    code = changed(_SQUARE, ('20 * [(0.2, 0.0)]', f'{wanted.side / 0.02:.0f} * [(0.2, 0.0)]'))
+    if wanted.turn == 'right':
+        code = changed(code, ('1.5708', '-1.5708'))
+    return replace(
+        _USUAL,
+        task=_task(wanted),
+        clauses=_clauses(wanted),
+        judge=_judge(wanted),
+        hints=_hints(wanted),
+        answer=Solution(code, _USUAL.answer.reason),
+        styles=(),
+        wrong=(),
+    )
+
+
+def _guess(probe: Probe) -> dict[str, Any] | None:
+    evidence = Evidence(probe)
+    source = evidence.publisher('/cmd_vel', evidence.subscription(SIGN).node)
+    longest = max(map(Outline, SIDES), key=lambda outline: outline.side)
+    trials = Trials(probe, find_robot(probe), source, (SIGN, EMPTY), longest.seconds)
+    drives: list[Drive] = []
+    trials.wait_until_quiet()
+    trials.run(draw(longest)[:1], lambda found: None, drives)
+    path = [drives[0].told(pose)[:2] for _, pose in drives[0].poses]
+    if not path:
+        return None
+    far = max((y for _, y in path), key=abs)
+    side = min(SIDES, key=lambda side: abs(side - abs(far)))
+    return {'outline': (side, 'left' if far > 0 else 'right')}
+
+
+square = varied(
+    _USUAL,
+    _variant,
+    _guess,
+    outline=[
+        (side, turn)
+        for side in SIDES
+        for turn in ('left', 'right')
+        if Outline(side, turn) != Outline()
     ],
 )

@@ -19,48 +19,74 @@ from labkit.lessons.turtlebot.drive import Drive, Point, Trial
 from labkit.sim.kinematics import Motion, Pose, wrap_angle
 from labkit.views.arena_picture import two
 
-__all__ = ['SECONDS', 'Closes', 'Sides', 'draw', 'tell']
+__all__ = ['Closes', 'Outline', 'Sides', 'draw', 'tell']
 
-SIDE = 0.4
 # How far it may be off a corner, m.
 NEAR = 0.1
 # As long as that a command counts, s.
 STEP_SEC = 0.1
-# Seen from the start: x ahead, y to the left, m.
-CORNERS = ((0.0, 0.0), (SIDE, 0.0), (SIDE, SIDE), (0.0, SIDE), (0.0, 0.0))
-SECONDS = 22.0
 # What it turns while it drives is none of the turns on the spot, m/s; it may be so much, rad.
 DRIVES = 0.05
 CURVED = math.pi
+# An unhurried drive: m/s along a side, and s for each turn with its pauses.
+UNHURRIED, TURN_SEC = 0.2, 3.5
+
+
+@dataclass(frozen=True)
+class Outline:
+    """The square that is to be driven.
+
+    Attributes:
+        side: The length of its sides, m.
+        turn: Which way to turn at its corners, `'left'` or `'right'`.
+    """
+
+    side: float = 0.4
+    turn: str = 'left'
+
+    @property
+    def corners(self) -> tuple[Point, ...]:
+        """The corners, seen from the start, which is the first and the last: x ahead, m."""
+        side = self.side
+        across = side if self.turn == 'left' else -side
+        return (0.0, 0.0), (side, 0.0), (side, across), (0.0, across), (0.0, 0.0)
+
+    @property
+    def seconds(self) -> float:
+        """How long the drive may take, s."""
+        return float(round(4 * (self.side / UNHURRIED + TURN_SEC)))
 
 
 @dataclass(frozen=True)
 class Sides(DriveClause):
     """It drives along the sides of a square, and turns at its corners."""
 
+    outline: Outline = Outline()
+
     @property
     def text(self) -> str:
         """What is asked for."""
         return (
-            f'drive four straight sides of {SIDE} m, and between them turn 90 degrees to the left '
-            f'on the spot (corners up to {NEAR} m off)'
+            f'drive four straight sides of {self.outline.side} m, and between them turn '
+            f'90 degrees to the {self.outline.turn} on the spot (corners up to {NEAR} m off)'
         )
 
     def look(self, found: Drive) -> None:
         """Look at one drive."""
         if not found.commands:
             return
-        path, near_enough = _path(found), _near_enough(found)
+        corners = self.outline.corners
+        path, near_enough = _path(found, corners), _near_enough(found, corners)
         after = 0
-        for number, corner in enumerate(CORNERS[1:], start=1):
+        for number, corner in enumerate(corners[1:], start=1):
             near = [
                 i for i in range(after, len(path)) if math.dist(path[i], corner) <= near_enough
             ]
             if not near:
-                _refuse_corner(found, path[after:], number, corner)
+                _refuse_corner(found, path[after:], number, self.outline)
             after = near[0]
-        outside = max(path[: after + 1], key=_off_outline)
-        if _off_outline(outside) > near_enough:
+        off, outside = max((_off(point, corners), point) for point in path[: after + 1])
+        if off > near_enough:
             raise Fail(
                 'a way along the sides of the square',
                 f'it came to ({two(outside[0])}, {two(outside[1])}), seen from the start',
@@ -81,19 +107,23 @@ class Sides(DriveClause):
 class Closes(DriveClause):
     """It ends where it began."""
 
+    outline: Outline = Outline()
+
     @property
     def text(self) -> str:
         """What is asked for."""
-        return f'stop where you began (up to {NEAR} m off), within {SECONDS:.0f} s'
+        return f'stop where you began (up to {NEAR} m off), within {self.outline.seconds:.0f} s'
 
     def look(self, found: Drive) -> None:
         """Look at one drive."""
-        look_at_time(found, SECONDS)
+        look_at_time(found, self.outline.seconds)
         if not found.commands or found.cut:
             return
-        end = _path(found)[-1]
-        away = math.dist(end, CORNERS[-1])
-        if away <= _near_enough(found) and _rounds(found) < 1.5:
+        corners = self.outline.corners
+        away = math.dist(_path(found, corners)[-1], corners[-1])
+        # How many times as long as the sides of the square its way is.
+        rounds = found.way() / (4 * self.outline.side)
+        if away <= _near_enough(found, corners) and rounds < 1.5:
             return
         raise Fail(
             'it ends where it began, after four sides',
@@ -103,22 +133,27 @@ class Closes(DriveClause):
         )
 
 
-def _refuse_corner(found: Drive, path: Sequence[Point], number: int, corner: Point) -> NoReturn:
+def _refuse_corner(found: Drive, path: Sequence[Point], number: int, outline: Outline) -> NoReturn:
     if found.cut:
-        look_at_time(found, SECONDS)
+        look_at_time(found, outline.seconds)
+    corner = outline.corners[number]
     x, y = min(path, key=lambda point: math.dist(point, corner))
     mirrored = (corner[0], -corner[1])
     if number == 2 and any(math.dist(point, mirrored) <= NEAR for point in path):
+        right = outline.turn == 'left'
         why, todo = (
-            'It turns to the right. A positive angular.z turns to the left.',
-            'msg.angular.z above 0',
+            'It turns to the right. A positive angular.z turns to the left.'
+            if right
+            else 'It turns to the left. A negative angular.z turns to the right.',
+            f'msg.angular.z {"above" if right else "below"} 0',
         )
     elif not any(command.v for command in found.moving):
         why, todo = 'No command says to drive ahead.', 'msg.linear.x = 0.2'
     elif number == 1:
         why, todo = (
             'The first side has another length, or it did not drive straight on.',
-            'Way = speed times time: 0.2 m/s for 2 s, which is 20 steps of 0.1 s.',
+            f'Way = speed times time: 0.2 m/s for {outline.side / 0.2:g} s, which is '
+            f'{outline.side / 0.02:.0f} steps of 0.1 s.',
         )
     elif number == 4:
         why, todo = (
@@ -131,7 +166,7 @@ def _refuse_corner(found: Drive, path: Sequence[Point], number: int, corner: Poi
             '1.57 rad.',
             'Angle = turning rate times time: 1.57 rad/s for 1 s, which is 10 steps of 0.1 s.',
         )
-    corners = ', '.join(f'({x:g}, {y:g})' for x, y in CORNERS[1:])
+    corners = ', '.join(f'({x:g}, {y:g})' for x, y in outline.corners[1:])
     raise Fail(
         f'corners at {corners} m, seen from the start',
         f'it came no nearer to corner {number}, ({corner[0]:g}, {corner[1]:g}), than '
@@ -141,7 +176,7 @@ def _refuse_corner(found: Drive, path: Sequence[Point], number: int, corner: Poi
     )
 
 
-def _path(found: Drive) -> list[Point]:
+def _path(found: Drive, corners: Sequence[Point]) -> list[Point]:
     """Return the path that counts, seen from the start.
 
     In real time a busy computer holds commands up, and the robot drives and turns too far. Then
@@ -150,12 +185,12 @@ def _path(found: Drive) -> list[Point]:
     if found.exact or abs(found.meant / STEP_SEC - 1.0) > SLEEP_TOLERANCE:
         return _from_start(found)
     commanded = _as_commanded(found, longest=STEP_SEC + found.margin)
-    return commanded if _is_square(commanded) else _from_start(found)
+    return commanded if _is_along(commanded, corners) else _from_start(found)
 
 
-def _near_enough(found: Drive) -> float:
+def _near_enough(found: Drive, corners: Sequence[Point]) -> float:
     """Return how far it may be off, m; in real time twice as far, see `_path`."""
-    return NEAR if found.exact or not _is_square(_as_commanded(found)) else 2 * NEAR
+    return NEAR if found.exact or not _is_along(_as_commanded(found), corners) else 2 * NEAR
 
 
 def _as_commanded(found: Drive, longest: float = math.inf) -> list[Point]:
@@ -174,20 +209,20 @@ def _as_commanded(found: Drive, longest: float = math.inf) -> list[Point]:
     return path
 
 
-def _is_square(path: Sequence[Point]) -> bool:
+def _is_along(path: Sequence[Point], corners: Sequence[Point]) -> bool:
     """Tell whether a path comes by all corners, in their order, and ends at the last one."""
     after = 0
-    for corner in CORNERS[1:]:
+    for corner in corners[1:]:
         near = [i for i in range(after, len(path)) if math.dist(path[i], corner) <= NEAR]
         if not near:
             return False
         after = near[0]
-    return math.dist(path[-1], CORNERS[-1]) <= NEAR
+    return math.dist(path[-1], corners[-1]) <= NEAR
 
 
-def _off_outline(point: Point) -> float:
+def _off(point: Point, corners: Sequence[Point]) -> float:
     """Return how far a point is from the nearest side, m."""
-    return min(_away(point, *side) for side in pairwise(CORNERS))
+    return min(_away(point, *side) for side in pairwise(corners))
 
 
 def _away(point: Point, one: Point, other: Point) -> float:
@@ -205,23 +240,18 @@ def _turned_while_driving(found: Drive) -> float:
     return total
 
 
-def _rounds(found: Drive) -> float:
-    """Return how many times as long as the sides of the square its way is."""
-    return found.way() / (4 * SIDE)
-
-
 def _from_start(found: Drive) -> list[Point]:
     """Return the path as the robot saw it at the start."""
     return [found.told(pose)[:2] for _, pose in found.poses]
 
 
-def draw() -> list[Trial]:
+def draw(outline: Outline) -> list[Trial]:
     """Return two drives. They are not along an axis: a square is one wherever it begins."""
     starts = [
         (random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(-3, 3))
         for _ in range(2)
     ]
-    return [Trial(start, goals=CORNERS[1:], from_start=True) for start in starts]
+    return [Trial(start, goals=outline.corners[1:], from_start=True) for start in starts]
 
 
 def tell(drives: Sequence[Drive]) -> str:
