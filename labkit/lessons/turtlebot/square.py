@@ -27,7 +27,7 @@ from labkit.lessons.turtlebot.trials import Trials
 __all__ = ['square']
 
 SIGN = '/go_square'
-# Sides of variants, m: so far apart that no corner of one is near a side of another.
+# Sides of variants, m. The corner opposite to the start is in none near that of another.
 SIDES = (0.24, 0.4, 0.56, 0.72)
 
 _SQUARE = """

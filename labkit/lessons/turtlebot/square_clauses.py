@@ -140,13 +140,12 @@ def _refuse_corner(found: Drive, path: Sequence[Point], number: int, outline: Ou
     x, y = min(path, key=lambda point: math.dist(point, corner))
     mirrored = (corner[0], -corner[1])
     if number == 2 and any(math.dist(point, mirrored) <= NEAR for point in path):
-        right = outline.turn == 'left'
-        why, todo = (
-            'It turns to the right. A positive angular.z turns to the left.'
-            if right
-            else 'It turns to the left. A negative angular.z turns to the right.',
-            f'msg.angular.z {"above" if right else "below"} 0',
-        )
+        if outline.turn == 'left':
+            why = 'It turns to the right. A positive angular.z turns to the left.'
+            todo = 'msg.angular.z above 0'
+        else:
+            why = 'It turns to the left. A negative angular.z turns to the right.'
+            todo = 'msg.angular.z below 0'
     elif not any(command.v for command in found.moving):
         why, todo = 'No command says to drive ahead.', 'msg.linear.x = 0.2'
     elif number == 1:
