@@ -94,7 +94,11 @@ class EachAnswers(Clause):
         if often and 2 * sum(answers[text + name] > 0 for text, name in pairs) > len(pairs):
             self._refuse_more(evidence, list(answers.elements()), often=True)
         left = list(came)
-        due = [life.is_due(INNER, sample, WITHIN_SEC) for sample in life.on(INNER)]
+        # What a stranger says comes to each process at a moment of its own: the tests are enough.
+        due = [
+            life.is_known(INNER, sample) and life.is_due(INNER, sample, WITHIN_SEC)
+            for sample in life.on(INNER)
+        ]
         for (at, text), is_due in zip(heard, due, strict=True):
             for name in names or ['']:
                 answer = text + name if names else None
