@@ -14,6 +14,9 @@ from labkit.sim.kinematics import Motion, Pose, Twist2
 
 SIDE, TURN, REST = Twist2(0.2, 0.0), Twist2(0.0, math.pi / 2), Twist2(0.0, 0.0)
 
+# Usual time between two commands, how much later than told a thread woke up, s, and the verdict.
+LATE = [(0.21, 0.11, True), (0.21, 0.0, False), (0.31, 0.11, False), (0.15, 0.11, False)]
+
 
 def driven(
     third_side: int = 20,
@@ -82,6 +85,19 @@ def test_a_thread_that_sleeps_too_long_fails_though_its_commands_are_those_of_a_
 ) -> None:
     with pytest.raises(Fail, match=r'corner|ends where it began'):
         judge(driven(usual=usual))
+
+
+@pytest.mark.parametrize(('usual', 'late', 'is_right'), LATE)
+def test_what_the_computer_made_late_is_taken_off_the_time_between_commands(
+    usual: float, late: float, is_right: bool
+) -> None:
+    found = driven(usual=usual)
+    found.slowness, found.late = 1 + late / 0.1, late
+    if is_right:
+        judge(found)
+        return
+    with pytest.raises(Fail, match=f'every {usual:g} s'):
+        judge(found)
 
 
 def test_drive_that_was_cut_is_not_judged_as_if_it_had_ended() -> None:

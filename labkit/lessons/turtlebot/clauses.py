@@ -196,10 +196,9 @@ class Rate(DriveClause):
                 'twice?',
                 todo='One command each time that the timer of 0.1 s calls.',
             )
-        from labkit.background.patience import busyness
-
         period = found.period
-        if not found.exact and busyness() > 1 and abs(found.meant / 0.1 - 1) < SLEEP_TOLERANCE:
+        held_up = found.slowness > 1 + SLEEP_TOLERANCE
+        if not found.exact and held_up and abs(found.meant / 0.1 - 1) < SLEEP_TOLERANCE:
             period = found.meant
         tolerance = TOLERANCE if found.exact else REAL_TOLERANCE
         if found.exact and short:
@@ -347,7 +346,7 @@ class Stops(DriveClause):
 def look_at_time(found: Drive, seconds: float) -> None:
     """Raise Fail if a drive takes longer than so many seconds."""
     taken = found.moving[-1].at - found.sign if found.moving else 0.0
-    if taken > seconds + found.margin:
+    if taken / found.slowness > seconds + found.margin:
         raise Fail(
             f'an end of the drive {seconds:g} s after the message',
             f'it still moves after {taken:.1f} s',

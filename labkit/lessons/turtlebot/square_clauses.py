@@ -6,7 +6,7 @@ import math
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise, zip_longest
+from itertools import pairwise, starmap, zip_longest
 from typing import NoReturn
 
 from labkit.exercises import Fail
@@ -120,14 +120,15 @@ class Closes(DriveClause):
         if not found.commands or found.cut:
             return
         corners = self.outline.corners
-        away = math.dist(_path(found, corners)[-1], corners[-1])
+        path = _path(found, corners)
+        away, way = math.dist(path[-1], corners[-1]), sum(starmap(math.dist, pairwise(path)))
         # How many times as long as the sides of the square its way is.
-        rounds = found.way() / (4 * self.outline.side)
+        rounds = way / (4 * self.outline.side)
         if away <= _near_enough(found, corners) and rounds < 1.5:
             return
         raise Fail(
             'it ends where it began, after four sides',
-            f'it ends {away:.2f} m away from there, after {found.way():.1f} m',
+            f'it ends {away:.2f} m away from there, after {way:.1f} m',
             why='It goes on after the fourth side.',
             todo='After the fourth side publish an empty Twist().',
         )

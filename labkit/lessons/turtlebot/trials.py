@@ -12,11 +12,12 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from labkit.exercises import Fail, Probe, expect
 from labkit.exercises.clauses import Evidence
 from labkit.exercises.life import Life, Stimulus, live
+from labkit.exercises.naps import Naps
 from labkit.lessons.turtlebot.drive import (
     ODOMETRY,
     SCAN,
@@ -320,57 +321,66 @@ class Trials:
             probe.wait(
                 lambda: len(odometry) > 1 and odometry.samples[-2].at > placed, answer_sec(1.0)
             )
-            sign = send(trial.fields)
-            found = Drive(sign=sign, goals=trial.goals, exact=False, margin=REAL_MARGIN_SEC)
-            found.from_start = trial.from_start
-            ended, commands = EndOfDrive(sign, REAL_TAIL_SEC), watches['/cmd_vel']
-            end = sign + self.seconds + LONGER_SEC
-            first = math.inf
-            while (now := time.time()) < end and not ended(now, watches):
-                time.sleep(POLL_SEC)
-                for watch in watches.values():
-                    watch.pump()
-                probe.look(now - sign)
-                self._others.refuse(commands.samples)
-                first = min(first, now) if len(commands) else first
-                if unless is not None and now > min(first, sign + BEGIN_SEC) + FEW_SEC:
-                    if len(commands) < (1 + SAME) * unless + 2:
-                        return None
-                    unless = None
-                self._refuse_flood(len(commands), now - sign)
-            found.cut = now >= end
-            found.take(watches['/odom'].samples, commands.samples, watches['/scan'].samples)
+            found = Drive(goals=trial.goals, from_start=trial.from_start, exact=False)
+            found.margin = REAL_MARGIN_SEC
+            with Naps() as naps:
+                found.sign = send(trial.fields)
+                if not self._looked_on(found.sign, watches, naps, unless):
+                    return None
+            found.slowness, found.late = naps.slowness, naps.late
+            found.cut = naps.seconds >= self.seconds + LONGER_SEC
+            found.take(*(watches[topic].samples for topic in ('/odom', '/cmd_vel', '/scan')))
             return found
         finally:
             for watch in watches.values():
                 watch.close()
             probe.forget(watches.values())
 
-    def _expect_quiet(self, commands: Watch) -> None:
-        """Wait until nothing is commanded.
+    def _looked_on(
+        self, sign: float, watches: Mapping[str, Watch], naps: Naps, unless: int | None
+    ) -> bool:
+        """Take what comes until the drive is over, or too long; see `_in_real_time`.
 
-        Raises:
-            Fail: It goes on and on.
+        It waits by a clock that is held up as the threads of the node are: on a busy machine a
+        pause of the node takes longer, and is not the end.
         """
-        from labkit.background.patience import busyness
-
-        end = time.monotonic() + self.seconds + LONGER_SEC
-        seen, last = 0, time.monotonic()
-        # A busy machine may give a thread of the node no time meanwhile.
-        while time.monotonic() < last + REAL_QUIET_SEC * busyness():
+        ended, commands = EndOfDrive(0.0, REAL_TAIL_SEC), watches['/cmd_vel']
+        first = math.inf
+        while (now := naps.seconds) < self.seconds + LONGER_SEC and not ended(now, watches):
             time.sleep(POLL_SEC)
-            commands.pump()
-            self.probe.look(0.0)
+            for watch in watches.values():
+                watch.pump()
+            self.probe.look(now)
             self._others.refuse(commands.samples)
-            if len(commands) > seen:
-                seen, last = len(commands), time.monotonic()
-            if time.monotonic() > end:
-                raise Fail(
-                    'a robot that nobody drives, before the sign to start is given',
-                    f'{len(commands)} commands on /cmd_vel',
-                    why=f'{self.source.node} publishes without being asked to.',
-                    todo=f'Begin when a message comes on {self.sign[0]}.',
-                )
+            first = min(first, now) if len(commands) else first
+            if unless is not None and now > min(first, BEGIN_SEC) + FEW_SEC:
+                if len(commands) < (1 + SAME) * unless + 2:
+                    return False
+                unless = None
+            self._refuse_flood(len(commands), time.time() - sign)
+        return True
+
+    def _expect_quiet(self, commands: Watch) -> None:
+        """Wait until nothing is commanded; raise Fail if it goes on and on."""
+        seen, last = 0, 0.0
+        with Naps() as naps:
+            while (now := naps.seconds) < last + REAL_QUIET_SEC:
+                time.sleep(POLL_SEC)
+                commands.pump()
+                self.probe.look(0.0)
+                self._others.refuse(commands.samples)
+                if len(commands) > seen:
+                    seen, last = len(commands), now
+                if now > self.seconds + LONGER_SEC:
+                    self._refuse_never_quiet(len(commands))
+
+    def _refuse_never_quiet(self, count: int) -> NoReturn:
+        raise Fail(
+            'a robot that nobody drives, before the sign to start is given',
+            f'{count} commands on /cmd_vel',
+            why=f'{self.source.node} publishes without being asked to.',
+            todo=f'Begin when a message comes on {self.sign[0]}.',
+        )
 
     def _refuse_flood(self, count: int, seconds: float) -> None:
         if count > FLOOD_HZ * (seconds + 1.0):
