@@ -12,12 +12,14 @@ for the terminals that JupyterLab starts.
 from __future__ import annotations
 
 import asyncio
+import functools
 import json
 import logging
 import re
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 from queue import Empty
 from typing import Any
@@ -89,6 +91,10 @@ def main(arguments: Sequence[str]) -> None:
                     self.io_loop.add_callback(self._start_kernel, path)
 
             self.web_app.settings['log_function'] = follow
+            # Nothing is built from source here, so that no page has to ask whether it should be.
+            page = self.web_app.settings.setdefault('page_config_data', {})
+            page.update(buildAvailable=False, buildCheck=False)
+            self.io_loop.run_in_executor(None, _load_exporters)
             self.io_loop.add_callback(
                 self._start_kernel, self.default_url.partition('/lab/tree/')[2]
             )
@@ -140,6 +146,16 @@ def main(arguments: Sequence[str]) -> None:
         for name in _LOGGERS:
             logging.getLogger(name).addFilter(quiet)
     LabApp.launch_instance(list(arguments))
+
+
+def _load_exporters() -> None:
+    """Load what a page asks for while it opens: into which formats a notebook can be exported."""
+    with suppress(Exception):  # what is wrong with one, the menu says
+        base: Any = import_module('nbconvert.exporters.base')
+        # It reads what all packages have installed, anew for each of the formats.
+        base.entry_points = functools.cache(base.entry_points)
+        for name in base.get_export_names():
+            base.get_exporter(name)
 
 
 def _workspace(path: str) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import urllib.error
 import urllib.request
 
 import pytest
+from nbconvert.exporters import base
 from playwright.sync_api import expect
 
 from labkit.course.jupyterlab import HOME
@@ -57,6 +58,19 @@ print(all(name in sys.modules for name in loaded), left)
     notebook.close()
     paths = [session['path'] for session in jupyter.request('api/sessions')]
     assert paths.count('usual.ipynb') == 1
+
+
+def test_a_page_asks_for_the_formats_of_export_and_not_for_a_build(jupyter, browser):
+    jupyter.write_notebook('formats', {'nothing': ''})
+    page, asked = browser.new_page(), []
+    page.on('request', lambda request: asked.append(request.url))
+    notebook = Notebook(page).open(jupyter.address('lab/tree/formats.ipynb'))
+    while not any('/api/nbconvert' in url for url in asked):
+        page.wait_for_timeout(100)
+    assert [url for url in asked if '/api/build' in url] == []
+    notebook.close()
+    # It is answered out of what was read when the server started, and says what nbconvert says.
+    assert set(jupyter.request('api/nbconvert')) == set(base.get_export_names())
 
 
 def test_the_first_page_finds_its_notebook_in_the_workspace(tmp_path, browser):
