@@ -69,6 +69,16 @@ def _refuse_skip(report: Any) -> None:
     report.longrepr = f'LABKIT_REQUIRE_ALL is set, so this must run, but: {reason}'
 
 
+@pytest.fixture(scope='module', autouse=True)
+def ros_ends() -> Iterator[None]:
+    """End what the tests of a file have started in this process: the next file may start anew."""
+    yield
+    if loaded := sys.modules.get('labkit.background.runtime'):
+        loaded.runtime.stop()
+    if rclpy := sys.modules.get('rclpy'):
+        assert not rclpy.ok(), 'A test of this file leaves ROS running.'
+
+
 @dataclass(frozen=True)
 class ScriptResult:
     """How a script ended: its exit code and what it wrote."""
