@@ -49,7 +49,9 @@ class Naps:
         return late[len(late) // 10] if late else 0.0
 
     def _sleep(self) -> None:
+        ended = time.monotonic()
         while not self._ended.is_set():
-            began = time.monotonic()
+            began = ended  # what passes between two naps counts as well
             time.sleep(NAP_SEC)
-            self._late.append(max(time.monotonic() - began - NAP_SEC, 0.0))
+            ended = time.monotonic()
+            self._late.append(max(ended - began - NAP_SEC, 0.0))

@@ -123,8 +123,9 @@ class Drive:
         walls: What the scanner saw near its end, beam by beam, m; None where that was nothing.
         exact: Whether its times are exact. Else it was driven in real time.
         margin: How far its times may be off, s.
-        slowness: How many times as long as it was told to another thread slept meanwhile, and
-        late: how much longer in the one case of ten that was held up least, s; see `Naps`.
+        slowness: How many times as long as told a thread of the check slept meanwhile, see `Naps`.
+        late: How much longer it slept in the one case of ten that was held up least, s; 0 if the
+            node is in another process, which is held up by other things.
         cut: Whether the check did not see its end.
     """
 

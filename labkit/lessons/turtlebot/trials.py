@@ -327,7 +327,8 @@ class Trials:
                 found.sign = send(trial.fields)
                 if not self._looked_on(found.sign, watches, naps, unless):
                     return None
-            found.slowness, found.late = naps.slowness, naps.late
+            found.slowness = naps.slowness
+            found.late = naps.late if probe.in_this_process(self.source) else 0.0
             found.cut = naps.seconds >= self.seconds + LONGER_SEC
             found.take(*(watches[topic].samples for topic in ('/odom', '/cmd_vel', '/scan')))
             return found
