@@ -116,7 +116,7 @@ class EachAnswers(Clause):
         if extra:
             self._refuse_more(evidence, extra, often=False)
         shown = ' and '.join(repr(OPENING + name) for name in names)
-        return f'Each of {len(heard)} texts was completed by {len(nodes)} nodes: {shown}.'
+        return f'Each of {sum(due)} texts was completed by {len(nodes)} nodes: {shown}.'
 
     def _refuse_more(self, evidence: Evidence, texts: Sequence[str], *, often: bool) -> NoReturn:
         raise Fail(
