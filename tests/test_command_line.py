@@ -200,7 +200,7 @@ def test_coverage_of_processes_too(course: Course) -> None:
     for room in ('background', 'checkup', 'lessons', 'rosgraph', 'sim', 'views'):
         shutil.rmtree(course.folder / 'labkit' / room)  # a page about each module takes its time
     (course.folder / 'tests' / 'test_it.py').write_text(MEASURED)
-    done = course.run('test', '--coverage', 'tests/test_it.py')
+    done = course.run('test', '--coverage', 'tests/test_it.py', '-n', '1')
     assert done.returncode == 0, done.stdout + done.stderr
     # Nobody but the test's own process has imported this module.
     assert re.search(r'labkit/files\.py .* [1-9]\d%', done.stdout)
@@ -209,7 +209,7 @@ def test_coverage_of_processes_too(course: Course) -> None:
 
 def test_run_without_a_test_is_a_failure(course: Course) -> None:
     course.make_complete()
-    done = course.run('test', '-k', 'nothing_has_this_name')
+    done = course.run('test', '-k', 'nothing_has_this_name', '-n', '1')
     assert done.returncode == 5, done.stdout + done.stderr
     assert 'tests failed (exit code 5)' in done.stderr
 
@@ -223,7 +223,7 @@ def test_first_failure_ends_the_test_command_and_leaves_no_junk(course: Course) 
     assert '\nlabkit test: style failed (exit code 1).\n' in done.stderr
     assert '== format' not in done.stdout
     (course.folder / 'tests' / 'test_it.py').write_text('def test_it():\n    assert 1 == 2\n')
-    done = course.run('test', 'tests/test_it.py', PYTHONDONTWRITEBYTECODE='1')
+    done = course.run('test', 'tests/test_it.py', '-n', '1', PYTHONDONTWRITEBYTECODE='1')
     assert done.returncode == 1
     assert 'assert 1 == 2' in done.stdout
     assert {path.name for path in course.folder.iterdir()} == before

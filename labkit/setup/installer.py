@@ -229,21 +229,27 @@ def _fetch_uv(
 
 def _sources(pip: Sequence[str], root: Path, variables: dict[str, str]) -> dict[str, str]:
     """Return the variables that let uv take packages from where pip takes them."""
-    if not pip:
-        return {}
-    listed = subprocess.run(
-        [*pip, 'config', 'list'],
-        cwd=root,
-        env=variables,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        text=True,
-    ).stdout
+    # One that is installed answers at once, one that is run out of its wheel after a second.
+    installed = [sys.executable, '-I', '-m', 'pip']
+    output = ''
+    for command in [pip] if '-m' in pip else [installed, pip]:
+        if command:
+            listed = subprocess.run(
+                [*command, 'config', 'list'],
+                cwd=root,
+                env=variables,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                text=True,
+            )
+            output = listed.stdout
+            if listed.returncode == 0:
+                break
     # pip takes the best file of all places, uv would look no further than the first.
     found = {'UV_INDEX_STRATEGY': 'unsafe-best-match'}
     for group in ('global', 'install', ':env:'):
-        for of, name, value in _SETTING.findall(listed):
+        for of, name, value in _SETTING.findall(output):
             if of == group and name in _OF_UV:
                 # uv wants several paths with commas between, several addresses with spaces.
                 between = ',' if name == 'find-links' else ' '

@@ -5,10 +5,12 @@ from __future__ import annotations
 import io
 import shutil
 import sys
+from pathlib import Path
 
 import pytest
 from courses import BARE_PATH, ROOT, Course, sentence
 
+from labkit.setup import installer
 from labkit.setup.installer import Progress
 
 
@@ -98,6 +100,29 @@ def test_uv_takes_packages_from_where_pip_does(without_uv: Course) -> None:
     assert done.returncode == 0, done.stderr
     assert 'Trying pip' not in done.stdout
     assert 'alpha-2.0' in course.installed()
+
+
+@pytest.mark.parametrize(
+    ('installed', 'own', 'asked'),
+    [
+        (True, False, 'installed'),
+        (False, False, 'other'),
+        (True, True, 'other'),
+    ],
+)
+def test_which_pip_is_asked_where_packages_come_from(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, installed: bool, own: bool, asked: str
+) -> None:
+    def pip(name: str) -> str:
+        path = tmp_path / name
+        path.write_text(f'#!/bin/sh\necho "global.index-url=\'{name}\'"\n')
+        path.chmod(0o755)
+        return str(path)
+
+    python = pip('installed') if installed else shutil.which('false')
+    monkeypatch.setattr(sys, 'executable', python)
+    other = [pip('other'), '-I', '-m' if own else '-c', 'pip']
+    assert installer._sources(other, tmp_path, {})['UV_DEFAULT_INDEX'] == asked
 
 
 @pytest.mark.parametrize('installer', ['uv', 'pip'])
