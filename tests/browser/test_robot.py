@@ -203,10 +203,13 @@ def test_one_drives_by_what_the_camera_sees(stage):
         'alt', 'Picture of /camera/image_raw: 320 x 240 pixels, rgb8.'
     )
     expect(view).to_contain_text('/camera/image_raw')
-    assert picture.evaluate('p => [p.naturalWidth, p.naturalHeight]') == [320, 240]
-    # The wall ahead is yellow. To the left of it stands a red one.
-    _, green, blue = picture.evaluate(MIDDLE)
-    assert green - blue > 60
+    # The wall ahead is yellow. To the left of it stands a red one. A picture that is just being
+    # replaced has no size, and no colour.
+    stage.page.wait_for_function(
+        f'p => p.naturalWidth === 320 && p.naturalHeight === 240 && '
+        f'(([r, g, b]) => g - b > 60)(({MIDDLE})(p))',
+        arg=picture.element_handle(),
+    )
     area.locator('.labkit-teleop').click(position={'x': 4, 'y': 4})
     stage.page.keyboard.down('a')
     stage.page.wait_for_function(

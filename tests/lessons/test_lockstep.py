@@ -130,9 +130,34 @@ print(robot.get_clock().ros_time_is_active, robot.simulator.robot.range_max)
     assert done.stdout.splitlines()[-1] == 'False 3.5', done.stderr
 
 
+# As a thread that has stood still in the middle of a drive, and goes on when it seems to be over.
+# Notes whether the node has heard where the robot is, and how much it has commanded since.
+GOES_ON = """
+from labkit.lessons.turtlebot.real_time import RealTime
+
+quiet, put, puts = RealTime._expect_quiet, RealTime._put, []
+
+
+def expect_quiet(self, commands):
+    quiet(self, commands)
+    if not puts:
+        publisher.publish(Twist())
+
+
+def put_down(self, start, watches):
+    puts.append((put(self, start, watches), len(watches['/cmd_vel'])))
+    return puts[-1][0]
+
+
+RealTime._expect_quiet, RealTime._put = expect_quiet, put_down
+"""
+
+
 def test_thread_that_sleeps_is_judged_in_real_time(script: Script) -> None:
-    done = script(START + SLEEPER + CHECK.format(name='square'))
+    tell = 'print(*puts)\n'
+    done = script(START + SLEEPER + GOES_ON + CHECK.format(name='square') + tell)
     assert 'PASS: square' in done.stdout, done.stdout + done.stderr
+    assert done.stdout.splitlines()[-1] == '(True, 1) (True, 0)'
 
 
 OTHERS = {

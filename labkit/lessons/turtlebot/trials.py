@@ -12,12 +12,11 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 from labkit.exercises import Fail, Probe, expect
 from labkit.exercises.clauses import Evidence
 from labkit.exercises.life import Life, Stimulus, live
-from labkit.exercises.naps import Naps
 from labkit.lessons.turtlebot.drive import (
     ODOMETRY,
     SCAN,
@@ -26,6 +25,14 @@ from labkit.lessons.turtlebot.drive import (
     Drive,
     EndOfDrive,
     Trial,
+)
+from labkit.lessons.turtlebot.real_time import (
+    BEGIN_SEC,
+    FEW_SEC,
+    LONGER_SEC,
+    POLL_SEC,
+    RealTime,
+    refuse_flood,
 )
 from labkit.lessons.turtlebot.robot import OtherDrivers, place, short_sighted, walls_near
 
@@ -45,25 +52,10 @@ QUIET_SEC = 2.0
 TICK_SEC, FINE_SEC, LATER_TICK_SEC = 0.05, 3.5, 0.1
 # Commands of nodes whose time is not exact are known to so much, s.
 REMOTE_MARGIN_SEC = 0.11
-REAL_MARGIN_SEC = 0.25
-# In real time: how long nothing may be commanded before a drive, and after it, s. A square may
-# have pauses of 1 s, which last longer on a busy machine.
-REAL_QUIET_SEC = 0.4
-REAL_TAIL_SEC = 1.6
-# How long a drive may take longer than the task allows, until it is cut, s.
-LONGER_SEC = 1.0
 # After so much time no further drive is begun in real time, s.
 ENOUGH_SEC = 6.0
 # How long it is looked whether commands come while time stands still, s of real time.
 STILL_SEC = 0.6
-# A node that keeps its own time sends more commands within so long a time, s, in real time than in
-# virtual time; more by this share at least.
-FEW_SEC, SAME = 0.8, 0.3
-# In real time the first command comes within this time, s.
-BEGIN_SEC = 1.0
-# More commands a second than this are a loop without a pause.
-FLOOD_HZ = 200.0
-POLL_SEC = 0.005
 
 
 @dataclass
@@ -88,6 +80,9 @@ class Trials:
 
     def __post_init__(self) -> None:
         self._others = OtherDrivers(self.probe, self.source)
+        self._real_time = RealTime(
+            self.probe, self.robot, self.source, self.sign, self.seconds, self._others
+        )
         self._began = 0.0
         self._name = self.robot.get_fully_qualified_name()
         self._topics = {'/cmd_vel': TWIST, '/odom': ODOMETRY, self.sign[0]: self.sign[1]}
@@ -228,7 +223,7 @@ class Trials:
             until=until,
         )
         self._others.refuse(life.on('/cmd_vel'))
-        self._refuse_flood(len(life.on('/cmd_vel')), life.seconds)
+        refuse_flood(len(life.on('/cmd_vel')), life.seconds)
         evidence = Evidence(self.probe)
         evidence.life = life
         evidence.refuse_trouble(())
@@ -252,14 +247,14 @@ class Trials:
             return None
         few = sum(command.at < found.commands[0].at + FEW_SEC for command in found.commands)
         with self._others.counted():
-            again = self._in_real_time(trial, unless=few)
+            again = self._real_time.drive(trial, unless=few)
         if again is None and self._looks_at_another_clock(trial, found):
             again = self._drive_in_real_time(trial)
         return again
 
     def _drive_in_real_time(self, trial: Trial) -> Drive:
         with self._others.counted():
-            found = self._in_real_time(trial)
+            found = self._real_time.drive(trial)
         assert found is not None
         return found
 
@@ -290,107 +285,6 @@ class Trials:
         if count > 1 or began == math.inf:
             return count > 1
         return not life.remote and _few_times(life.on('/cmd_vel')) != _few_times(found.commands)
-
-    # -- real time ------------------------------------------------------------------------------
-
-    def _in_real_time(self, trial: Trial, *, unless: int | None = None) -> Drive | None:
-        """Let the robot and the node run, as they do without a check.
-
-        Args:
-            trial: What is to be driven.
-            unless: If not many more commands than these come within `FEW_SEC`, give it up: the
-                node is no quicker in real time than in virtual time.
-
-        Returns:
-            What was seen; None if it was given up.
-        """
-        from labkit.background.patience import answer_sec
-
-        probe, topics = self.probe, {**self._topics, '/scan': SCAN}
-        watches = {topic: probe.watch(topic, msg_type) for topic, msg_type in topics.items()}
-        try:
-            self._expect_quiet(watches['/cmd_vel'])
-            send = probe.sender(*self.sign)
-            place(self.robot, trial.start)
-            placed = time.time()
-            for watch in watches.values():
-                watch.pump()
-                watch.clear()
-            # When the second one of the new place is here, the node has had the first one.
-            odometry = watches['/odom']
-            probe.wait(
-                lambda: len(odometry) > 1 and odometry.samples[-2].at > placed, answer_sec(1.0)
-            )
-            found = Drive(goals=trial.goals, from_start=trial.from_start, exact=False)
-            found.margin = REAL_MARGIN_SEC
-            with Naps() as naps:
-                found.sign = send(trial.fields)
-                if not self._looked_on(found.sign, watches, naps, unless):
-                    return None
-            found.slowness = naps.slowness
-            found.late = naps.late if probe.in_this_process(self.source) else 0.0
-            found.cut = naps.seconds >= self.seconds + LONGER_SEC
-            found.take(*(watches[topic].samples for topic in ('/odom', '/cmd_vel', '/scan')))
-            return found
-        finally:
-            for watch in watches.values():
-                watch.close()
-            probe.forget(watches.values())
-
-    def _looked_on(
-        self, sign: float, watches: Mapping[str, Watch], naps: Naps, unless: int | None
-    ) -> bool:
-        """Take what comes until the drive is over, or too long; see `_in_real_time`.
-
-        It waits by a clock that is held up as the threads of the node are: on a busy machine a
-        pause of the node takes longer, and is not the end.
-        """
-        ended, commands = EndOfDrive(0.0, REAL_TAIL_SEC), watches['/cmd_vel']
-        first = math.inf
-        while (now := naps.seconds) < self.seconds + LONGER_SEC and not ended(now, watches):
-            time.sleep(POLL_SEC)
-            for watch in watches.values():
-                watch.pump()
-            self.probe.look(now)
-            self._others.refuse(commands.samples)
-            first = min(first, now) if len(commands) else first
-            if unless is not None and now > min(first, BEGIN_SEC) + FEW_SEC:
-                if len(commands) < (1 + SAME) * unless + 2:
-                    return False
-                unless = None
-            self._refuse_flood(len(commands), time.time() - sign)
-        return True
-
-    def _expect_quiet(self, commands: Watch) -> None:
-        """Wait until nothing is commanded; raise Fail if it goes on and on."""
-        seen, last = 0, 0.0
-        with Naps() as naps:
-            while (now := naps.seconds) < last + REAL_QUIET_SEC:
-                time.sleep(POLL_SEC)
-                commands.pump()
-                self.probe.look(0.0)
-                self._others.refuse(commands.samples)
-                if len(commands) > seen:
-                    seen, last = len(commands), now
-                if now > self.seconds + LONGER_SEC:
-                    self._refuse_never_quiet(len(commands))
-
-    def _refuse_never_quiet(self, count: int) -> NoReturn:
-        raise Fail(
-            'a robot that nobody drives, before the sign to start is given',
-            f'{count} commands on /cmd_vel',
-            why=f'{self.source.node} publishes without being asked to.',
-            todo=f'Begin when a message comes on {self.sign[0]}.',
-        )
-
-    def _refuse_flood(self, count: int, seconds: float) -> None:
-        if count > FLOOD_HZ * (seconds + 1.0):
-            raise Fail(
-                'ten commands a second, or about so',
-                f'{count} commands on /cmd_vel in {seconds:.1f} s',
-                why='A loop publishes without a pause.',
-                todo='Publish in a timer of 0.1 s, one command each time.',
-            )
 
 
 def _few_times(commands: Sequence[Sample] | Sequence[Command]) -> list[int]:
