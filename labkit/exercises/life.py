@@ -11,7 +11,7 @@ import math
 import time
 from bisect import bisect_right
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import reduce
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from labkit.exercises.remote_time import RemoteTime
 from labkit.exercises.verdict import LearnerError
 from labkit.exercises.virtual_time import VirtualTime
-from labkit.exercises.watch import Sample, Watch
+from labkit.exercises.watch import Lived, Sample, Watch
 
 if TYPE_CHECKING:
     from labkit.exercises.probe import Probe
@@ -101,7 +101,7 @@ class Life:
     """
 
     seconds: float = 0.0
-    samples: dict[str, list[Sample]] = field(default_factory=dict)
+    samples: dict[str, list[Lived]] = field(default_factory=dict)
     sent: list[Sent] = field(default_factory=list)
     flooded: bool = False
     hanging: bool = False
@@ -113,11 +113,11 @@ class Life:
     ended: float = math.inf
     error: LearnerError | None = None
 
-    def on(self, topic: str) -> list[Sample]:
+    def on(self, topic: str) -> list[Lived]:
         """Return the messages of a topic."""
         return self.samples.get(topic, [])
 
-    def besides_tests(self, topic: str) -> list[Sample]:
+    def besides_tests(self, topic: str) -> list[Lived]:
         """Return the messages of a topic without the tests that were sent on it."""
         tests = [sent for sent in self.sent if sent.topic == topic]
         besides = []
@@ -129,7 +129,7 @@ class Life:
                 tests.remove(found)
         return besides
 
-    def is_due(self, topic: str, sample: Sample, within: float) -> bool:
+    def is_due(self, topic: str, sample: Lived, within: float) -> bool:
         """Tell whether what is to be said upon a message must have come before the end.
 
         A message of another process, whose time is real, may have been on its way to the node
@@ -143,7 +143,7 @@ class Life:
         late = sample.stamp > self.ended - LATE_SEC and not self.is_known(topic, sample)
         return not late and sample.at < self.seconds - within
 
-    def is_known(self, topic: str, sample: Sample) -> bool:
+    def is_known(self, topic: str, sample: Lived) -> bool:
         """Tell whether it is known exactly when a message came: not if a stranger has sent it.
 
         A stranger's may have come in the very moment of a test. So it is none of the tests.
@@ -172,7 +172,7 @@ class Life:
         return [pair for pair in extra if pair[1] in known]
 
 
-def _is_of(sample: Sample, sent: Sent) -> bool:
+def _is_of(sample: Lived, sent: Sent) -> bool:
     """Tell whether a message is a test that was sent."""
     return abs(sample.at - sent.at) < SAME_SEC and all(
         reduce(getattr, path.split('.'), sample.message) == value
@@ -261,7 +261,7 @@ def live(
     starts = [real for real, _ in moments]
     for topic, watch in watches.items():
         life.samples[topic] = [
-            replace(sample, at=moments[max(bisect_right(starts, sample.stamp) - 1, 0)][1])
+            _lived(sample, moments[max(bisect_right(starts, sample.stamp) - 1, 0)][1])
             for sample in watch.samples
             # One that was published before may arrive only now.
             if sample.stamp >= starts[0]
@@ -269,6 +269,10 @@ def live(
         watch.close()
     probe.forget(watches.values())
     return life
+
+
+def _lived(sample: Sample, at: float) -> Lived:
+    return Lived(sample.message, sample.stamp, sample.number, at)
 
 
 def _nodes(

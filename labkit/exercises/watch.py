@@ -6,15 +6,14 @@ callback of the learner's keeps the background thread busy.
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import reduce
 from itertools import pairwise
-from typing import Any
+from typing import Any, TypeVar
 
-__all__ = ['Sample', 'Watch', 'build', 'streams_of']
+__all__ = ['Lived', 'Sample', 'Watch', 'build', 'streams_of']
 
 DEPTH = 1000
 
@@ -27,14 +26,25 @@ class Sample:
         message: The message itself.
         stamp: When it was published, by the publisher's clock, in seconds.
         number: The how manieth message of its publisher it is, from 1; 0 if that is not known.
-        at: When it was published in virtual time, in seconds from its beginning; not a number
-            where time was real.
     """
 
     message: Any
     stamp: float
     number: int
-    at: float = math.nan
+
+
+@dataclass(frozen=True)
+class Lived(Sample):
+    """A message that came while virtual time passed, see `life.Life`.
+
+    Attributes:
+        at: When it was published in virtual time, in seconds from its beginning.
+    """
+
+    at: float
+
+
+AnySample = TypeVar('AnySample', bound=Sample)
 
 
 class Watch:
@@ -134,13 +144,13 @@ class Watch:
         return self.samples[index].message
 
 
-def streams_of(samples: Iterable[Sample]) -> list[list[Sample]]:
+def streams_of(samples: Iterable[AnySample]) -> list[list[AnySample]]:
     """Return the messages of each publisher.
 
     A message does not say who sent it, but as which one: publishers that take turns, each
     counting its own messages, are told apart by that.
     """
-    streams: list[list[Sample]] = []
+    streams: list[list[AnySample]] = []
     for sample in samples:
         following = [s for s in streams if not sample.number or s[-1].number + 1 == sample.number]
         if following:

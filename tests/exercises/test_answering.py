@@ -10,7 +10,7 @@ import pytest
 from labkit.exercises import Fail
 from labkit.exercises.clauses import Answers, Evidence, Logs, answering
 from labkit.exercises.life import Life, Sent
-from labkit.exercises.watch import Sample
+from labkit.exercises.watch import Lived
 
 CLAUSE = Answers('/odds', '/evens', 'add 1', answer=lambda n: n + 1, draw=lambda: [1])
 Timed = list[tuple[float, int]]
@@ -19,8 +19,8 @@ Timed = list[tuple[float, int]]
 def evidence(heard: Timed, came: Timed) -> Evidence:
     """Return evidence of half a minute in which these numbers were heard and answered."""
 
-    def samples(numbers: Timed) -> list[Sample]:
-        return [Sample(SimpleNamespace(data=value), 0.0, 0, at) for at, value in numbers]
+    def samples(numbers: Timed) -> list[Lived]:
+        return [Lived(SimpleNamespace(data=value), 0.0, 0, at) for at, value in numbers]
 
     life = Life(30.0, {'/odds': samples(heard), '/evens': samples(came)})
     ends = {('subscription', '/odds', ''): SimpleNamespace(node='/postman')}
@@ -95,9 +95,9 @@ def lines(heard: list[tuple[float, str]], logged: list[tuple[float, str]]) -> Ev
     life = Life(
         30.0,
         {
-            '/chatter': [Sample(SimpleNamespace(data=text), 0.0, 0, at) for at, text in heard],
+            '/chatter': [Lived(SimpleNamespace(data=text), 0.0, 0, at) for at, text in heard],
             '/rosout': [
-                Sample(SimpleNamespace(name='ear', msg=text), 0.0, 0, at) for at, text in logged
+                Lived(SimpleNamespace(name='ear', msg=text), 0.0, 0, at) for at, text in logged
             ],
         },
     )

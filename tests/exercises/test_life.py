@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from labkit.exercises.life import ON_THE_WAY, Life, Sent, _Course
-from labkit.exercises.watch import Sample
+from labkit.exercises.watch import Lived
 
 
 class Endless:
@@ -57,7 +57,7 @@ def test_what_is_said_more_often_than_others_speak_counts() -> None:
 
 def test_a_message_of_a_stranger_may_be_on_its_way_when_it_ends() -> None:
     test, stranger, early, late = (
-        Sample(SimpleNamespace(data=data), stamp, 0, at)
+        Lived(SimpleNamespace(data=data), stamp, 0, at)
         for data, stamp, at in (
             ('test', 999.9, 2.0),
             ('hello', 999.9, 3.0),
@@ -81,7 +81,7 @@ def test_a_message_of_a_stranger_may_be_on_its_way_when_it_ends() -> None:
 
 @pytest.mark.parametrize('text', ['hello', 'test'])
 def test_a_message_of_a_stranger_in_the_moment_of_a_test_is_no_test(text: str) -> None:
-    test, stranger = (Sample(SimpleNamespace(data=data), 999.9, 0, 2.0) for data in ('test', text))
+    test, stranger = (Lived(SimpleNamespace(data=data), 999.9, 0, 2.0) for data in ('test', text))
     life = Life(
         seconds=30.0,
         ended=1000.0,

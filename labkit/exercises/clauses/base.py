@@ -45,7 +45,7 @@ class Stream:
         topic: Full name of the topic.
         samples: The messages, in their order.
         exact: Whether their times are exact, because the node follows ROS time. Else time was
-            real, and `at` is not known.
+            real.
         seconds: How long it was watched, s.
     """
 

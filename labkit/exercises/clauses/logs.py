@@ -11,7 +11,7 @@ from labkit.exercises.clauses.base import Clause, Evidence, Test
 from labkit.exercises.expect.spinning import hanging, spun
 from labkit.exercises.expect.values import show
 from labkit.exercises.verdict import Fail
-from labkit.exercises.watch import Sample
+from labkit.exercises.watch import Lived
 
 __all__ = ['Logs']
 
@@ -123,7 +123,7 @@ class Logs(Clause):
         )
 
 
-def _lines_of(node: str, samples: Iterable[Sample]) -> list[tuple[float, str]]:
+def _lines_of(node: str, samples: Iterable[Lived]) -> list[tuple[float, str]]:
     """Return the lines of a node's logger and of the loggers below it, with their times `at`.
 
     Args:

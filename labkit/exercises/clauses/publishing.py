@@ -12,7 +12,7 @@ from labkit.exercises.clauses.base import Clause, Evidence, Stream
 from labkit.exercises.expect import spinning, timing
 from labkit.exercises.life import LIFE_SEC, Life, live
 from labkit.exercises.verdict import Fail, NotAttempted
-from labkit.exercises.watch import Sample, streams_of
+from labkit.exercises.watch import Lived, streams_of
 
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
@@ -141,7 +141,8 @@ class Publishes(Clause):
         return evidence.live(topics, LIFE_SEC, [replace(self, hz=FINER * self.hz)])
 
     def _say(self, source: Endpoint, stream: Stream, life: Life) -> str:
-        rate, seconds = _rate(_fine(stream.samples, life)), stream.seconds
+        lived = [sample for sample in stream.samples if isinstance(sample, Lived)]
+        rate, seconds = _rate(_fine(lived, life)), stream.seconds
         return f'{source.node} publishes {rate:.3g} Hz on {self.topic}, {seconds:.0f} s long.'
 
     # -- several publishers on one topic --------------------------------------------------------
@@ -174,7 +175,7 @@ class Publishes(Clause):
         ends = [(by, topic) for kind, topic, by in evidence.ends if kind == 'publisher']
         return sorted(by for by, topic in ends if topic == self.topic)
 
-    def _follows_ros_time(self, samples: Sequence[Sample], life: Life) -> bool:
+    def _follows_ros_time(self, samples: Sequence[Lived], life: Life) -> bool:
         """Tell whether messages follow ROS time: a thread makes few of them in so short a time."""
         return _is_regular(samples) or len(samples) > self.hz * life.seconds / 2
 
@@ -241,7 +242,7 @@ class Publishes(Clause):
 
     # -- a node that keeps a time of its own ----------------------------------------------------
 
-    def _was_hurried(self, samples: Sequence[Sample], life: Life) -> bool:
+    def _was_hurried(self, samples: Sequence[Lived], life: Life) -> bool:
         """Tell whether a rate was right until time passed in large steps, on a slow machine.
 
         Then a timer that counts its calls seems to publish more and more slowly.
@@ -289,7 +290,7 @@ class Publishes(Clause):
             self._refuse(trouble)
         return watch
 
-    def _trouble(self, samples: Sequence[Sample], life: Life) -> tuple[str, str] | None:
+    def _trouble(self, samples: Sequence[Lived], life: Life) -> tuple[str, str] | None:
         """Return what was seen and why, if it is not what the clause asks for."""
         if len(samples) < 2:
             count = len(samples)
@@ -354,13 +355,13 @@ class Publishes(Clause):
         )
 
 
-def _rate(samples: Sequence[Sample]) -> float:
+def _rate(samples: Sequence[Lived]) -> float:
     """Return the messages a second."""
     period = _period(samples)
     return 1 / period if period else float('inf')
 
 
-def _period(samples: Sequence[Sample]) -> float:
+def _period(samples: Sequence[Lived]) -> float:
     """Return the mean time from one message to the next, s; 0 if there are too few.
 
     Messages are numbered by their publisher, so one that was lost on the way does no harm.
@@ -372,25 +373,25 @@ def _period(samples: Sequence[Sample]) -> float:
     return (last.at - first.at) / max(count, len(samples) - 1)
 
 
-def _fine(samples: Sequence[Sample], life: Life) -> Sequence[Sample]:
+def _fine(samples: Sequence[Lived], life: Life) -> Sequence[Lived]:
     """Return the messages that tell the rate best; see `Life.fine_sec`."""
     fine = [sample for sample in samples if not life.remote or sample.at <= life.fine_sec]
     return fine if len(fine) > 2 else samples
 
 
-def _gaps(samples: Sequence[Sample]) -> list[float]:
+def _gaps(samples: Sequence[Lived]) -> list[float]:
     """Return the seconds of virtual time from one message to the next."""
     return [later.at - earlier.at for earlier, later in pairwise(samples)]
 
 
-def _follows(samples: Sequence[Sample], life: Life) -> bool:
+def _follows(samples: Sequence[Lived], life: Life) -> bool:
     """Tell whether messages of another process come as evenly as its steps of time let them."""
     gaps, step = _gaps(samples), max(life.tick, life.rest)
     even = len(gaps) >= 4 and max(gaps) - min(gaps) < step + REGULAR_SEC and min(gaps) > step
     return even or _is_regular(_fine(samples, life))
 
 
-def _is_regular(samples: Sequence[Sample]) -> bool:
+def _is_regular(samples: Sequence[Lived]) -> bool:
     """Tell whether messages come as evenly in virtual time as only a timer of ROS can."""
     gaps = _gaps(samples)
     return len(gaps) >= 4 and max(gaps) - min(gaps) < REGULAR_SEC

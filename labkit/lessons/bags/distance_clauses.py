@@ -11,7 +11,7 @@ from typing import NoReturn
 from labkit.exercises import Fail
 from labkit.exercises.clauses import Clause, Evidence, Test, find_stage
 from labkit.exercises.expect.spinning import hanging, spun
-from labkit.exercises.watch import Sample
+from labkit.exercises.watch import Lived
 
 __all__ = ['FLOAT64', 'INNER', 'ODOMETRY', 'OUTER', 'NoJumps', 'SumOfSteps']
 
@@ -97,7 +97,7 @@ class SumOfSteps(Clause):
         return f'{len(ways)} places on {INNER}: {total:.2f} m were counted.'
 
     def _refuse_silence(
-        self, evidence: Evidence, ways: Sequence[_Way], came: Sequence[Sample]
+        self, evidence: Evidence, ways: Sequence[_Way], came: Sequence[Lived]
     ) -> None:
         if came or not ways:
             return
@@ -110,7 +110,7 @@ class SumOfSteps(Clause):
             'self.publisher.publish(Float64(data=self.total))',
         )
 
-    def _refuse_beginning(self, came: Sequence[Sample]) -> None:
+    def _refuse_beginning(self, came: Sequence[Lived]) -> None:
         """Raise Fail if the first message of a node, if that is seen, is not 0."""
         begun = [float(sample.message.data) for sample in came if sample.number == 1]
         values = [*begun, *(float(s.message.data) for s in came if s.message.data < -NEAR)]
@@ -198,7 +198,7 @@ def _drive(middle: float) -> list[tuple[float, float]]:
     return [*places[:-1], (x, y), (x + random.choice((-JUMP, JUMP)), y)]
 
 
-def _ways(samples: Sequence[Sample]) -> list[_Way]:
+def _ways(samples: Sequence[Lived]) -> list[_Way]:
     found: list[_Way] = []
     for sample in samples:
         position = sample.message.pose.pose.position
@@ -216,7 +216,7 @@ def _following(ways: Sequence[_Way], end: float) -> list[tuple[_Way, float]]:
     ]
 
 
-def _answer(way: _Way, after: float, came: Sequence[Sample]) -> float | None:
+def _answer(way: _Way, after: float, came: Sequence[Lived]) -> float | None:
     """Return the last answer to a message, before the next one came."""
     values = [float(s.message.data) for s in came if way.at <= s.at < after]
     return values[-1] if values else None

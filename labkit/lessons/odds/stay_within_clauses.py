@@ -16,7 +16,7 @@ from labkit.exercises import (
 )
 from labkit.exercises.clauses import Clause, Evidence, Publishes, Stream
 from labkit.exercises.expect.timing import TOLERANCE
-from labkit.exercises.watch import Sample
+from labkit.exercises.watch import Lived, Sample
 
 __all__ = ['FIRST', 'LARGEST', 'TOPIC', 'AfterTheLimit', 'Run', 'up_to_the_limit']
 
@@ -62,7 +62,7 @@ class Run(Publishes):
             self._refuse(trouble)
         return ''
 
-    def _follows(self, lived: Sequence[Sample]) -> bool:
+    def _follows(self, lived: Sequence[Lived]) -> bool:
         """Tell whether messages came in virtual time, and not in real time meanwhile.
 
         Half a minute takes less than a second, so what comes in real time is far too slow.
@@ -74,7 +74,7 @@ class Run(Publishes):
         return even or (len(lived) >= MIN_EXACT and statistics.median(gaps) < 2 * self.period)
 
     def _real_trouble(
-        self, run: Sequence[Sample], lived: Sequence[Sample]
+        self, run: Sequence[Sample], lived: Sequence[Lived]
     ) -> tuple[str, str] | None:
         """Judge by the stamps of the messages; time may have flown for those in the middle."""
         first, last = (lived[0].number, lived[-1].number) if lived else (0, 0)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from labkit.exercises.watch import Sample, Watch
+from labkit.exercises.watch import Lived, Sample, Watch
 from labkit.sim.kinematics import Pose, Twist2, wrap_angle, yaw_from_quaternion
 
 __all__ = [
@@ -292,7 +292,7 @@ def command_of(sample: Sample) -> Command:
 
 
 def _time(sample: Sample) -> float:
-    return sample.stamp if math.isnan(sample.at) else sample.at
+    return sample.at if isinstance(sample, Lived) else sample.stamp
 
 
 def _pose(message: Any) -> Pose:

@@ -38,7 +38,7 @@ from labkit.lessons.turtlebot.robot import OtherDrivers, place, short_sighted, w
 
 if TYPE_CHECKING:
     from labkit.exercises.virtual_time import VirtualTime
-    from labkit.exercises.watch import Sample, Watch
+    from labkit.exercises.watch import Lived, Watch
     from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['Trials']
@@ -270,7 +270,7 @@ class Trials:
             nonlocal began, count
             commands = watches['/cmd_vel']
             if now >= SIGN_SEC and len(commands) and began == math.inf:
-                began, before = commands.samples[0].at, len(commands)
+                began, before = now, len(commands)
                 end = time.monotonic() + STILL_SEC
                 while count < 2 and time.monotonic() < end:
                     time.sleep(POLL_SEC)
@@ -287,7 +287,7 @@ class Trials:
         return not life.remote and _few_times(life.on('/cmd_vel')) != _few_times(found.commands)
 
 
-def _few_times(commands: Sequence[Sample] | Sequence[Command]) -> list[int]:
+def _few_times(commands: Sequence[Lived] | Sequence[Command]) -> list[int]:
     """Return when the first few commands came, ms from the first one on."""
     times = [round((each.at - commands[0].at) * 1e3) for each in commands]
     return [ms for ms in times if ms < FEW_SEC * 1e3]
