@@ -226,6 +226,7 @@ def live(
     life = Life(tick=tick, fine_sec=fine_sec, rest=rest)
     moments: list[tuple[float, float]] = []
     with contextlib.ExitStack() as stack:
+        stack.enter_context(probe.uncounted())
         remote = stack.enter_context(RemoteTime(probe.spun_node, foreign)) if foreign else None
         said = stack.enter_context(probe.hold_output())
         passing = VirtualTime(moving, standing, remote=remote, tick=tick)

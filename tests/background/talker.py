@@ -20,8 +20,8 @@ class Talker(Node):
         self.count += 1
 
 class Listener(Node):
-    def __init__(self):
-        super().__init__('listener')
+    def __init__(self, name='listener'):
+        super().__init__(name)
         self.heard = set()
         self.create_subscription(String, 'chatter', lambda msg: self.heard.add(msg.data), 10)
 """

@@ -120,7 +120,7 @@ def test_two_notebooks_do_not_hear_each_other_until_they_mean_to(
     start_kernel: Callable[..., object],
 ) -> None:
     one, other = start_kernel(**LOCALHOST), start_kernel(**LOCALHOST)
-    start = 'talker = lab.spin(Talker(NAME))\nlistener = lab.spin(Listener())\n'
+    start = 'talker = lab.spin(Talker(NAME))\nlistener = lab.spin(Listener("listener_" + WORD))\n'
     for kernel, word in ((one, 'one'), (other, 'other')):
         names = f'WORD = {word!r}\nNAME = "talker_{word}"\n'
         assert not kernel.run(names + TALKER + start).error

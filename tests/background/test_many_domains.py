@@ -148,7 +148,7 @@ def test_who_joins_from_between_is_found_by_everybody(start_kernel: Start, betwe
     ada = start_kernel(**LOCALHOST, ROS_DOMAIN_ID=str(between))
     bo = start_kernel(**LOCALHOST, ROS_DOMAIN_ID=str(shared.domain_id))
     for kernel, word in ((ada, 'ada'), (bo, 'bo')):
-        cell = f'WORD = "{word}"\n{TALKER}\nlistener = lab.spin(Listener())\n'
+        cell = f'WORD = "{word}"\n{TALKER}\nlistener = lab.spin(Listener("listener_" + WORD))\n'
         assert not kernel.run(f'{cell}talker = lab.spin(Talker("t_{word}"))').error
     room = (
         f'lab.join("chatter", String, domain_id={shared.domain_id}, discovery_range="LOCALHOST")'
@@ -162,7 +162,8 @@ def test_who_joins_from_between_is_found_by_everybody(start_kernel: Start, betwe
         assert (heard.error, heard.text) == ('', "['ada', 'bo']\n")
     # The whole notebook can move there, too, and what it starts then.
     moved = ada.run(
-        f'lab.stop()\nlab.start(domain_id={shared.domain_id})\nlistener = lab.spin(Listener())\n'
+        f'lab.stop()\nlab.start(domain_id={shared.domain_id})\n'
+        'listener = lab.spin(Listener("listener_" + WORD))\n'
         'lab.wait_until(lambda: "bo" in listener.heard, timeout_sec=60)\n'
         'import os\nprint(runtime.domain_id, os.environ["ROS_DOMAIN_ID"])\n'
         'print(os.environ.get("FASTRTPS_DEFAULT_PROFILES_FILE"))'

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import pytest
@@ -82,6 +82,34 @@ def test_all_waits_share_one_limit(lab: ModuleType) -> None:
 
     exercise(judge).check()
     assert left == [0.0] * 5
+
+
+def test_time_that_a_node_needs_does_not_count(
+    lab: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    left: list[float] = []
+
+    def judge(probe: Probe) -> None:
+        now = probe._end - 10.0
+
+        def pass_time() -> None:
+            nonlocal now
+            now += 1.0
+            left.append(probe.time_left)
+
+        with monkeypatch.context() as patch:
+            clock = SimpleNamespace(monotonic=lambda: now)
+            patch.setattr('labkit.exercises.probe.time', clock)
+            pass_time()
+            with probe.uncounted():
+                pass_time()
+                with probe.uncounted():
+                    pass_time()
+                pass_time()
+            pass_time()
+
+    exercise(judge).check()
+    assert left == pytest.approx([9.0, 9.0, 9.0, 9.0, 8.0])
 
 
 def test_nothing_there_is_no_attempt(lab: ModuleType) -> None:

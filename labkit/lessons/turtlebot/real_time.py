@@ -73,6 +73,10 @@ class RealTime:
         Returns:
             What was seen; None if it was given up.
         """
+        with self.probe.uncounted():
+            return self._drive(trial, unless)
+
+    def _drive(self, trial: Trial, unless: int | None) -> Drive | None:
         probe, topics = self.probe, {'/cmd_vel': TWIST, '/odom': ODOMETRY, '/scan': SCAN}
         watches = {topic: probe.watch(topic, msg_type) for topic, msg_type in topics.items()}
         try:
