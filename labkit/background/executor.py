@@ -77,6 +77,11 @@ class BackgroundExecutor(Executor):
         self._thread.start()
 
     @property
+    def thread(self) -> threading.Thread:
+        """The background thread."""
+        return self._thread
+
+    @property
     def is_open(self) -> bool:
         """Tell whether the background thread was started, and not ended since."""
         return self._thread.is_alive() and not self._closing

@@ -1,21 +1,14 @@
-"""What the learner's callbacks do during a check: whether they raise, and whether they return."""
+"""What the learner's callbacks do during a check: how often they run, and whether they raise."""
 
 from __future__ import annotations
 
-import sys
-import threading
-import time
 from typing import Any
 
-from labkit.exercises.learner_errors import where_it_hangs
 from labkit.exercises.scope import PUBLISHER, SERVICE, SUBSCRIPTION, Scope
 from labkit.exercises.verdict import LearnerError
 
 __all__ = ['Callbacks', 'find_node', 'is_given']
 
-# A callback that runs longer than this keeps the others waiting.
-HANG_SEC = 0.4
-POLL_SEC = 0.004
 # In the place of the ids of cells: whoever makes a node of this name, it is not the learner's.
 ANY_CELL = '*'
 
@@ -37,24 +30,6 @@ class Callbacks:
         """
         entry = self._runtime.entry_of(node)
         return None if entry is None else entry.counts.get(entity, 0)
-
-    def hanging(self) -> tuple[str, str, str] | None:
-        """Return node, callback and line of a callback that does not return, None if all do."""
-        running, count = self._progress()
-        if running is None:
-            return None
-        end = time.monotonic() + HANG_SEC
-        while time.monotonic() < end:
-            time.sleep(POLL_SEC)
-            if self._progress() != (running, count):
-                return None
-        thread = next((t for t in threading.enumerate() if t.name == 'labkit'), None)
-        frame = sys._current_frames().get(thread.ident or 0) if thread else None
-        return (*running, where_it_hangs(frame))
-
-    def _progress(self) -> tuple[tuple[str, str] | None, int]:
-        count = sum(entry.callbacks for entry in self._runtime.nodes())
-        return self._runtime.executor.running_callback(), count
 
     def raise_new_error(self, scope: Scope) -> None:
         """Raise LearnerError if a callback of a node under test has raised during the check."""

@@ -16,6 +16,8 @@ from functools import reduce
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from labkit.exercises.fair_clock import FairClock
+from labkit.exercises.hanging import Hanging
 from labkit.exercises.remote_time import RemoteTime
 from labkit.exercises.verdict import LearnerError
 from labkit.exercises.virtual_time import VirtualTime
@@ -89,7 +91,7 @@ class Life:
         samples: The messages of each topic, in their order, with their times `at`.
         sent: The tests that were sent.
         flooded: Whether so many callbacks came in one moment that there was no end to see.
-        hanging: Whether a callback did not return.
+        hanging: The callback that did not return, if one did not.
         remote: Full names of the nodes of other processes that followed.
         strangers: How many publishers of other processes there are on each topic of a test, whose
             time was real.
@@ -104,7 +106,7 @@ class Life:
     samples: dict[str, list[Lived]] = field(default_factory=dict)
     sent: list[Sent] = field(default_factory=list)
     flooded: bool = False
-    hanging: bool = False
+    hanging: Hanging | None = None
     remote: Sequence[str] = ()
     strangers: Mapping[str, int] = field(default_factory=dict)
     tick: float = 0.0
@@ -356,8 +358,8 @@ class _Course:
         if not self.go(self.passing.seconds + 0.5) or self._count(stimulus.answers) > before:
             return
         if stimulus.due and self.patience:
-            end = time.monotonic() + answer_sec(PATIENCE_SEC)
-            while self._count(stimulus.answers) == before and time.monotonic() < end:
+            clock, longest = FairClock(), answer_sec(PATIENCE_SEC)
+            while self._count(stimulus.answers) == before and clock.seconds < longest:
                 time.sleep(POLL_SEC)
                 self._look()
             self.patience -= self._count(stimulus.answers) == before
@@ -366,8 +368,8 @@ class _Course:
         """Let a thread that a test has woken do its work before time goes on."""
         from labkit.background.patience import answer_sec
 
-        end = time.monotonic() + answer_sec(THREAD_SEC)
-        while self._count(stimulus.answers) == before and time.monotonic() < end:
+        clock, longest = FairClock(), answer_sec(THREAD_SEC)
+        while self._count(stimulus.answers) == before and clock.seconds < longest:
             time.sleep(POLL_SEC)
             self._look()
         self.passing.settle_rates()

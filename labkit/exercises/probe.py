@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from labkit.background.progress_bar import ProgressBar
 from labkit.exercises.callbacks import Callbacks, find_node, is_given
+from labkit.exercises.fair_clock import FairClock
 from labkit.exercises.scope import Scope
 from labkit.exercises.verdict import Fail, LearnerError
 from labkit.exercises.watch import Watch, build
@@ -127,18 +128,18 @@ class Probe:
         Raises:
             LearnerError: A callback of a node under test raised meanwhile.
         """
-        left = self.time_left
-        end = time.monotonic() + (left if timeout_sec is None else min(timeout_sec, left))
+        clock, left = FairClock(), self.time_left
+        longest = left if timeout_sec is None else min(timeout_sec, left)
         while True:
             for watch in self._watches:
                 watch.pump()
             if condition():
                 return True
             self.callbacks.raise_new_error(self.scope)
-            now = time.monotonic()
-            if now >= end:
+            if clock.seconds >= longest or not self.time_left:
                 return False
-            self._bar.show(None, f'watching in real time, {now - self._begun:.0f} s')
+            seconds = time.monotonic() - self._begun
+            self._bar.show(None, f'watching in real time, {seconds:.0f} s')
             time.sleep(POLL_SEC)
 
     def wait_to_appear(self, condition: Callable[[], object]) -> bool:

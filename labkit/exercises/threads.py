@@ -13,6 +13,8 @@ import time
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary, WeakSet
 
+from labkit.exercises.fair_clock import FairClock
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from types import FrameType
@@ -56,12 +58,12 @@ class OtherThreads:
         """
         from labkit.background.patience import answer_sec
 
-        end = time.monotonic() + answer_sec(REST_SEC)
+        clock = FairClock()
         ran = False
         # All of them, each time: one may hand its work to another one.
         while busy := [thread for thread in self._threads() if self._is_new(thread)]:
             ran = True
-            if time.monotonic() > end:
+            if clock.seconds > answer_sec(REST_SEC):
                 self._left.update(busy)
                 break
             time.sleep(LOOK_SEC)

@@ -18,6 +18,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary, WeakSet
 
+from labkit.exercises.fair_clock import FairClock
+from labkit.exercises.hanging import Hanging, Standstill
 from labkit.exercises.threads import OtherThreads, waits
 
 if TYPE_CHECKING:
@@ -30,8 +32,11 @@ if TYPE_CHECKING:
 __all__ = ['VirtualTime']
 
 NANOSECONDS = 1_000_000_000
-# How long a callback may run before it is looked at what it does, s of real time.
-CALM_SEC = 0.5
+# How often it is looked at what callbacks do, s of real time.
+LOOK_SEC = 0.02
+# How long one may run, and how long none may although some are ready, s of what they could have
+# had: see `fair_clock`.
+HANG_SEC, STILL_SEC = 1.0, 3.0
 # So many callbacks in one moment are a flood: a timer without a period, nodes that answer each
 # other for ever.
 FLOOD = 2000
@@ -45,9 +50,6 @@ IDLE_SEC = 0.1
 IDLE_LOOKS = 50
 # How long an executor of the learner's own may take to go round, s of real time.
 ROUND_SEC = 2.0
-# So often in a row nothing may be done by the background before it counts as hanging, though no
-# callback is seen to run: a busy machine may give it no time.
-IDLE_ROUNDS = 6
 POLL_SEC = 0.0002
 
 
@@ -72,7 +74,7 @@ class VirtualTime:
 
     Attributes:
         flooded: Whether more callbacks came in one moment than could be run.
-        hanging: Whether a callback has not returned.
+        hanging: The callback that has not returned, if one has not.
         tick: As above; it may be changed on the way.
     """
 
@@ -96,7 +98,7 @@ class VirtualTime:
         self._stuck: set[Executor] = set()
         self._threads = OtherThreads()
         self.flooded = False
-        self.hanging = False
+        self.hanging: Hanging | None = None
 
     @property
     def seconds(self) -> float:
@@ -256,24 +258,20 @@ class VirtualTime:
                 self._stuck.add(executor)
 
     def _settle_background(self) -> None:
-        from labkit.background.patience import busyness
-
-        executor, before = self._runtime.executor, self._callbacks()
-        began, seen, idle = time.monotonic(), before, 0
-        while not executor.settle(CALM_SEC):
-            count = self._callbacks()
-            idle = idle + 1 if count == seen else 0
-            slow = time.monotonic() - began > SLOW_FLOOD_SEC
+        executor = self._runtime.executor
+        if executor.settle(LOOK_SEC):
+            return
+        clock, standstill = FairClock(executor.thread), Standstill()
+        _, before = standstill.at
+        while not executor.settle(LOOK_SEC):
+            stands = standstill.seconds
+            running, count = standstill.at
+            slow = clock.seconds > SLOW_FLOOD_SEC
             self.flooded = count - before > (SLOW_FLOOD if slow else FLOOD)
-            runs = executor.running_callback() is not None
-            # On a busy machine a callback may get no turn for a round, and may still return.
-            self.hanging = idle > (busyness() - 1 if runs else IDLE_ROUNDS)
+            if stands > (HANG_SEC if running is not None else STILL_SEC):
+                self.hanging = standstill.what()
             if self.flooded or self.hanging or not executor.is_open:
                 return
-            seen = count
-
-    def _callbacks(self) -> int:
-        return sum(entry.callbacks for entry in self._runtime.nodes())
 
 
 def _sleepers(timers: Iterable[Timer]) -> dict[Timer, set[int]]:
@@ -299,9 +297,9 @@ def _wait_for_rate(timer: Timer, threads: set[int]) -> None:
 
     if rate_is_awaited(timer):
         _slow.discard(timer)
-    start, looks = time.monotonic(), 0
+    clock, looks = FairClock(), 0
     while not (rate_is_awaited(timer) or timer in _slow or timer in _left):
-        passed = time.monotonic() - start
+        passed = clock.seconds
         if passed > IDLE_SEC:
             looks = 0 if _is_at_work(timer, threads) else looks + 1
         if passed > answer_sec(RATE_SEC):
@@ -327,9 +325,9 @@ def _settle_other(executor: Executor) -> bool:
     """Wait until an executor of the learner's own has gone round twice; tell whether it has."""
     for _ in range(2):
         task: Any = executor.create_task(lambda: None)
-        end = time.monotonic() + ROUND_SEC
+        clock = FairClock()
         while not task.done():
-            if time.monotonic() > end:
+            if clock.seconds > ROUND_SEC:
                 return False
             time.sleep(POLL_SEC)
     return True

@@ -78,7 +78,7 @@ def test_answer_that_is_left_out_now_and_then_is_still_one_of_a_timer() -> None:
 def test_message_that_came_too_late_to_be_judged_is_not_called_answered(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(answering, 'hanging', lambda probe: None)
+    monkeypatch.setattr(answering, 'hanging', lambda: None)
     heard = [(1.0, 5), (1.5, 7), (29.5, 9)]
     with pytest.raises(Fail) as refused:
         CLAUSE.judge(evidence([(1.0, 5), (29.5, 9)], []))

@@ -167,7 +167,7 @@ class _Asking:
     def _answer(self, future: Any, what: str, patience_sec: float = PATIENCE_SEC) -> Any:
         began = time.monotonic()
         if not self._probe.wait(future.done, patience_sec):
-            expect.hanging(self._probe)
+            expect.hanging()
         if not self._probe.wait(future.done, ANSWER_SEC):
             self._refuse_silence(what, time.monotonic() - began)
         return future.result()

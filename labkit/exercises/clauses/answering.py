@@ -149,7 +149,7 @@ class Answers(Clause):
         came_of = [(v, [w for t, w in left if at <= t < at + WITHIN_SEC]) for at, v in missing]
         value, came = next((pair for pair in came_of if {*pair[1]} - {pair[0]}), came_of[0])
         if not left:
-            hanging(evidence.probe)
+            hanging()
         right = self.answer(value)
         why, todo = self.explain(value, came) if self.explain is not None else ('', '')
         if not why and came:

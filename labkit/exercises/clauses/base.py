@@ -153,7 +153,7 @@ class Evidence:
                         clause.judge(self)
             raise self.life.error
         if self.life.hanging:
-            expect.hanging(self.probe)
+            expect.hanging(self.life.hanging)
         if self.life.flooded:
             raise Fail(
                 'callbacks that come to an end',

@@ -102,7 +102,7 @@ class Logs(Clause):
     ) -> NoReturn:
         source = evidence.subscription(self.topic)
         if not here:
-            hanging(evidence.probe)
+            hanging()
         why = 'The callback runs, but its line does not hold what the message says.'
         todo = "In the callback: self.get_logger().info(f'...{msg.data}')"
         if self.explain is not None and here:

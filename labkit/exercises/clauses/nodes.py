@@ -111,7 +111,7 @@ class Runs(Clause):
         """Ask the node."""
         probe = evidence.probe
         name = self.node or evidence.publisher(self.topic).node
-        spinning.hanging(probe)
+        spinning.hanging()
         if not spinning.runs(probe, name):
             raise Fail(
                 f'{name} runs: its callbacks are called when their time has come',

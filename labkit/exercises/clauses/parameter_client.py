@@ -79,7 +79,7 @@ def asked(probe: Probe, node: str) -> Iterator[None]:
         yield
     except LabError as error:
         probe.callbacks.raise_new_error(probe.scope)
-        hanging(probe)
+        hanging()
         raise Fail(
             f'{node} answers questions about its parameters',
             error.message,

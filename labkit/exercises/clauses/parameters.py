@@ -66,7 +66,7 @@ class HasParameter(Clause):
 
         probe, node = evidence.probe, self.node
         if not spinning.runs(probe, node):
-            expect.hanging(probe)
+            expect.hanging()
             raise Fail(
                 f'{node} answers questions about its parameters',
                 f'{node} is there, but it is not spun',

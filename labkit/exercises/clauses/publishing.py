@@ -227,7 +227,7 @@ class Publishes(Clause):
         if len(found) >= len(nodes):
             samples = [sample for stream in found for sample in stream]
             return Stream(topic, tuple(samples), False, 0.0)
-        spinning.hanging(probe)
+        spinning.hanging()
         why, todo = timing.reason(probe, source)
         # Those that follow ROS time are known. If somebody else talks, it may be this one.
         if len(found) > len(self._right(evidence.life)):

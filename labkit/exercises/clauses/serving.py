@@ -120,7 +120,7 @@ class Responds(Clause):
             return len(found) == len(group)
 
         if not probe.wait(all_there, PATIENCE_SEC):
-            expect.hanging(probe)
+            expect.hanging()
         if not probe.wait(all_there, RESPONSE_SEC):
             self._refuse_silence(probe, group, len(found), time.monotonic() - began)
         return found
@@ -128,7 +128,7 @@ class Responds(Clause):
     def _refuse_silence(
         self, probe: Probe, group: Sequence[Any], count: int, seconds: float
     ) -> NoReturn:
-        expect.hanging(probe)
+        expect.hanging()
         names = {server.node for server in probe.all_servers() if server.service == self.service}
         why = 'The callback of the service has not returned, or it has raised an error.'
         todo = 'Let the callback fill in the response, return it, and wait for nothing.'

@@ -61,7 +61,7 @@ def server(probe: Probe, service: str) -> Server:
             todo='End the one that does not belong here: lab.remove(...), or stop the other '
             'process or notebook.',
         )
-    hanging(probe)
+    hanging()
     if not runs(probe, found.node):
         raise Fail(
             f'{found.node} answers requests',

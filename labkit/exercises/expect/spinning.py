@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from labkit.exercises.hanging import Hanging, find_hanging
 from labkit.exercises.probe import Probe
 from labkit.exercises.verdict import Fail
 
@@ -16,18 +17,31 @@ __all__ = ['hanging', 'how_to_spin', 'runs', 'spun']
 ANSWER_SEC = 2.5
 
 
-def hanging(probe: Probe) -> None:
-    """Raise Fail if a callback of this notebook is running and does not return."""
-    found = probe.callbacks.hanging()
-    if found is not None:
-        node, callback, line = found
+def hanging(found: Hanging | None = None) -> None:
+    """Raise Fail if a callback of this notebook is running and does not return.
+
+    Args:
+        found: What was found not to return; it is looked for if None.
+    """
+    found = found or find_hanging()
+    if found is None:
+        return
+    where = f' ({found.line})' if found.line else ''
+    if not found.node:
         raise Fail(
-            'callbacks that return at once',
-            f'the callback {callback} of {node} is still running' + (f' ({line})' if line else ''),
-            why='While a callback runs, no other one can: no message is taken, no timer ticks. '
-            'A callback that waits or loops holds everything up.',
-            todo='Do one small step in the callback and return. For "again later" use a timer.',
+            'callbacks of this notebook that run',
+            f'none of them has run for a while, though some were ready{where}',
+            why='Something keeps them all from running, such as the condition of a wait that does '
+            'not return.',
+            todo='Stop what waits, and check again. If that does not help, restart the kernel.',
         )
+    raise Fail(
+        'callbacks that return at once',
+        f'the callback {found.callback} of {found.node} is still running{where}',
+        why='While a callback runs, no other one can: no message is taken, no timer ticks. '
+        'A callback that waits or loops holds everything up.',
+        todo='Do one small step in the callback and return. For "again later" use a timer.',
+    )
 
 
 def spun(probe: Probe, endpoint: Endpoint) -> None:

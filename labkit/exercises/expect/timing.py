@@ -303,7 +303,7 @@ def _vain_ticks(probe: Probe, node: Any, timer: Any, hz: float | None) -> Callab
 
 def _explain_silence(probe: Probe, watch: Watch, source: Endpoint) -> NoReturn:
     """Raise Fail with the likeliest reason why messages do not come."""
-    hanging(probe)
+    hanging()
     waited = time.monotonic() - (watch.last_arrival if len(watch) else watch.started)
     expected = f'messages on {source.topic}, again and again'
     seen = (

@@ -101,7 +101,7 @@ class SumOfSteps(Clause):
     ) -> None:
         if came or not ways:
             return
-        hanging(evidence.probe)
+        hanging()
         raise Fail(
             f'a message on {OUTER} for each one on {INNER}',
             f'{len(ways)} messages on {INNER}, and nothing on {OUTER}',
@@ -123,7 +123,7 @@ class SumOfSteps(Clause):
             )
 
     def _refuse_missing(self, evidence: Evidence, way: _Way) -> NoReturn:
-        hanging(evidence.probe)
+        hanging()
         raise Fail(
             f'a message on {OUTER} for each one on {INNER}',
             f'none when the robot had come to x = {way.x:.2f} m, y = {way.y:.2f} m',

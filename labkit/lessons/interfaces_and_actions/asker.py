@@ -134,7 +134,7 @@ class _Sends(Clause):
         evidence.probe.wait(lambda: len(orders) >= len(heard), 1.0)
         if orders == heard:
             return f'{len(heard)} messages, {len(orders)} goals.'
-        expect.hanging(evidence.probe)
+        expect.hanging()
         expect.spun(evidence.probe, evidence.subscription(WISH, NODE))
         why, todo = 'The goals are others.', 'Fibonacci.Goal(order=msg.data)'
         if not orders:

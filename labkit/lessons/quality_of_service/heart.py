@@ -154,7 +154,7 @@ def _refuse_noise(alarms: list[float]) -> None:
 
 
 def _refuse_silence(probe: Probe, number: int) -> NoReturn:
-    expect.hanging(probe)
+    expect.hanging()
     if number:
         raise Fail(
             'an alarm each time that the heart stops',

@@ -98,7 +98,7 @@ class Calls(Clause):
         why = 'What is called differs from what was heard.'
         todo = 'In the callback of the subscription: SetBool.Request(data=msg.data)'
         if not calls:
-            expect.hanging(evidence.probe)
+            expect.hanging()
             expect.spun(evidence.probe, evidence.subscription(WISH, NODE))
             why = 'No request has come to the door. A request alone calls nothing.'
             todo = 'In the callback: self.client.call_async(request)'

@@ -52,7 +52,7 @@ class SaysIt(Clause):
         watch, source = _heard(evidence), evidence.publisher(TOPIC)
         here = evidence.probe.in_this_process(source)
         if not evidence.probe.wait(lambda: len(watch), LATE_SEC if here else FOUND_SEC):
-            expect.hanging(evidence.probe)
+            expect.hanging()
             raise Fail(
                 f'one message on {TOPIC}, as soon as somebody subscribes',
                 f'{source.node} has a publisher, but no message came',
