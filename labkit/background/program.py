@@ -5,17 +5,23 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import time
+from typing import Any
 
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from rclpy.utilities import ok, try_shutdown
 
 from labkit.rosgraph.listings import ends_of_node
 
-__all__ = ['READY', 'spin_until_interrupted']
+__all__ = ['READY', 'publish_when_heard', 'spin_until_interrupted']
 
 READY = 'LABKIT_READY'
 """Variable with the number of a pipe: what is written to it is read by `Process.announced`."""
+
+# How long an answer waits for somebody to hear it, s.
+FOUND_SEC, POLL_SEC = 5.0, 0.005
 
 
 def spin_until_interrupted(*nodes: Node) -> None:
@@ -41,6 +47,23 @@ def spin_until_interrupted(*nodes: Node) -> None:
     finally:
         with contextlib.suppress(RuntimeError):
             try_shutdown()
+
+
+def publish_when_heard(publisher: Publisher, message: Any, count: int = 1) -> None:
+    """Publish an answer as soon as the one who asks can hear it.
+
+    A publisher and a subscription of the same node are discovered one by one. So who asks may be
+    heard before it can hear, and what is published then does not come to it.
+
+    Args:
+        publisher: The publisher.
+        message: The answer.
+        count: How many subscriptions there are then, with those of the program itself.
+    """
+    end = time.monotonic() + FOUND_SEC
+    while publisher.get_subscription_count() < count and time.monotonic() < end:
+        time.sleep(POLL_SEC)
+    publisher.publish(message)
 
 
 def _announce(nodes: tuple[Node, ...]) -> None:

@@ -38,3 +38,32 @@ def test_a_fault_of_a_callback_is_not_hidden(script):
     result = script(PROGRAM.format(first="raise RuntimeError('a fault')"))
     assert (result.stdout, result.exit_code) == ('', 1)
     assert result.stderr.endswith('RuntimeError: a fault\n')
+
+
+ANSWER = """
+import threading
+import labkit as lab
+import rclpy
+from labkit.background.program import publish_when_heard
+from std_msgs.msg import String
+
+node = lab.spin(rclpy.create_node('asker'))
+publisher = node.create_publisher(String, 'answers', 10)
+answer = publisher, String(data='yes'), {count}
+answering = threading.Thread(target=publish_when_heard, args=answer)
+answering.start()
+heard = []
+for word in ('first', 'second')[:{count}]:
+    print(word, answering.is_alive())
+    node.create_subscription(String, 'answers', lambda msg: heard.append(msg.data), 10)
+answering.join()
+lab.wait_until(lambda: len(heard) == {count})
+print(heard)
+"""
+
+
+def test_an_answer_waits_for_those_who_are_to_hear_it(script):
+    result = script(ANSWER.format(count=1))
+    assert (result.stdout, result.stderr) == ("first True\n['yes']\n", '')
+    result = script(ANSWER.format(count=2))
+    assert result.stdout == "first True\nsecond True\n['yes', 'yes']\n"

@@ -84,16 +84,16 @@ def test_lesson_runs_from_top_to_bottom(run, name):
                 wrong.append(f'{cell["id"]}: {error or "should have raised"}')
             if cell['source'].strip() and not cell['execution_count']:
                 wrong.append(f'{cell["id"]}: was not run')
-    assert wrong == []
+    assert not wrong, '\n'.join(wrong)
     for cell in notebook.cells():
         pictures = notebook.broken_pictures(cell['id'])
         wrong += [f'{cell["id"]}: the picture {text!r} is missing' for text in pictures]
         text = notebook.cell(cell['id']).inner_text()
         wrong += [f'{cell["id"]}: {sign}' for sign in BROKEN if sign in text]
-    assert wrong == []
+    assert not wrong, '\n'.join(wrong)
     for cell in notebook.cells():
         if cell['cell_type'] == 'code':
             wrong += [f'{cell["id"]}: {fault}' for fault in violations(notebook, cell['id'])]
-    assert wrong == []
+    assert not wrong, '\n'.join(wrong)
     assert lesson.faults == []
     notebook.close()

@@ -61,7 +61,7 @@ def main() -> None:
     from rclpy.node import Node
     from std_msgs.msg import String
 
-    from labkit.background.program import spin_until_interrupted
+    from labkit.background.program import publish_when_heard, spin_until_interrupted
 
     rclpy.init()
     node = Node(NAME.lower(), start_parameter_services=False, enable_rosout=False)
@@ -72,17 +72,18 @@ def main() -> None:
         who, _, text = msg.data.partition(': ')
         if who == NAME:
             return
+        # Bo hears himself, too.
         if QUESTION in text:
             looking.append(node.create_timer(LOOK_SEC, look))
         else:
-            publisher.publish(String(data=f'{NAME}: I hear you, {who}'))
+            publish_when_heard(publisher, String(data=f'{NAME}: I hear you, {who}'), count=2)
 
     def look() -> None:
         # The name of a node comes a moment later than what it has to say.
         ends = node.get_publishers_info_by_topic(TOPIC)
         if len(ends) > 1 and all(end.node_name in node.get_node_names() for end in ends):
             node.destroy_timer(looking.pop())
-            publisher.publish(String(data=f'{NAME}: {_seen(node)}'))
+            publish_when_heard(publisher, String(data=f'{NAME}: {_seen(node)}'), count=2)
 
     node.create_subscription(String, TOPIC, answer, 10)
     spin_until_interrupted(node)

@@ -39,10 +39,10 @@ def main() -> None:
     from rclpy.node import Node
     from std_msgs.msg import String
 
-    from labkit.background.program import spin_until_interrupted
+    from labkit.background.program import publish_when_heard, spin_until_interrupted
 
     rclpy.init()
     node = Node('neighbour', start_parameter_services=False)
     publisher = node.create_publisher(String, TELLS, 100)
-    node.create_subscription(String, HEARS, publisher.publish, 100)
+    node.create_subscription(String, HEARS, lambda msg: publish_when_heard(publisher, msg), 100)
     spin_until_interrupted(node)

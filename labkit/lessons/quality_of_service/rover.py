@@ -27,8 +27,6 @@ KINDS = ('best_effort', 'reliable')
 TOPICS = tuple(f'/{word}_{kind}' for word in ('pictures', 'seen') for kind in KINDS)
 DEPTH = 100
 START_SEC = 25.0
-# How long it waits until somebody hears its answers, s.
-FOUND_SEC = 5.0
 POLL_SEC = 0.01
 
 _process: Process | None = None
@@ -76,7 +74,7 @@ def main() -> None:
     from rclpy.qos import QoSProfile, ReliabilityPolicy
     from std_msgs.msg import Int16, String
 
-    from labkit.background.program import spin_until_interrupted
+    from labkit.background.program import publish_when_heard, spin_until_interrupted
 
     print(os.getpid(), flush=True)
     rclpy.init()
@@ -87,11 +85,7 @@ def main() -> None:
         profile = QoSProfile(depth=DEPTH, reliability=reliability)  # type: ignore[no-untyped-call]
 
         def on_picture(msg: String) -> None:
-            # Who asks may be discovered later than what it sends.
-            end = time.monotonic() + FOUND_SEC
-            while not answers.get_subscription_count() and time.monotonic() < end:
-                time.sleep(POLL_SEC)
-            answers.publish(Int16(data=int(msg.data)))
+            publish_when_heard(answers, Int16(data=int(msg.data)))
 
         tell = SubscriptionEventCallbacks(
             matched=lambda event: print(kind, event.current_count, flush=True)  # type: ignore[attr-defined]
