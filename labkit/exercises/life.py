@@ -98,7 +98,6 @@ class Life:
         tick: How exactly times of these are known, s,
         fine_sec: for so long, s;
         rest: and how exactly at least afterwards, s.
-        ended: When it ended, in seconds of real time.
         error: What a callback of the learner's has raised, if one has: then time stopped there.
     """
 
@@ -112,7 +111,6 @@ class Life:
     tick: float = 0.0
     fine_sec: float = math.inf
     rest: float = 0.0
-    ended: float = math.inf
     error: LearnerError | None = None
 
     def on(self, topic: str) -> list[Lived]:
@@ -131,31 +129,33 @@ class Life:
                 tests.remove(found)
         return besides
 
-    def is_due(self, topic: str, sample: Lived, within: float) -> bool:
-        """Tell whether what is to be said upon a message must have come before the end.
+    def heard(self, topic: str, within: float) -> list[tuple[Lived, bool]]:
+        """Return the messages of a topic, and whether an answer to each must have come by now.
 
-        A message of another process, whose time is real, may have been on its way to the node
-        when this ended, though it was published long before in virtual time.
-
-        Args:
-            topic: Its topic.
-            sample: The message.
-            within: How soon it is to be said, s of virtual time.
+        Those to which one must come first: so no other takes theirs. They have `within` seconds.
         """
-        late = sample.stamp > self.ended - LATE_SEC and not self.is_known(topic, sample)
-        return not late and sample.at < self.seconds - within
+        found = [
+            (sample, self.is_known(topic, sample) and sample.at < self.seconds - within)
+            for sample in self.on(topic)
+        ]
+        return sorted(found, key=lambda pair: not pair[1])
 
     def is_known(self, topic: str, sample: Lived) -> bool:
-        """Tell whether it is known exactly when a message came: not if a stranger has sent it.
+        """Tell whether a message has reached the nodes, and when: not if a stranger has sent it.
 
-        A stranger's may have come in the very moment of a test. So it is none of the tests.
+        A stranger may have found this check and not the learner's node yet, and what it sends may
+        be on its way when this ends. It may have come in the very moment of a test, too.
         """
         if not self.strangers.get(topic):
             return True
         return not any(sample is other for other in self.besides_tests(topic))
 
     def without_strangers(
-        self, topic: str, extra: Sequence[tuple[float, Any]], known: Collection[Any]
+        self,
+        topic: str,
+        extra: Sequence[tuple[float, Any]],
+        known: Collection[Any],
+        answers: int = 1,
     ) -> list[tuple[float, Any]]:
         """Leave out what may have been said upon messages that are not seen here.
 
@@ -167,9 +167,10 @@ class Life:
             topic: Where such messages come.
             extra: What was said though nothing had come: moments and values.
             known: What was said upon tests, or could be.
+            answers: How many answers one message gets.
         """
         unknown = [pair for pair in extra if pair[1] not in known]
-        if len(unknown) > ON_THE_WAY * self.strangers.get(topic, 0):
+        if len(unknown) > ON_THE_WAY * answers * self.strangers.get(topic, 0):
             return list(extra)
         return [pair for pair in extra if pair[1] in known]
 
@@ -258,7 +259,7 @@ def live(
                 course.wait_for_late_ones()
         except LearnerError as error:
             life.error = error
-        life.seconds, life.ended = passing.seconds, time.time()
+        life.seconds = passing.seconds
         life.flooded, life.hanging = passing.flooded, passing.hanging
     probe.note_output(life.seconds, said)
     starts = [real for real, _ in moments]

@@ -11,6 +11,7 @@ from labkit.exercises import Fail
 from labkit.exercises.clauses import Answers, Evidence, Logs, answering
 from labkit.exercises.life import Life, Sent
 from labkit.exercises.watch import Lived
+from labkit.lessons.my_name_is.two_names_clauses import EachAnswers
 
 CLAUSE = Answers('/odds', '/evens', 'add 1', answer=lambda n: n + 1, draw=lambda: [1])
 Timed = list[tuple[float, int]]
@@ -35,6 +36,40 @@ def test_answer_to_what_came_before_the_check_is_no_extra_message() -> None:
 def test_message_that_answers_nothing_is_one_too_many() -> None:
     with pytest.raises(Fail, match='1 more on /evens'):
         CLAUSE.judge(evidence([(1.0, 5)], [(1.05, 6), (4.0, 652)]))
+
+
+def test_stranger_who_has_not_found_the_node_takes_no_answer_of_a_test() -> None:
+    """The check hears it all the same; it says what a test says, just before it."""
+    seen = evidence([(1.9, 5), (2.0, 5)], [(2.05, 6)])
+    seen.life.sent = [Sent(2.0, '/odds', {'data': 5})]
+    seen.life.strangers = {'/odds': 1}
+    assert CLAUSE.judge(seen).startswith('/postman has answered 1 messages')
+    seen.life.samples['/evens'].clear()
+    with pytest.raises(Fail, match='nothing on /evens'):
+        CLAUSE.judge(seen)
+
+
+def test_one_of_two_who_say_a_name_has_not_been_found_by_a_stranger() -> None:
+    def said(*texts: tuple[float, str]) -> list[Lived]:
+        return [Lived(SimpleNamespace(data=text), 0.0, 0, at) for at, text in texts]
+
+    opening, other = 'My name is ', 'I am '
+    came = [(2.1, opening + 'Bob'), (2.1, opening + 'Ada'), (3.1, other + 'Ada')]
+    life = Life(
+        30.0,
+        {
+            '/incomplete': said((1.9, opening), (2.0, opening), (3.0, other)),
+            '/names': said(*came, (3.1, other + 'Bob')),
+        },
+        [Sent(2.0, '/incomplete', {'data': opening}), Sent(3.0, '/incomplete', {'data': other})],
+        strangers={'/incomplete': 1},
+    )
+    ends = {('publisher', '/names', name): SimpleNamespace(node=name) for name in ('/ada', '/bob')}
+    seen = Evidence(cast(Any, None), ends=cast(Any, ends), life=life)
+    assert EachAnswers().judge(seen).startswith('Each of 2 texts was completed by 2 nodes')
+    life.samples['/names'] = said(*came)
+    with pytest.raises(Fail, match='Only 1 of 2 nodes answered'):
+        EachAnswers().judge(seen)
 
 
 def test_answer_that_comes_late_is_refused() -> None:
@@ -112,3 +147,13 @@ def test_line_about_what_came_before_the_check_is_no_extra_line() -> None:
     seen = lines([(2.0, 'hello')], [(1.05, 'from nowhere'), (2.1, 'I heard hello')])
     with pytest.raises(Fail, match='1 lines when none had come'):
         clause.judge(seen)
+
+
+def test_line_about_a_test_is_enough_where_a_stranger_says_the_same() -> None:
+    clause = Logs('/chatter', 'log it', draw=lambda: ['hello'])
+    seen = lines([(2.0, 'hello'), (2.0, 'hello')], [(2.1, 'I heard hello')])
+    with pytest.raises(Fail):
+        clause.judge(seen)
+    seen.life.sent = [Sent(2.0, '/chatter', {'data': 'hello'})]
+    seen.life.strangers = {'/chatter': 1}
+    assert clause.judge(seen)

@@ -1,7 +1,7 @@
 """A clause on a node that answers each message that it hears.
 
 Each message is answered once, and nothing is answered that did not come. Other nodes may talk on
-the same topics meanwhile: what they send has to be answered as well.
+the same topics meanwhile: what they send from this process has to be answered as well.
 """
 
 from __future__ import annotations
@@ -103,11 +103,11 @@ class Answers(Clause):
         """Judge the answers."""
         life = evidence.life
         heard = [(s.at, value_of(s, self.field)) for s in life.on(self.inner)]
-        due = [life.is_due(self.inner, s, WITHIN_SEC) for s in life.on(self.inner)]
         came = [(s.at, value_of(s, self.field)) for s in life.on(self.outer)]
         left = list(came)
         missing, answered = [], []
-        for (at, value), is_due in zip(heard, due, strict=True):
+        for sample, is_due in life.heard(self.inner, WITHIN_SEC):
+            at, value = sample.at, value_of(sample, self.field)
             right = self.answer(value)
             if right is None:
                 continue

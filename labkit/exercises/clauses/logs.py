@@ -70,9 +70,9 @@ class Logs(Clause):
             later = [t for t, _ in heard[number + 1 :] if t > at]
             end = min([at + WITHIN_SEC, *later])
             here = [line for t, line in lines if at <= t < end]
-            same = [t for t, other in heard if at <= t < end and other == text]
+            same = [n for n, (t, other) in enumerate(heard) if at <= t < end and other == text]
             holding = [line for line in here if text in line]
-            if len(holding) < len(same):
+            if len(holding) < sum(life.is_known(self.topic, samples[n]) for n in same):
                 self._refuse(evidence, texts[number], text, here, bool(known))
             if len(holding) > len(same):
                 raise Fail(

@@ -83,10 +83,11 @@ class EachAnswers(Clause):
     def judge(self, evidence: Evidence) -> str:
         """Judge the answers to each text, of whomever it is."""
         life, nodes = evidence.life, _nodes(evidence)
-        heard = [(s.at, s.message.data) for s in life.on(INNER)]
+        heard = life.heard(INNER, WITHIN_SEC)
         came = [(s.at, s.message.data) for s in life.on(OUTER)]
         names = _names(evidence)
-        texts, answers = Counter(text for _, text in heard), Counter(text for _, text in came)
+        texts = Counter(sample.message.data for sample, _ in heard)
+        answers = Counter(text for _, text in came)
         # Of two equal texts of one check each may be answered twice, by mistake.
         pairs = [(text, name) for text in texts for name in names]
         often = any(answers[t + n] > 2 * texts[t] * names.count(n) for t, n in pairs)
@@ -94,12 +95,8 @@ class EachAnswers(Clause):
         if often and 2 * sum(answers[text + name] > 0 for text, name in pairs) > len(pairs):
             self._refuse_more(evidence, list(answers.elements()), often=True)
         left = list(came)
-        # What a stranger says comes to each process at a moment of its own: the tests are enough.
-        due = [
-            life.is_known(INNER, sample) and life.is_due(INNER, sample, WITHIN_SEC)
-            for sample in life.on(INNER)
-        ]
-        for (at, text), is_due in zip(heard, due, strict=True):
+        for sample, is_due in heard:
+            at, text = sample.at, sample.message.data
             for name in names or ['']:
                 answer = text + name if names else None
                 found = next((i for i, (t, v) in enumerate(left) if t >= at and v == answer), None)
@@ -112,11 +109,12 @@ class EachAnswers(Clause):
         # The lesson's first stage says how a sentence begins, in a process of its own.
         known = {text + name for text in texts if text != OPENING for name in ['', *names]}
         late = [(at, text) for at, text in left if at >= WITHIN_SEC]
-        extra = [text for _, text in life.without_strangers(INNER, late, known)]
+        extra = [text for _, text in life.without_strangers(INNER, late, known, len(nodes))]
         if extra:
             self._refuse_more(evidence, extra, often=False)
         shown = ' and '.join(repr(OPENING + name) for name in names)
-        return f'Each of {sum(due)} texts was completed by {len(nodes)} nodes: {shown}.'
+        count = sum(is_due for _, is_due in heard)
+        return f'Each of {count} texts was completed by {len(nodes)} nodes: {shown}.'
 
     def _refuse_more(self, evidence: Evidence, texts: Sequence[str], *, often: bool) -> NoReturn:
         raise Fail(
