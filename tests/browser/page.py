@@ -239,17 +239,21 @@ class Notebook:
         """Press the restart button, confirm, and wait for the new kernel."""
         self.page.evaluate(
             f"""() => {{
-              window.labkitStatuses = [];
+              const seen = window.labkitStatuses = [];
               const kernel = {_NOTEBOOK}.sessionContext.session.kernel;
-              kernel.statusChanged.connect((_, status) => window.labkitStatuses.push(status));
+              kernel.statusChanged.connect((_, status) => seen.push(status));
             }}"""
         )
         self._press('notebook:restart-kernel')
         self.page.locator('.jp-Dialog-button.jp-mod-accept').click()
+        # The old kernel may say once more that it is idle, after an answer to a view. Between the
+        # two, the page has no connection: then it knows nothing of a kernel.
         self.page.wait_for_function(
             """() => {
               const seen = window.labkitStatuses;
-              return seen.includes('restarting') && seen[seen.length - 1] === 'idle';
+              const restarting = seen.indexOf('restarting');
+              return restarting >= 0 && seen.indexOf('unknown', restarting) >= 0
+                && seen[seen.length - 1] === 'idle';
             }"""
         )
 
