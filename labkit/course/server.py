@@ -28,6 +28,7 @@ from urllib.parse import unquote
 __all__ = ['Quiet', 'main']
 
 _ADDRESS = re.compile(r'\s*(https?://\S+)\s*')
+_TOKEN = re.compile(r'token=\w+')
 # What tornado puts right by itself at each connection, and what is so with each fresh lesson.
 _NO_MATTER = re.compile(r'The websocket_ping_timeout|Notebook .* is not trusted')
 # The page of a notebook.
@@ -59,8 +60,12 @@ class Quiet(logging.Filter):
         if address and not self._told:
             self._told = True
             print(f'\n    {address[1]}\n', flush=True)
+        if record.exc_info:
+            # What went wrong is shown, with the request, and without the token in its address.
+            text = record.msg = _TOKEN.sub('token=...', text)
+            record.args = ()
         # The address comes once more, with what to do about it.
-        known = 'token=' in text or text in self._passed
+        known = _TOKEN.search(text) or text in self._passed
         if known or _NO_MATTER.match(text) or record.levelno < logging.WARNING:
             return False
         self._passed.add(text)

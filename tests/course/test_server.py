@@ -39,3 +39,16 @@ def test_what_is_wrong_is_said_once(log: logging.Logger, caplog: pytest.LogCaptu
     log.warning('The websocket_ping_timeout (90) cannot be longer than something else')
     log.error('it ends')
     assert caplog.messages == ['a is missing', 'b is missing', 'it ends']
+
+
+def test_an_error_in_a_request_is_shown_without_the_token(
+    log: logging.Logger, caplog: pytest.LogCaptureFixture
+) -> None:
+    log.addHandler(caplog.handler)
+    try:
+        raise ValueError('%d is no state')
+    except ValueError:
+        log.exception('Uncaught exception %s', f'DELETE {ADDRESS} 100%')
+    said = ADDRESS.replace('3aa6ae1f587de5eb', '...')
+    assert caplog.messages == [f'Uncaught exception DELETE {said} 100%']
+    assert 'ValueError' in caplog.text
