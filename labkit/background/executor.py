@@ -53,6 +53,9 @@ class BackgroundExecutor(Executor):
 
     Args:
         console: Where the output of callbacks goes.
+
+    Attributes:
+        thread: The background thread.
     """
 
     def __init__(self, console: Console) -> None:
@@ -70,21 +73,16 @@ class BackgroundExecutor(Executor):
         self._wait_set = KeptWaitSet(self)
         self._under_way = UnderWay(self._wait_set.give_up)
         self._ready: deque[Ready | Work] = deque()
-        self._thread = threading.Thread(target=self._spin, name='labkit', daemon=True)
+        self.thread = threading.Thread(target=self._spin, name='labkit', daemon=True)
 
     def start(self) -> None:
         """Start the background thread."""
-        self._thread.start()
-
-    @property
-    def thread(self) -> threading.Thread:
-        """The background thread."""
-        return self._thread
+        self.thread.start()
 
     @property
     def is_open(self) -> bool:
         """Tell whether the background thread was started, and not ended since."""
-        return self._thread.is_alive() and not self._closing
+        return self.thread.is_alive() and not self._closing
 
     @property
     def awaiting(self) -> int:
@@ -106,14 +104,14 @@ class BackgroundExecutor(Executor):
         self._closing = True
         self.wake()
         left = timeout_sec
-        while self._thread.is_alive() and not self.in_callback():
+        while self.thread.is_alive() and not self.in_callback():
             if left <= (0 if self._is_busy else -END_SEC):
                 break
-            self._thread.join(POLL_SEC)
+            self.thread.join(POLL_SEC)
             left -= POLL_SEC  # no clock: the whole machine may have stood still meanwhile
         self._under_way.cancel()
         self._wait_set.give_up()
-        return not self._thread.is_alive()
+        return not self.thread.is_alive()
 
     # -- nodes ----------------------------------------------------------------------------------
 
@@ -247,7 +245,7 @@ class BackgroundExecutor(Executor):
 
     def in_callback(self) -> bool:
         """Tell whether the caller is the background thread itself, that is, a callback."""
-        return threading.current_thread() is self._thread
+        return threading.current_thread() is self.thread
 
     def refuse_in_callback(self, what: str, todo: str = '') -> None:
         """Raise a LabError when a callback or a condition calls: it would wait for itself.

@@ -132,7 +132,7 @@ class Life:
     def heard(self, topic: str, within: float) -> list[tuple[Lived, bool]]:
         """Return the messages of a topic, and whether an answer to each must have come by now.
 
-        Those to which one must come first: so no other takes theirs. They have `within` seconds.
+        It is due `within` seconds. Those that must have one stand first: no other takes theirs.
         """
         found = [
             (sample, self.is_known(topic, sample) and sample.at < self.seconds - within)

@@ -59,7 +59,7 @@ def test_a_thread_that_has_ended_is_made_up_for_by_the_next_start(kernel):
     # Nothing that is known ends it; should something do so, the next cell works again.
     ended = kernel.run(
         'executor = runtime._executor; executor._closing = True; executor.wake()\n'
-        'executor._thread.join(); executor._closing = False\nprint(runtime.started)'
+        'executor.thread.join(); executor._closing = False\nprint(runtime.started)'
     )
     assert (ended.error, ended.text) == ('', 'False\n')
     again = 'ticker = lab.spin(Ticker(lambda node: None))\nlab.wait_until(lambda: ticker.count)'
