@@ -1,8 +1,8 @@
 """ROS 2 in a notebook, pleasant and safe: `import labkit as lab`.
 
-Importing this package is light. It sets the environment that ROS reads when it is loaded, and
-loads the rest when a name is first used, so that it works in a bare Python too: that is how
-`python3 -m labkit` sets up a fresh machine.
+Importing this package is cheap. It sets the environment variables that ROS reads when it is
+loaded, and imports modules when a name is first used, so that it works in a bare Python too: that
+is how `python3 -m labkit` sets up a fresh machine.
 """
 
 from __future__ import annotations
@@ -11,32 +11,35 @@ import importlib
 import sys
 from typing import TYPE_CHECKING
 
+from labkit import stop_button
 from labkit.errors import LabError, LabTimeout, SetupError
 from labkit.settings import prepare_environment
 
 if TYPE_CHECKING:
     # For editors and type checkers, which can't follow `__getattr__`.
-    from labkit.background.child_processes import processes
-    from labkit.background.joining import join
-    from labkit.background.spinning import remove, spin, start, stop
-    from labkit.background.waiting import (
+    from labkit.asking.waiting import (
         listen,
         wait_for_message,
         wait_for_subscribers,
         wait_until,
     )
-    from labkit.background.workspace import build, source
+    from labkit.background.runtime import remove, spin, start, stop
     from labkit.bags.player import play
     from labkit.bags.recorder import record
     from labkit.checkup.report import doctor
     from labkit.exercises.lesson import lesson
     from labkit.exercises.membership import join_class, leave_class
     from labkit.exercises.progress import progress
+    from labkit.launching.launched import launch
     from labkit.packages.export import export
+    from labkit.packages.workspace import build, source
+    from labkit.programs.child_processes import processes
+    from labkit.sharing.joining import join
     from labkit.sim.turtlebot import Turtlebot
     from labkit.teaching.classroom import classroom
     from labkit.views.arena import arena
     from labkit.views.bag import bag
+    from labkit.views.dock import dock
     from labkit.views.graph import graph
     from labkit.views.image import image
     from labkit.views.monitor import monitor
@@ -54,12 +57,14 @@ __all__ = [
     'bag',
     'build',
     'classroom',
+    'dock',
     'doctor',
     'export',
     'graph',
     'image',
     'join',
     'join_class',
+    'launch',
     'leave_class',
     'lesson',
     'listen',
@@ -81,42 +86,44 @@ __all__ = [
     'wait_until',
 ]
 
-# Public name -> the module that defines it.
+# Public name -> its module.
 _HOMES = {
     'Turtlebot': 'labkit.sim.turtlebot',
     'arena': 'labkit.views.arena',
     'bag': 'labkit.views.bag',
-    'build': 'labkit.background.workspace',
+    'build': 'labkit.packages.workspace',
     'classroom': 'labkit.teaching.classroom',
+    'dock': 'labkit.views.dock',
     'doctor': 'labkit.checkup.report',
     'export': 'labkit.packages.export',
     'graph': 'labkit.views.graph',
     'image': 'labkit.views.image',
-    'join': 'labkit.background.joining',
+    'join': 'labkit.sharing.joining',
     'join_class': 'labkit.exercises.membership',
+    'launch': 'labkit.launching.launched',
     'leave_class': 'labkit.exercises.membership',
     'lesson': 'labkit.exercises.lesson',
-    'listen': 'labkit.background.waiting',
+    'listen': 'labkit.asking.waiting',
     'monitor': 'labkit.views.monitor',
     'play': 'labkit.bags.player',
     'plot': 'labkit.views.plot',
-    'processes': 'labkit.background.child_processes',
+    'processes': 'labkit.programs.child_processes',
     'progress': 'labkit.exercises.progress',
     'projector': 'labkit.views.projector',
     'record': 'labkit.bags.recorder',
-    'remove': 'labkit.background.spinning',
-    'source': 'labkit.background.workspace',
-    'spin': 'labkit.background.spinning',
-    'start': 'labkit.background.spinning',
-    'stop': 'labkit.background.spinning',
+    'remove': 'labkit.background.runtime',
+    'source': 'labkit.packages.workspace',
+    'spin': 'labkit.background.runtime',
+    'start': 'labkit.background.runtime',
+    'stop': 'labkit.background.runtime',
     'teleop': 'labkit.views.teleop',
-    'wait_for_message': 'labkit.background.waiting',
-    'wait_for_subscribers': 'labkit.background.waiting',
-    'wait_until': 'labkit.background.waiting',
+    'wait_for_message': 'labkit.asking.waiting',
+    'wait_for_subscribers': 'labkit.asking.waiting',
+    'wait_until': 'labkit.asking.waiting',
 }
 
-# Reading one of these names starts ROS. In `lab.spin(Talker())` Python reads `lab.spin`, then
-# builds the talker, which needs ROS, then calls; and after `lab.lesson(...)` a lesson makes nodes.
+# Reading these names starts ROS. In `lab.spin(Talker())` Python reads `lab.spin`, then makes the
+# talker, which needs ROS, then calls; and after `lab.lesson(...)` a lesson makes nodes.
 _START_ROS = ('lesson', 'spin')
 
 
@@ -124,9 +131,10 @@ def __getattr__(name: str) -> object:
     if name not in _HOMES:
         raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
     try:
-        function = getattr(importlib.import_module(_HOMES[name]), name)
-        if name in _START_ROS:
-            importlib.import_module('labkit.background.spinning').start()
+        with stop_button.held():
+            function = getattr(importlib.import_module(_HOMES[name]), name)
+            if name in _START_ROS:
+                importlib.import_module('labkit.background.runtime').start()
     except ModuleNotFoundError as error:
         raise SetupError(
             f'{error.name!r} is missing in this Python, {sys.executable}.',
@@ -142,5 +150,15 @@ def __dir__() -> list[str]:
 
 prepare_environment()
 if 'IPython' in sys.modules:
-    for _home in ('labkit.ros2.magic', 'labkit.views.node_card', 'labkit.views.figure'):
-        importlib.import_module(_home).register()
+    with stop_button.held():
+        for _home in (
+            'labkit.packages.imports',
+            'labkit.programs.shell_cells',
+            'labkit.ros2.magic',
+            'labkit.views.launch_card',
+            'labkit.views.node_card',
+            'labkit.views.matplotlib_figures',
+            'labkit.silent',
+            'labkit.asking',
+        ):
+            importlib.import_module(_home).register()

@@ -1,4 +1,4 @@
-"""The command line: `python3 -m labkit lab`, `python3 -m labkit test`, and more of the same."""
+"""The command line: `python3 -m labkit lab`, `python3 -m labkit test`, and others."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from labkit.errors import LabError, SetupError
 
 __all__ = ['main']
 
-# Command -> the module whose `main(argv)` runs it, given all that follows.
+# Command -> the module whose `main(argv)` runs it with all further words.
 _FORWARDED = {
     'classroom': 'labkit.teaching.command',
     'progress': 'labkit.exercises.progress',
@@ -28,10 +28,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run one command of labkit.
 
     Args:
-        argv: The words after `labkit`. Those of the command line if None.
+        argv: The words after `labkit`; those of the command line if None.
 
     Returns:
-        The exit code: 2 if this machine, or what was typed, is not as it has to be.
+        The exit code: 2 if this machine, or the command, is not right.
     """
     words = list(sys.argv[1:] if argv is None else argv)
     try:
@@ -79,10 +79,16 @@ def _run(words: list[str]) -> int:
 
         print(reset(options.lesson))
         return 0
+    if options.command == 'restore':
+        from labkit.course.copies import restore
+
+        print('\n'.join(restore(options.notebook, options.at)))
+        return 0
     if options.command == 'docs':
         from labkit.course.public_names import write_page
+        from labkit.course.site import build_site
 
-        print(write_page())
+        print(build_site(Path(options.out)) if options.site else write_page())
         return 0
     if options.command == 'doctor':
         return _doctor(words)
@@ -101,7 +107,7 @@ def _doctor(words: Sequence[str]) -> int:
     try:
         _enter_environment(words)
     except LabError:
-        pass  # no Python with ROS: the doctor says so, among other things
+        pass  # no Python with ROS: the doctor reports that, among others
     from labkit.checkup.report import doctor
 
     report = doctor()
@@ -110,7 +116,7 @@ def _doctor(words: Sequence[str]) -> int:
 
 
 def _forwarded() -> list[str]:
-    """Return the commands of parts of labkit that are there."""
+    """Return the commands whose modules are installed."""
     folder = Path(__file__).parent.parent
     found = []
     for command, module in _FORWARDED.items():
@@ -121,7 +127,7 @@ def _forwarded() -> list[str]:
 
 
 def _enter_environment(words: Sequence[str]) -> None:
-    """Go on in the environment's Python, unless this one is an environment with ROS itself."""
+    """Continue in the environment's Python, unless this one is an environment with ROS."""
     from labkit.setup.environment import PYTHON, VENV, environment_variables, existing_environment
 
     has_ros = importlib.util.find_spec('rclpy') is not None and sys.version_info >= (3, 10)
@@ -131,7 +137,7 @@ def _enter_environment(words: Sequence[str]) -> None:
             f'The environment {str(VENV)!r} is without ROS 2.',
             todo='Delete that folder, and make it anew: python3 -m labkit lab',
         )
-    # Another environment with ROS is the learner's choice; packages beside the system's are not.
+    # Another environment with ROS is the learner's choice; packages of the system are not.
     chosen = inside or sys.prefix != sys.base_prefix or not PYTHON.exists()
     if not (has_ros and chosen):
         python = existing_environment()
@@ -206,7 +212,18 @@ def _parser() -> argparse.ArgumentParser:
     form.add_argument('--solved', action='store_true', help='with solutions in their cells')
     reset = add('reset', 'Get a fresh copy of a lesson, and keep the old one as a backup')
     reset.add_argument('lesson', metavar='NN', help='number or name of the lesson')
-    add('docs', 'Write docs/api.md anew from the docstrings of the public names')
+    restore = add(
+        'restore',
+        'Get notebooks back that are gone or broken, as you last saved them',
+        'Without a number: all that are gone, can not be read, or are as new.',
+    )
+    restore.add_argument(
+        'notebook', nargs='?', metavar='NN', help='number or name of a lesson, as it was before'
+    )
+    restore.add_argument('--at', metavar='TIME', help="such as '2026-11-26 09:4'; needs NN")
+    docs = add('docs', 'Write docs/api.md and docs/faults.md anew from the code')
+    docs.add_argument('--site', action='store_true', help='build the documentation site instead')
+    docs.add_argument('--out', default='site', metavar='DIR', help='its folder (%(default)s)')
     for name in _forwarded():
         text = {
             'classroom': 'Show what the learners of a class share, or write it as a table',

@@ -1,4 +1,4 @@
-"""The numbers of ROS domains: which are safe, which lie between two others, and their ports."""
+"""ROS domain ids: which are safe, the extra ones between two others, and their ports."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ __all__ = [
     'PORT_BETWEEN',
     'PROFILE',
     'PROFILES_FILE',
+    'THIS_MACHINE',
     'between_is_possible',
     'check_domain_id',
     'check_profile',
@@ -21,60 +22,68 @@ __all__ = [
     'choose_profile',
     'counts_ports',
     'first_port',
+    'is_ours',
+    'ports',
     'read_domain_id',
     'read_shared_domain_id',
     'set_domain',
+    'stays_here',
 ]
 
-# Domains 0 to 101 are safe on Linux: above them the ports of DDS overlap with the range that the
-# system hands out by itself (docs.ros.org, "The ROS_DOMAIN_ID"). Those of 215 to 232 lie above it,
-# and then there are no ports left.
+# Domains 0 to 101 are safe on Linux: above them the ports of DDS overlap with the ephemeral ports
+# of the system (docs.ros.org, "The ROS_DOMAIN_ID"). Those of 215 to 232 are above that range, and
+# after them there are no ports left.
 LAST_DOMAIN_ID = 101
 _FIRST_ABOVE, _LAST_OF_ALL = 215, 232
 
 # A hundred domains are too few for a class, and each has more ports than it uses: 250, of which
-# the 32 processes that look for each other on one machine take 64 (rmw_fastrtps asks Fast DDS for
-# so many, `maxInitialPeersRange`). So there is room for three more domains between two. With the
-# profile `domains_between.xml`, Fast DDS counts ports instead of domains: domain 4776 begins 4776
-# ports after port 7000. No such number is one of 0 to 232, and a program without the profile ends
-# with the words that the number is too high. It never lands in the domain of somebody else.
+# the 32 processes that look for each other on one machine take 64 (rmw_fastrtps sets
+# `maxInitialPeersRange` of Fast DDS to 32). So there is room for three more domains between two.
+# With the profile `domains_between.xml`, Fast DDS counts ports instead of domains: domain 4776
+# starts 4776 ports after port 7000. No such number is in 0 to 232, and a program without the
+# profile ends with the error that the number is too high. It never ends up in the domain of
+# somebody else.
 #
-# A process is looked for at every second port. The domains begin 63 ports after each other, so
-# those of neighbours are even and odd in turn: only with 63 processes does one meet the next but
-# one.
+# Processes use every second port. The domains are 63 ports apart, so those of neighbours are
+# alternately even and odd: only with 63 processes does one meet the next but one.
 _PORT, _PORTS = 7400, 250
 PORT_BETWEEN = 7000
 _STEP = 63
-# After 101 and after 232 there is no room: ports that the system hands out, and the last port.
+# After 101 and after 232 there is no room: ephemeral ports, and the last port.
 _SAFE = (*range(1, LAST_DOMAIN_ID), *range(_FIRST_ABOVE, _LAST_OF_ALL))
 BETWEEN = tuple(
     _PORT - PORT_BETWEEN + _PORTS * domain_id + _STEP * place
-    # Those in the middle first, they are the furthest from others.
+    # Those in the middle first: they are furthest from others.
     for place in (2, 1, 3)
     for domain_id in _SAFE
 )
-"""The numbers of the domains that lie between two others."""
+"""The ids of the domains between two others."""
 
 PROFILES_FILE = 'FASTRTPS_DEFAULT_PROFILES_FILE'
-"""The variable that tells Fast DDS 2 (Jazzy's) where the profile lies."""
-PROFILE = Path(__file__).with_name('background') / 'domains_between.xml'
+"""The variable with the path of the profile for Fast DDS 2 (Jazzy)."""
+PROFILE = Path(__file__).with_name('sharing') / 'domains_between.xml'
+"""That of the domains between."""
+THIS_MACHINE = PROFILE.with_name('this_machine.xml')
+"""That of the other domains, while nothing says that other computers may take part."""
+# Other computers may take part if one of these is set, or the range is wider.
+_RANGE, _OTHERS = 'ROS_AUTOMATIC_DISCOVERY_RANGE', ('ROS_STATIC_PEERS', 'ROS_DISCOVERY_SERVER')
 
 
 def read_domain_id() -> int | None:
-    """Return the domain that `ROS_DOMAIN_ID` asks for, None if it is not set.
+    """Return the domain set in `ROS_DOMAIN_ID`, None if it is not set.
 
     Raises:
-        LabError: It is set to something that is not a domain.
+        LabError: It is not a domain.
     """
     otherwise = 'then each notebook takes a domain of its own.'
     return _read_domain('ROS_DOMAIN_ID', BETWEEN, otherwise)
 
 
 def read_shared_domain_id() -> int | None:
-    """Return the domain that `LABKIT_SHARED_DOMAIN_ID` asks for, None if it is not set.
+    """Return the domain set in `LABKIT_SHARED_DOMAIN_ID`, None if it is not set.
 
     Raises:
-        LabError: It is set to something that is not a domain that every computer knows.
+        LabError: It is not a domain that every computer knows.
     """
     return _read_domain('LABKIT_SHARED_DOMAIN_ID', (), 'then lab.join() takes one that is free.')
 
@@ -116,14 +125,19 @@ def _check(domain_id: object, good: Sequence[int], more: str) -> None:
 
 
 def first_port(domain_id: int) -> int:
-    """Return the first of the ports that belong to a domain."""
+    """Return the first port of a domain."""
     if domain_id in BETWEEN:
         return PORT_BETWEEN + domain_id
     return _PORT + _PORTS * domain_id
 
 
+def ports(domain_id: int) -> range:
+    """Return the ports that processes of a domain have."""
+    return range(first_port(domain_id), first_port(domain_id) + _STEP)
+
+
 def set_domain(domain_id: int) -> None:
-    """Let ROS take part in a domain, in this process and in those that it starts.
+    """Make ROS join a domain, in this process and its children.
 
     Raises:
         LabError: See `check_profile`.
@@ -134,34 +148,57 @@ def set_domain(domain_id: int) -> None:
 
 
 def check_profile(domain_id: int) -> None:
-    """Raise a LabError if the variables keep Fast DDS from the domains between, and it is one."""
+    """Raise a LabError if a domain lies between two others and the variables rule that out."""
     if domain_id in BETWEEN and not between_is_possible():
+        names = 'RMW_IMPLEMENTATION', PROFILES_FILE, _RANGE, *_OTHERS
         raise LabError(
-            f'Domain {domain_id} needs Fast DDS, and a profile of its own, but these are set: '
-            f'RMW_IMPLEMENTATION={os.environ.get("RMW_IMPLEMENTATION", "")} '
-            f'{PROFILES_FILE}={os.environ.get(PROFILES_FILE, "")}',
+            f'Domain {domain_id} needs Fast DDS, a profile of its own, and nobody from outside, '
+            f'but these are set: {" ".join(f"{n}={os.environ[n]}" for n in names if _is_set(n))}',
             todo='Unset them and restart the kernel, or choose a domain from 0 to '
             f'{LAST_DOMAIN_ID}.',
         )
 
 
+def stays_here() -> bool:
+    """Return whether the variables say that no other computer may take part."""
+    reach = os.environ.get(_RANGE)
+    return reach == 'OFF' or (reach == 'LOCALHOST' and not any(map(_is_set, _OTHERS)))
+
+
 def between_is_possible() -> bool:
-    """Tell whether ROS, as the variables are, can take part in a domain between two others."""
+    """Return whether the variables allow domains between two others."""
+    return _is_free() and stays_here()
+
+
+def _is_free() -> bool:
+    """Return whether Fast DDS is used, with no profile of the learner's own."""
     middleware = os.environ.get('RMW_IMPLEMENTATION', '')
-    free = not os.environ.get(PROFILES_FILE) or counts_ports()
-    return free and middleware in ('', 'rmw_fastrtps_cpp')
+    profile = os.environ.get(PROFILES_FILE, '')
+    return (not profile or is_ours(profile)) and middleware in ('', 'rmw_fastrtps_cpp')
+
+
+def _is_set(variable: str) -> bool:
+    return bool(os.environ.get(variable))
+
+
+def is_ours(profile: str) -> bool:
+    """Return whether a profile is one of labkit's."""
+    # Maybe that of another environment, which is the same.
+    return Path(profile).name in (PROFILE.name, THIS_MACHINE.name)
 
 
 def counts_ports() -> bool:
-    """Tell whether the variables name the profile of the domains between."""
-    # Perhaps that of another environment: it is the same.
+    """Return whether the variables name the profile of the domains between."""
     return Path(os.environ.get(PROFILES_FILE, '')).name == PROFILE.name
 
 
 def choose_profile() -> None:
-    """Name the profile that `ROS_DOMAIN_ID` needs. One that the learner has named stays."""
-    if _number(os.environ.get('ROS_DOMAIN_ID', '')) in BETWEEN:
-        if between_is_possible():
-            os.environ[PROFILES_FILE] = str(PROFILE)
-    elif counts_ports():
-        del os.environ[PROFILES_FILE]
+    """Set the profile that the other variables need, unless the learner has set one."""
+    if not _is_free():
+        return
+    if _number(os.environ.get('ROS_DOMAIN_ID', '')) in BETWEEN and stays_here():
+        os.environ[PROFILES_FILE] = str(PROFILE)
+    elif os.environ.get(_RANGE) == 'LOCALHOST' and stays_here():
+        os.environ[PROFILES_FILE] = str(THIS_MACHINE)
+    else:
+        os.environ.pop(PROFILES_FILE, None)

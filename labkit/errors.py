@@ -6,21 +6,32 @@ import os
 import sys
 from collections.abc import Iterable, Sequence
 
-__all__ = ['LabError', 'LabTimeout', 'SetupError', 'cell_name', 'first_few', 'nearest']
+__all__ = [
+    'LabError',
+    'LabTimeout',
+    'SetupError',
+    'cell_name',
+    'first_few',
+    'nearest',
+    'printable',
+    'quoted',
+]
 
-# Characters in a line of a message in a notebook: what a projector shows side by side.
+# Width of a message in a notebook: what fits on a projector.
 WIDTH = 88
+# Most characters of a quoted value: two lines of that.
+MOST_QUOTED = 2 * WIDTH
 
 
 class LabError(Exception):
-    """Report something that a learner can put right.
+    """Report something that a learner can fix.
 
     In a notebook it is shown without a traceback: the line of the cell that led to it, then the
     message. In a script it is an ordinary exception.
 
     Args:
         message: What was expected and what was seen, values shown with `!r`.
-        todo: What to do next, as one or more sentences. Shown on a line of its own.
+        todo: What to do next, in one or more sentences. Shown on a separate line.
     """
 
     def __init__(self, message: str, *, todo: str = '') -> None:
@@ -30,14 +41,14 @@ class LabError(Exception):
 
     def _render_traceback_(self) -> list[str]:
         """Return the lines that IPython shows instead of a traceback."""
-        place = _calling_line(self)
-        # The name that a learner may know: those made on these have other users.
+        place = _learner_line(self)
+        # The public name: subclasses are for internal use.
         name = next(c.__name__ for c in type(self).__mro__ if c.__module__ == __name__)
         return [place] * bool(place) + _wrapped(f'{name}: {self}')
 
 
 def _wrapped(text: str) -> list[str]:
-    """Return the lines of a text, long ones broken between words; JupyterLab breaks words."""
+    """Return the lines of a text, wrapped between words; JupyterLab would break words."""
     import textwrap
 
     wrap = textwrap.TextWrapper(WIDTH, break_long_words=False, break_on_hyphens=False)
@@ -49,15 +60,15 @@ class LabTimeout(LabError, TimeoutError):
 
 
 class SetupError(LabError):
-    """Report that this machine, or its environment, can't run the course as it is.
+    """Report that this machine, or its environment, can't run the course.
 
-    The command line shows the message alone and ends with exit code 2.
+    The command line shows only the message and ends with exit code 2.
     """
 
 
-def _calling_line(error: BaseException) -> str:
-    """Return where in the learner's own code the error came up, '' if that is not known."""
-    # IPython is there whenever this is asked: it is what asks.
+def _learner_line(error: BaseException) -> str:
+    """Return the line of the learner's code that led to an error, '' if unknown."""
+    # Called by IPython, so IPython is there.
     import linecache
 
     place = ''
@@ -73,14 +84,14 @@ def _calling_line(error: BaseException) -> str:
 
 
 def cell_name(filename: str) -> str:
-    """Return the notebook cell that a code object's file name stands for.
+    """Return the notebook cell of a code object's file name.
 
     Args:
         filename: `co_filename` of a code object.
 
     Returns:
-        `'Cell In[3]'`, or `''` when the file is not a cell of the running notebook. An IPython
-        before 8.0 does not tell the number: then it is `'Cell'`.
+        `'Cell In[3]'`, or `''` if the file is not a cell of the running notebook. IPython before
+        8.0 does not tell the number: then it is `'Cell'`.
     """
     ipython = sys.modules.get('IPython')
     shell = ipython.get_ipython() if ipython is not None else None
@@ -93,10 +104,10 @@ def cell_name(filename: str) -> str:
 
 
 def nearest(name: str, names: Iterable[str]) -> str:
-    """Return the one of `names` that was most likely meant, '' if none is much like it.
+    """Return the one of `names` that was most likely meant, '' if none is similar.
 
-    Small and capital letters and underscores count for nothing, and a name that ends in the same
-    word is near: `/robot/odom` to `/odom`.
+    Case and underscores are ignored, and names with the same last part are similar:
+    `/robot/odom` and `/odom`.
     """
     import difflib
 
@@ -110,11 +121,26 @@ def nearest(name: str, names: Iterable[str]) -> str:
 
 
 def first_few(names: Sequence[str]) -> str:
-    """Return names as the beginning of a sentence: three of them, and how many more there are."""
+    """Return up to three names, and how many more there are."""
     shown = ', '.join(names[:3])
     return f'{shown} and {len(names) - 3} more' if len(names) > 3 else shown
 
 
+def quoted(value: object) -> str:
+    """Return a value as it is written in Python, its middle left out if that is long."""
+    try:
+        text = repr(value)
+    except Exception:  # of somebody's own class, or nested too deep
+        return f'<{type(value).__name__}>'
+    half = MOST_QUOTED // 2
+    return text if len(text) <= MOST_QUOTED else f'{text[:half]} ... {text[-half:]}'
+
+
+def printable(text: str) -> str:
+    """Return text with `?` for what could move a terminal's cursor, end a line, or is no text."""
+    return ''.join(char if char.isprintable() else '?' for char in text)
+
+
 def _plain(name: str) -> str:
-    """Return the last part of a name, without what is easily mixed up: capitals, underscores."""
+    """Return the last part of a name, without case and underscores."""
     return name.rsplit('/', 1)[-1].lower().replace('_', '')

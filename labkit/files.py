@@ -1,8 +1,13 @@
-"""Write files whole or not at all, and tell what lies in a folder. Runs in Python from 3.8 on."""
+"""Write files whole or not at all, read those of others, and locate paths.
+
+Runs in Python from 3.8 on.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import errno
+import json
 import os
 import secrets
 import stat
@@ -10,16 +15,25 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, BinaryIO, Union
+from typing import IO, Any, BinaryIO, Union
 
-__all__ = ['is_inside', 'locked', 'rename_to_free', 'write_atomically']
+__all__ = [
+    'is_inside',
+    'locked',
+    'read_json',
+    'read_limited',
+    'rename_to_free',
+    'write_atomically',
+]
 
 AnyPath = Union[str, 'os.PathLike[str]']
 
-# Files on their way. The same short form for all: a lesson's name may be as long as a name can be.
+# Temporary files. Short names: a lesson's name may already have the maximum length.
 _PREFIX, _SUFFIX = '.labkit-', '.new'
-# What a new file may be used for, before the umask takes its part away.
+# Permissions of a new file, before the umask.
 _NEW_MODE = 0o666
+# Most of a file that somebody else may have made.
+MOST_BYTES = 1_000_000
 
 
 def write_atomically(
@@ -30,23 +44,23 @@ def write_atomically(
     follow_links: bool = True,
     mode: int | None = None,
 ) -> None:
-    """Put a file in its place, all of it or nothing, even if the machine is switched off.
+    """Write a file completely or not at all, even if the machine is switched off.
 
-    A file that is there keeps its permissions, a link stays a link and the file that it leads to
-    is written; a new file gets the permissions that the umask leaves. Any number of processes
-    and threads may write the same file: each reader finds what one of them has written.
+    An existing file keeps its permissions; a link stays, and its target is written; a new file
+    gets the permissions of the umask. Any number of processes and threads may write the same file:
+    each reader finds the content of one of them.
 
     Args:
-        path: The file. Its folder has to be there.
-        content: What it is to hold.
-        replace: Whether a file of that name may be replaced.
-        follow_links: Whether a link stays. In a folder of others', one may lead anywhere: then
-            the link itself is replaced.
-        mode: Its permissions, whatever was there and whatever the umask says.
+        path: The file. Its folder has to exist.
+        content: Its new content.
+        replace: Whether an existing file may be replaced.
+        follow_links: Whether to follow a link. In a folder of other people, it may lead anywhere:
+            then the link itself is replaced.
+        mode: Permissions, regardless of an existing file and the umask.
 
     Raises:
-        FileExistsError: It is there, and is not to be replaced.
-        OSError: It can't be written. Then all is as it was.
+        FileExistsError: The file exists, and must not be replaced.
+        OSError: It can't be written. Then nothing has changed.
     """
     target = Path(os.path.realpath(path)) if replace and follow_links else path
     _remove_leftovers(target.parent)
@@ -62,7 +76,7 @@ def write_atomically(
             else:
                 rename_to_free(new, target)
     except OSError as error:
-        # The name that the caller, and a learner, knows.
+        # The name known to the caller and the learner.
         error.filename, error.filename2 = str(path), None
         raise
     _sync_folder(target.parent)
@@ -70,17 +84,17 @@ def write_atomically(
 
 @contextmanager
 def locked(path: Path, timeout_sec: float) -> Iterator[None]:
-    """Keep other processes out, as long as all of them ask here.
+    """Hold a lock between processes that use this function.
 
-    Who has just had the lock queues up behind who waits: one that wants it again and again would
-    else keep the others out for as long as it likes.
+    A process that has just had the lock queues up behind those that wait: otherwise one that takes
+    it again and again would starve the others.
 
     Args:
-        path: An empty file for the lock. It stays, and so does one beside it, for the queue.
+        path: An empty file for the lock. It stays, as does one beside it for the queue.
         timeout_sec: Seconds to wait for others.
 
     Raises:
-        OSError: Another process keeps it.
+        OSError: Another process holds it.
     """
     end = time.monotonic() + timeout_sec
     with path.open('w') as file:
@@ -91,7 +105,7 @@ def locked(path: Path, timeout_sec: float) -> Iterator[None]:
 
 
 def rename_to_free(old: Path, new: Path) -> None:
-    """Rename a file to a name that nothing has, even if another program takes it just now.
+    """Rename a file to an unused name, safe against other programs taking it at the same time.
 
     Args:
         old: A file, a link or a folder.
@@ -99,33 +113,70 @@ def rename_to_free(old: Path, new: Path) -> None:
 
     Raises:
         FileExistsError: The name is taken.
-        OSError: It can't be renamed. Then all is as it was.
+        OSError: It can't be renamed. Then nothing has changed.
     """
     try:
         os.link(old, new)
     except FileExistsError:
         raise
     except OSError:
-        # A folder, or a file system without hard links, such as a Windows drive: take the name
-        # with something empty, which is then replaced.
-        _take(new, folder=old.is_dir() and not old.is_symlink())
+        # A folder, or a file system without hard links, such as a Windows drive: reserve the name
+        # with something empty, and replace that.
+        _reserve(new, folder=old.is_dir() and not old.is_symlink())
         try:
             os.replace(old, new)
         except BaseException:
-            _give_back(new)
+            _release(new)
             raise
     else:
         os.unlink(old)
 
 
-def is_inside(path: AnyPath, folder: AnyPath, *, follow_links: bool = True) -> bool:
-    """Tell whether a path leads into a folder, or is that folder.
+def read_limited(path: AnyPath, most_bytes: int = MOST_BYTES) -> bytes:
+    """Return the content of a file that somebody else may have made.
 
     Args:
-        path: A file or a folder; it need not be there.
+        path: The file.
+        most_bytes: Its greatest size.
+
+    Raises:
+        OSError: It can't be read, is larger, or is not a regular file: a pipe would block.
+    """
+    flags = getattr(os, 'O_CLOEXEC', 0) | getattr(os, 'O_NONBLOCK', 0)
+    handle = os.open(path, os.O_RDONLY | flags)
+    try:
+        if not stat.S_ISREG(os.fstat(handle).st_mode):
+            raise OSError(errno.EINVAL, 'Not a regular file', os.fspath(path))
+        with open(handle, 'rb', closefd=False) as file:
+            content = file.read(most_bytes + 1)
+    finally:
+        os.close(handle)
+    if len(content) > most_bytes:
+        raise OSError(errno.EFBIG, f'Larger than {most_bytes} bytes', os.fspath(path))
+    return content
+
+
+def read_json(path: AnyPath, most_bytes: int = MOST_BYTES) -> Any:
+    """Return the data of a JSON file that somebody else may have made.
+
+    Raises:
+        OSError: As for `read_limited`.
+        ValueError: It is not JSON, or nested too deep.
+    """
+    try:
+        return json.loads(read_limited(path, most_bytes))
+    except RecursionError as error:
+        raise ValueError('nested too deep') from error
+
+
+def is_inside(path: AnyPath, folder: AnyPath, *, follow_links: bool = True) -> bool:
+    """Return whether a path is in a folder, or is that folder.
+
+    Args:
+        path: A file or a folder, which need not exist.
         folder: The folder.
-        follow_links: Whether it counts where links lead to, not where they lie. An environment's
-            `bin/python` lies in it, and leads out of it.
+        follow_links: Whether to resolve links. An environment's `bin/python` is in it, but links
+            out of it.
     """
     form = os.path.realpath if follow_links else os.path.normpath
     inner, outer = form(os.fspath(path)), form(os.fspath(folder))
@@ -136,7 +187,7 @@ def is_inside(path: AnyPath, folder: AnyPath, *, follow_links: bool = True) -> b
 
 
 def _mode(path: Path) -> int | None:
-    """Return the permissions of a file, None if it is not there."""
+    """Return the permissions of a file, None if it does not exist."""
     try:
         return stat.S_IMODE(os.stat(path).st_mode)
     except FileNotFoundError:
@@ -145,20 +196,20 @@ def _mode(path: Path) -> int | None:
 
 @contextmanager
 def _new_file(folder: Path, mode: int | None) -> Iterator[tuple[Path, BinaryIO]]:
-    """Make a file that is locked while it is open, and gone then unless it was renamed."""
+    """Create a file that is locked while open, and removed afterwards unless it was renamed."""
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, 'O_CLOEXEC', 0)
     while True:
         new = folder / f'{_PREFIX}{secrets.token_hex(8)}{_SUFFIX}'
-        # With its permissions from the start: nobody else may open it in between.
+        # With its final permissions: nobody else may open it in between.
         handle = os.open(new, flags, _NEW_MODE if mode is None else mode)
         with open(handle, 'wb') as file:
             try:
                 _lock(handle, wait=True)
                 if not os.path.lexists(new):
-                    continue  # before it was locked, somebody took it for left behind
+                    continue  # another process took it for a leftover before it was locked
                 if mode is not None:
                     with contextlib.suppress(PermissionError):  # a drive without permissions
-                        os.fchmod(handle, mode)  # what the umask has taken away
+                        os.fchmod(handle, mode)  # undo the umask
                 yield new, file
                 return
             finally:
@@ -167,7 +218,7 @@ def _new_file(folder: Path, mode: int | None) -> Iterator[tuple[Path, BinaryIO]]
 
 
 def _remove_leftovers(folder: Path) -> None:
-    """Remove what killed processes have left in a folder: nobody has a lock on that.
+    """Remove the unlocked files of killed processes from a folder.
 
     A process id would not do: the folder may be shared with other machines and containers.
     """
@@ -175,10 +226,10 @@ def _remove_leftovers(folder: Path) -> None:
         for entry in list(os.scandir(folder)):
             if entry.name.startswith(_PREFIX) and entry.name.endswith(_SUFFIX):
                 with contextlib.suppress(OSError):
-                    _remove_if_left(entry.path)
+                    _remove_if_unlocked(entry.path)
 
 
-def _remove_if_left(path: str) -> None:
+def _remove_if_unlocked(path: str) -> None:
     handle = os.open(path, os.O_WRONLY | getattr(os, 'O_NOFOLLOW', 0))
     try:
         if _lock(handle, wait=False):
@@ -188,7 +239,7 @@ def _remove_if_left(path: str) -> None:
 
 
 def _lock(handle: int, *, wait: bool) -> bool:
-    """Lock an open file; return False if another has locked it, or if files can't be locked."""
+    """Lock an open file; return False if another process holds it, or locking is unsupported."""
     try:
         import fcntl  # only there on Unix
 
@@ -210,14 +261,14 @@ def _lock_until(end: float, file: IO[str]) -> None:
             time.sleep(0.005)
 
 
-def _take(path: Path, *, folder: bool) -> None:
+def _reserve(path: Path, *, folder: bool) -> None:
     if folder:
         os.mkdir(path)
     else:
         os.close(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
 
 
-def _give_back(path: Path) -> None:
+def _release(path: Path) -> None:
     with contextlib.suppress(OSError):
         if path.is_dir():
             os.rmdir(path)
@@ -226,7 +277,7 @@ def _give_back(path: Path) -> None:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Make a new name last; some file systems can't be asked to."""
+    """Make a new name durable; some file systems do not support it."""
     with contextlib.suppress(OSError):
         handle = os.open(folder, os.O_RDONLY)
         try:

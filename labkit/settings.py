@@ -1,10 +1,14 @@
-"""Environment variables, switches, and who looks at what is shown."""
+"""Environment variables, switches, and the audience of outputs."""
 
 from __future__ import annotations
 
+import atexit
 import functools
 import os
 import sys
+import tempfile
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,9 +16,11 @@ from labkit import domain_ids
 
 __all__ = [
     'LEARNER',
+    'LONG_SEC',
     'RECORDING',
     'TERMINAL',
     'Audience',
+    'after_start',
     'audience',
     'dropped_variables',
     'in_kernel',
@@ -24,38 +30,77 @@ __all__ = [
     'variant_seed',
 ]
 
-# What `prepare_environment` has taken out of the environment, with the values.
+after_start: list[Callable[[], None]] = []
+"""Called each time ROS has been started, in the thread that started it."""
+
+# A callback that takes so long is felt by people, s.
+LONG_SEC = 1.0
+
+# Variables removed by `prepare_environment`, with their values.
 dropped_variables: dict[str, str] = {}
 
 
 def prepare_environment() -> None:
-    """Set the variables that have to be there before ROS is loaded. What is set already wins."""
-    # Without it `Int16(data=40000)` arrives as -25536 and nobody says a word.
+    """Set the variables that ROS reads when it is loaded. Variables already set win."""
+    # Without it `Int16(data=40000)` silently arrives as -25536.
     os.environ.setdefault('ROS_PYTHON_CHECK_FIELDS', '1')
+    # Set wherever ROS 2 is sourced: programs and launch files ask it for the release.
+    os.environ.setdefault('ROS_DISTRO', 'jazzy')
     _drop_unusable_middleware()
     _find_own_commands()
+    _find_stand_ins()
+    if in_kernel():
+        # ipykernel requests colours (FORCE_COLOR) of all child processes. Python has them since
+        # 3.13: errors of `ros2 run` would be different text there, and `grep` would not find it.
+        os.environ.setdefault('PYTHON_COLORS', '0')
+        _find_log_folder()
+    # Stay on this machine, unless the learner says otherwise. To ROS, '' is the network.
+    if not os.environ.get('ROS_AUTOMATIC_DISCOVERY_RANGE'):
+        os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
     domain_ids.choose_profile()
-    # Only this machine takes part, unless the learner says otherwise.
-    os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-    # The flag is read when a module of messages is loaded; some may be there already.
+    # The flag is read when a message module is loaded; some may be loaded already.
     for name, module in list(sys.modules.items()):
         if ('.msg._' in name or '.srv._' in name) and hasattr(module, 'ros_python_check_fields'):
             vars(module)['ros_python_check_fields'] = os.environ['ROS_PYTHON_CHECK_FIELDS']
 
 
 def _find_own_commands() -> None:
-    """Let `!ros2` find the environment's own `ros2`, activated or not, after any other one."""
+    """Let `!ros2` find the environment's `ros2`, activated or not, after any other one."""
     own = os.path.join(sys.prefix, 'bin')
     folders = os.environ.get('PATH', os.defpath).split(os.pathsep)
     if sys.prefix != sys.base_prefix and own not in folders:
         os.environ['PATH'] = os.pathsep.join([*folders, own])
 
 
-def _drop_unusable_middleware() -> None:
-    """Forget an `RMW_IMPLEMENTATION` that would end the process as soon as rclpy is imported.
+def _find_stand_ins() -> None:
+    """Let this process and those that it starts find the types that labkit builds, last of all."""
+    folder = os.path.join(os.path.dirname(__file__), 'packages', 'stand_ins')
+    if folder not in sys.path:
+        sys.path.append(folder)
+    paths = list(filter(None, os.environ.get('PYTHONPATH', '').split(os.pathsep)))
+    if folder not in paths:
+        os.environ['PYTHONPATH'] = os.pathsep.join([*paths, folder])
 
-    rcl calls exit(102) when it was built for another middleware than the variable asks for. In a
-    kernel nobody would learn why.
+
+def _find_log_folder() -> None:
+    """Let programs start where nothing can be written to the home: rclpy.init() would raise."""
+    home = os.environ.get('ROS_HOME') or os.path.join(os.path.expanduser('~'), '.ros')
+    if os.environ.get('ROS_LOG_DIR'):
+        return
+    try:
+        os.makedirs(os.path.join(home, 'log'), exist_ok=True)
+    except OSError:
+        with suppress(OSError):  # no room for anything
+            folder = tempfile.TemporaryDirectory(prefix='ros_log_')
+            atexit.register(folder.cleanup)
+            os.environ['ROS_LOG_DIR'] = folder.name
+
+
+def _drop_unusable_middleware() -> None:
+    """Drop an `RMW_IMPLEMENTATION` that would end the process when rclpy is imported.
+
+    rcl calls exit(102) if it was built for another middleware than requested. In a kernel nobody
+    would learn why.
     """
     wanted = os.environ.get('RMW_IMPLEMENTATION', '')
     folder = os.path.join(sys.prefix, 'lib')
@@ -66,15 +111,15 @@ def _drop_unusable_middleware() -> None:
 
 @dataclass(frozen=True)
 class Audience:
-    """Who looks at what labkit shows, and what follows from it.
+    """The audience of labkit's outputs, and its consequences.
 
     Attributes:
-        live: A page shows it to a person: views move, forms can be filled in.
-        same_each_time: What is shown is stored and compared, so it depends on counts, never on
-            time or on the machine: a cell's output is cut where its last wait ended, reports
+        live: Whether a page shows it to a person: views move, forms can be filled in.
+        same_each_time: Whether outputs are stored and compared, so that they depend on counts,
+            never on time or the machine: a cell's output is cut where its last wait ended, reports
             leave out what differs between healthy machines, progress is not kept.
-        patience_sec: How long a command that nobody ends waits for others, s; None for no end,
-            because there is a person with a stop button.
+        patience_sec: Time that a command waits for others, s; None for no limit, because a person
+            can press the stop button.
     """
 
     live: bool
@@ -83,10 +128,10 @@ class Audience:
 
 
 LEARNER = Audience(live=True, same_each_time=False, patience_sec=None)
-"""A person in front of a notebook."""
+"""A person in a notebook."""
 
 TERMINAL = Audience(live=False, same_each_time=False, patience_sec=None)
-"""A person in front of a terminal, or a script."""
+"""A person in a terminal, or a script."""
 
 RECORDING = Audience(live=False, same_each_time=True, patience_sec=5.0)
 """A program that runs a lesson: nbval and `labkit record`. They set `LABKIT_HEADLESS=1`."""
@@ -94,26 +139,26 @@ RECORDING = Audience(live=False, same_each_time=True, patience_sec=5.0)
 
 @functools.lru_cache(maxsize=1)
 def audience() -> Audience:
-    """Return who looks at what this process shows; it is found out once, at the first question."""
+    """Return the audience of this process, determined on the first call."""
     if os.environ.get('LABKIT_HEADLESS', '') not in ('', '0'):
         return RECORDING
     return LEARNER if in_kernel() else TERMINAL
 
 
 def in_kernel() -> bool:
-    """Tell whether this process is a Jupyter kernel."""
+    """Return whether this process is a Jupyter kernel."""
     ipython = sys.modules.get('IPython')
     shell = ipython.get_ipython() if ipython is not None else None
     return shell is not None and hasattr(shell, 'kernel')
 
 
 def notebook_name() -> str:
-    """Return the path of this kernel's notebook as Jupyter gives it, '' if it is not known."""
+    """Return the path of this kernel's notebook as Jupyter gives it, '' if unknown."""
     return os.environ.get('JPY_SESSION_NAME', '')
 
 
 def state_dir() -> Path:
-    """Return the folder where labkit keeps what it has to remember: `$LABKIT_HOME` if set."""
+    """Return the folder of labkit's state: `$LABKIT_HOME` if set."""
     home = os.environ.get('LABKIT_HOME')
     if home:
         return Path(home)
@@ -122,9 +167,9 @@ def state_dir() -> Path:
 
 
 def variant_seed() -> str:
-    """Return whose numbers and names exercises ask for, `''` for those of the notebook.
+    """Return the seed of the numbers and names in exercises, `''` for those of the notebook.
 
-    It is `$LABKIT_VARIANT`; with `LABKIT_VARIANTS=1`, as a hub sets it for all, the user's name.
+    It is `$LABKIT_VARIANT`; with `LABKIT_VARIANTS=1`, set by a hub, it is the user's name.
     """
     seed = os.environ.get('LABKIT_VARIANT', '').strip()
     if not seed and os.environ.get('LABKIT_VARIANTS', '') not in ('', '0'):

@@ -10,6 +10,7 @@ import sys
 import tempfile
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +19,11 @@ from typing import Any
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
+PATIENT = ROOT / 'tests/patient'
 
+# Hundreds of processes import the same modules, and each would compile all of them anew.
+sys.dont_write_bytecode = False
+os.environ.pop('PYTHONDONTWRITEBYTECODE', None)
 # Nothing that a test process itself starts is heard outside of it. A test that needs processes to
 # find each other passes LOCALHOST and a domain of its own.
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'OFF'
@@ -43,6 +48,24 @@ _FOREIGN = (
 TIMEOUT_SEC = 60.0
 
 
+# Files that take a minute or more. They come first, so that no worker has one left at the end.
+_LONGEST = (
+    'tests/lessons/test_proof.py',
+    'tests/lessons/test_live_coding.py',
+    'tests/setup/test_environment.py',
+    'tests/background/test_exit_codes.py',
+    'notebooks/12_interfaces_and_actions.ipynb',
+    'tests/packages/test_workspace.py',
+)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put the longest files first."""
+    place = {file: number for number, file in enumerate(_LONGEST)}
+    items.sort(key=lambda item: place.get(item.nodeid.partition('::')[0], len(place)))
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport() -> Iterator[None]:
     """With LABKIT_REQUIRE_ALL=1, turn a skipped test into a failed one."""
@@ -59,6 +82,16 @@ def pytest_make_collect_report() -> Iterator[None]:
     if report.outcome == 'skipped':
         _refuse_skip(report)
     return report
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Say what was skipped, and why."""
+    skipped = Counter(
+        (report.longrepr[-1].removeprefix('Skipped: '), report.nodeid.partition('::')[0])
+        for report in terminalreporter.getreports('skipped')
+    )
+    for (reason, file), count in sorted(skipped.items()):
+        terminalreporter.line(f'{count} skipped in {file}: {reason}')
 
 
 def _refuse_skip(report: Any) -> None:
@@ -264,8 +297,13 @@ class Kernel:
         answer = self._client.inspect(code, reply=True, timeout=TIMEOUT_SEC)
         return re.sub(r'\x1b\[[\d;]*m', '', answer['content']['data'].get('text/plain', ''))
 
-    def outputs_of(self, msg_id: str) -> list[dict[str, Any]]:
-        """Return what a cell shows up to now, late output included."""
+    def outputs_of(self, msg_id: str, *, updated: bool = False) -> list[dict[str, Any]]:
+        """Return what a cell shows up to now, late output included.
+
+        Args:
+            msg_id: The cell's request.
+            updated: Whether to show what is displayed as its last update says.
+        """
         outputs: list[dict[str, Any]] = []
         with self._news:
             messages = list(self._messages.get(msg_id, ()))
@@ -273,6 +311,10 @@ class Kernel:
             kind, content = message['msg_type'], message['content']
             if kind == 'clear_output':
                 outputs.clear()
+            if kind == 'update_display_data' and updated:
+                for output in outputs:
+                    if output.get('transient') == content['transient']:
+                        output['data'] = content['data']
             if kind not in ('stream', 'display_data', 'execute_result', 'error'):
                 continue
             last = outputs[-1] if outputs else {}
@@ -283,12 +325,30 @@ class Kernel:
         return outputs
 
     def wait_for_output(self, msg_id: str, text: str, timeout: float = TIMEOUT_SEC) -> str:
-        """Wait until `text` appears under a cell; return all that is shown there."""
+        """Wait until `text` appears under a cell; return all that is shown there.
+
+        What is displayed may be updated at once, so it is looked for before and after updates.
+        """
+        found: list[str] = []
+
+        def appears() -> bool:
+            forms = [_text(self.outputs_of(msg_id, updated=after)) for after in (False, True)]
+            found[:] = [form for form in forms if text in form]
+            return bool(found)
+
         try:
-            self._wait(lambda: text in _text(self.outputs_of(msg_id)), timeout, f'output {text!r}')
+            self._wait(appears, timeout, f'output {text!r}')
         except pytest.fail.Exception as error:
-            pytest.fail(f'{error}\nOutput so far:\n{_text(self.outputs_of(msg_id))}')
-        return _text(self.outputs_of(msg_id))
+            pytest.fail(f'{error}\nOutput so far:\n{_text(self.outputs_of(msg_id, updated=True))}')
+        return found[0]
+
+    def wait_until_gone(self, msg_id: str, text: str) -> None:
+        """Wait until `text` is not shown any more under a cell."""
+        self._wait(
+            lambda: text not in _text(self.outputs_of(msg_id, updated=True)),
+            TIMEOUT_SEC,
+            f'no {text!r}',
+        )
 
     def interrupt(self) -> None:
         """Press the stop button."""
@@ -331,6 +391,11 @@ def lab_env(tmp_path: Path) -> dict[str, str]:
     return env
 
 
+def patiently(env: dict[str, str]) -> dict[str, str]:
+    """Return an environment in which the default limit of waits is long, see tests/patient."""
+    return {**env, 'PYTHONPATH': os.pathsep.join([str(PATIENT), env['PYTHONPATH']])}
+
+
 @pytest.fixture
 def start_kernel(tmp_path: Path, lab_env: dict[str, str]) -> Iterator[Callable[..., Kernel]]:
     """Give a function that starts a kernel; keyword arguments are environment variables."""
@@ -339,7 +404,7 @@ def start_kernel(tmp_path: Path, lab_env: dict[str, str]) -> Iterator[Callable[.
     def start(**env: str) -> Kernel:
         folder = tmp_path / f'kernel_{len(kernels)}'
         folder.mkdir()
-        kernels.append(Kernel(folder, {**lab_env, **env}))
+        kernels.append(Kernel(folder, {**patiently(lab_env), **env}))
         return kernels[-1]
 
     yield start
@@ -363,7 +428,7 @@ def script(tmp_path: Path, lab_env: dict[str, str]) -> Callable[..., ScriptResul
         done = subprocess.run(
             [sys.executable, str(path)],
             cwd=tmp_path,
-            env={**lab_env, **env},
+            env={**patiently(lab_env), **env},
             capture_output=True,
             text=True,
             timeout=4 * TIMEOUT_SEC,

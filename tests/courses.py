@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 import shutil
+import ssl
 import subprocess
 import sys
 import threading
@@ -37,9 +38,9 @@ class Course:
         ignored = shutil.ignore_patterns('__pycache__', 'exercises', 'ros2', '*.lock')
         shutil.copytree(ROOT / 'labkit', folder / 'labkit', ignore=ignored)
         (folder / 'notebooks').mkdir()
-        (folder / 'tests').mkdir()
-        for name in ('labkit/hub/requirements.txt', 'tests/requirements.txt'):
-            (folder / name).write_text('')
+        for name in ('labkit/hub', 'tests', 'docs'):
+            (folder / name).mkdir(exist_ok=True)
+            (folder / name / 'requirements.txt').write_text('')
         self.require(self.wheel('alpha'))
         self.env = machine.clean_environment()
         # With uv, which is quick; no waiting for a network that isn't there.
@@ -235,12 +236,16 @@ def wait_for_line(process: subprocess.Popen[str], text: str) -> str:
 class Gate:
     """A web server that hands out a course's wheels, but not before it is opened.
 
+    Args:
+        folder: Where they are.
+        certificate: A file with the key and the certificate of a server of https, None for http.
+
     Attributes:
         asked: Set when the first one is asked for.
         opened: Set it, and they are handed out.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, certificate: Path | None = None) -> None:
         self.asked = asked = threading.Event()
         self.opened = opened = threading.Event()
 
@@ -263,7 +268,11 @@ class Gate:
                 pass
 
         self._server = ThreadingHTTPServer(('127.0.0.1', 0), Handler)
-        self.url = f'http://127.0.0.1:{self._server.server_address[1]}'
+        self.url = f'http{"s" * bool(certificate)}://127.0.0.1:{self._server.server_address[1]}'
+        if certificate:
+            context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+            context.load_cert_chain(certificate)
+            self._server.socket = context.wrap_socket(self._server.socket, server_side=True)
         threading.Thread(target=self._server.serve_forever, daemon=True).start()
 
     def close(self) -> None:

@@ -141,7 +141,6 @@ def test_order_of_the_test_command() -> None:
         'style',
         'format',
         'types',
-        'types of the tests',
         'layers and format',
         'notebooks and tests',
     ]

@@ -15,7 +15,14 @@ from pathlib import Path
 
 import pytest
 
-from labkit.files import is_inside, locked, rename_to_free, write_atomically
+from labkit.files import (
+    is_inside,
+    locked,
+    read_json,
+    read_limited,
+    rename_to_free,
+    write_atomically,
+)
 
 TIMEOUT_SEC = 60
 # Writes a file, but says so and waits when all of it is on its way and nothing in its place.
@@ -398,3 +405,23 @@ def test_links_are_followed_unless_it_counts_where_they_lie(tmp_path: Path) -> N
     assert not is_inside(link, tmp_path / 'venv')
     (tmp_path / 'short').symlink_to(tmp_path / 'venv')
     assert is_inside(tmp_path / 'venv' / 'a', tmp_path / 'short')
+
+
+def test_a_file_of_somebody_else_is_a_regular_one_of_a_bounded_size(tmp_path: Path) -> None:
+    file, pipe = tmp_path / 'file', tmp_path / 'pipe'
+    file.write_bytes(b'12345')
+    os.mkfifo(pipe)  # without a writer, opening it would block
+    assert read_limited(file, 5) == b'12345'
+    with pytest.raises(OSError, match='Larger than 4 bytes'):
+        read_limited(file, 4)
+    for other in (pipe, tmp_path, Path('/dev/zero')):
+        with pytest.raises(OSError, match='Not a regular file'):
+            read_limited(other)
+
+
+@pytest.mark.parametrize('text', ['[' * 100_000, '{"a":' * 100_000, '[' * 900 + '1', '', '\xff'])
+def test_json_that_can_not_be_taken(tmp_path: Path, text: str) -> None:
+    path = tmp_path / 'data.json'
+    path.write_text(text, encoding='latin-1')
+    with pytest.raises(ValueError, match=r'.'):
+        read_json(path)

@@ -48,8 +48,10 @@ def test_a_cell_is_interrupted_and_the_kernel_restarted(kernel):
 
 def test_a_wait_in_vain_tells_what_there_was(start_kernel):
     kernel = start_kernel(LABKIT_HEADLESS='1')
+    cell = kernel.start('import time\nprint("half way", flush=True)\ntime.sleep(1000)')
+    kernel.wait_for_output(cell, 'half way')
     with pytest.raises(pytest.fail.Exception, match=r'(?s)not within 1 s.*half way'):
-        kernel.run('import time\nprint("half way", flush=True)\ntime.sleep(1000)', timeout=1)
+        kernel.finish(cell, timeout=1)
     kernel.restart()
     with pytest.raises(pytest.fail.Exception, match='the kernel ended with code 7'):
         kernel.run('import os\nos._exit(7)')
@@ -90,7 +92,7 @@ def test_a_skip_is_a_failure_where_all_is_required(
     (tmp_path / 'test_module.py').write_text(
         "import pytest\npytest.importorskip('nothing_such')\n"
     )
-    options = ['-p', 'no:cacheprovider', '-rs', '--continue-on-collection-errors']
+    options = ['-p', 'no:cacheprovider', '--continue-on-collection-errors']
     done = subprocess.run(
         [sys.executable, '-m', 'pytest', *options, str(tmp_path)],
         env={**lab_env, 'LABKIT_REQUIRE_ALL': required},
@@ -102,3 +104,5 @@ def test_a_skip_is_a_failure_where_all_is_required(
     assert (done.returncode != 0) == exit_code, done.stdout
     assert 'no browser here' in done.stdout and 'nothing_such' in done.stdout
     assert ('LABKIT_REQUIRE_ALL is set' in done.stdout) == bool(exit_code)
+    assert ('\n1 skipped in test_one.py: no browser here\n' in done.stdout) != bool(exit_code)
+    assert ('\n1 skipped in test_module.py: could not' in done.stdout) != bool(exit_code)

@@ -19,12 +19,19 @@ FLOORS = {
     'labkit.errors': 0,
     'labkit.domain_ids': 0.1,
     'labkit.files': 0.1,
+    'labkit.stop_button': 0.1,
     'labkit.settings': 0.2,
+    'labkit.progress_bar': 0.3,
     'labkit.setup': 1,
     'labkit.rosgraph': 1,
     'labkit.background': 2,
+    'labkit.asking': 2.1,
+    'labkit.programs': 2.2,
+    'labkit.sharing': 2.3,
+    'labkit.silent': 2.4,
     'labkit.bags': 3,
     'labkit.packages': 3,
+    'labkit.launching': 3,
     'labkit.ros2': 4,
     'labkit.sim': 4,
     'labkit.checkup': 4,
@@ -38,15 +45,21 @@ FLOORS = {
     'labkit.__main__': 9.1,
 }
 # Rooms, and one module, in which all that is loaded may need rclpy.
-WITH_ROS = ('labkit.rosgraph', 'labkit.background', 'labkit.bags', 'labkit.sim.turtlebot')
+WITH_ROS = (
+    *('labkit.rosgraph', 'labkit.background', 'labkit.asking', 'labkit.programs'),
+    *('labkit.sharing', 'labkit.bags', 'labkit.sim.turtlebot'),
+    *('labkit.silent.reading', 'labkit.silent.watch'),
+)
 WITHOUT_ROS = (
     *('labkit.domain_ids', 'labkit.errors', 'labkit.files', 'labkit.settings', 'labkit.setup'),
+    'labkit.stop_button',
 )
-VIEWS_ONLY = ('anywidget', 'ipywidgets', 'matplotlib', 'pygments')
+VIEWS_ONLY = ('anywidget', 'ipywidgets', 'matplotlib', 'pygments', 'sidecar')
 # What `python3 -m labkit` needs before there is an environment.
 BARE = (
     *('labkit', 'labkit.__main__', 'labkit.checkup.report', 'labkit.errors', 'labkit.settings'),
-    *('labkit.domain_ids', 'labkit.files', 'labkit.setup.environment', 'labkit.setup.installer'),
+    *('labkit.domain_ids', 'labkit.files', 'labkit.stop_button'),
+    *('labkit.setup.environment', 'labkit.setup.installer'),
     *('labkit.setup.machine', 'labkit.setup.requirements', 'labkit.course.jupyterlab'),
     *('labkit.course.learner_folder', 'labkit.course.run_tests', 'labkit.hub.command'),
 )
@@ -149,6 +162,8 @@ def modules() -> dict[str, str]:
     result = {}
     for path in sorted((ROOT / 'labkit').rglob('*.py')):
         parts = path.relative_to(ROOT).with_suffix('').parts
+        if parts[-2] == 'solutions' or parts[1] == 'data':
+            continue  # cells of a notebook, and settings: nothing imports them
         name = '.'.join(parts).removesuffix('.__init__')
         result[name] = path.read_text(encoding='utf-8')
     return result

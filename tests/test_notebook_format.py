@@ -22,7 +22,20 @@ NOTEBOOKS = Path(__file__).resolve().parent.parent / 'notebooks'
 PATHS = sorted(NOTEBOOKS.glob('*.ipynb'))
 # The first lesson only shows how lessons work, so it may be shorter than the others.
 SHORT = {'00_start_here': {'cells': 12, 'words': 400}}
-CELLS, WORDS, WORDS_IN_CELL = (20, 40), (700, 1400), 130
+CELLS, WORDS, WORDS_IN_CELL, WORDS_IN_BULLET = (20, 48), (700, 1400), 130, 20
+BOX = re.compile(
+    r'## On a real machine\n\n[^\n]+\n\n```bash\n(?P<terminal>[^`]+)```\n\n'
+    r'More: \[[^]\n]+\]\(https://docs\.ros\.org/en/jazzy/[^)\s]+\.html\)'
+)
+# What a terminal needs on any such machine, and what happens there without a word.
+IN_BOX = (
+    'source /opt/ros/jazzy/setup.bash',
+    'ROS_DOMAIN_ID',
+    'domain 0',
+    'SUBNET',
+    'second terminal',
+    'Ctrl-C',
+)
 FILLERS = r'\b(simply|just|easy|easily|obviously|of course)\b'
 FENCE = re.compile(r'^ *```.*?^ *```', flags=re.S | re.M)
 MACHINE_PATH = r'(?<![\w.$/~-])/(?:home|root|Users|tmp|mnt)/\w+'
@@ -143,6 +156,32 @@ def last_cell(lesson: Lesson) -> Found:
             yield cell.id, f'says {after!r}', f'Say that this is done: {before!r}.'
     if lesson.next and f']({lesson.next.name})' not in cell.source:
         yield cell.id, 'has no link to the next lesson', f'Link to {lesson.next.name}.'
+
+
+@rule
+def box(lesson: Lesson) -> Found:
+    cell = lesson.cells[-2]
+    found = BOX.fullmatch(cell.source)
+    if cell.id != 'real-machine' or not found:
+        todo = 'End with a cell "real-machine": see those of other lessons.'
+        yield cell.id, 'is not the box "On a real machine"', todo
+        return
+    terminal = lines(found['terminal'])
+    if not 3 <= len(terminal) <= 6:
+        yield cell.id, f'has {len(terminal)} lines of a terminal', 'Make it 3 to 6.'
+    for part in IN_BOX:
+        if part not in found['terminal']:
+            yield cell.id, f'does not say {part!r}', 'Say it in a line, or behind a #.'
+
+
+@rule
+def tasks(lesson: Lesson) -> Found:
+    for cell in lesson.text:
+        for bullet in bullets(cell.source) if cell.id.endswith('-task') else []:
+            count = len(without_code(bullet).split())
+            if count > WORDS_IN_BULLET:
+                todo = f'Split it, or shorten it to {WORDS_IN_BULLET}.'
+                yield cell.id, f'has a bullet of {count} words: {bullet!r}', todo
 
 
 @rule

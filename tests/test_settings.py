@@ -83,12 +83,13 @@ def test_state_dir(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_what_is_set_already_wins(script: Callable[..., object]) -> None:
     show = (
-        'import os, labkit\nnames = "ROS_PYTHON_CHECK_FIELDS", "ROS_AUTOMATIC_DISCOVERY_RANGE"\n'
-        'print(*(os.environ[name] for name in names))'
+        'import os, labkit\n'
+        'names = "PYTHON_CHECK_FIELDS", "AUTOMATIC_DISCOVERY_RANGE", "DISTRO"\n'
+        'print(*(os.environ["ROS_" + name] for name in names))'
     )
-    assert script(show).stdout == '1 OFF\n'
+    assert script(show).stdout == '1 OFF jazzy\n'
     own = {'ROS_PYTHON_CHECK_FIELDS': '0', 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET'}
-    assert script(show, **own).stdout == '0 SUBNET\n'
+    assert script(show, **own, ROS_DISTRO='x').stdout == '0 SUBNET x\n'
 
 
 def test_middleware_that_is_not_there_does_not_end_the_kernel(
@@ -97,3 +98,24 @@ def test_middleware_that_is_not_there_does_not_end_the_kernel(
     kernel = start_kernel(RMW_IMPLEMENTATION='rmw_cyclonedds_cpp')
     result = kernel.run('import labkit as lab\nlab.start()\nimport rclpy\nprint(rclpy.ok())')
     assert (result.error, result.text) == ('', 'True\n')
+
+
+def test_what_a_cell_starts_shows_the_same_errors_with_every_python(
+    start_kernel: Callable[..., Any],
+) -> None:
+    fails = 'import os; print(os.environ["PYTHON_COLORS"]); x'
+    cell = f"import labkit, sys\n!{{sys.executable}} -c '{fails}'"
+    told = start_kernel().run(cell).text
+    assert told.startswith('0\r\n') and '\x1b' not in told
+    assert "NameError: name 'x' is not defined" in told
+    # Who wants them sets it.
+    assert start_kernel(PYTHON_COLORS='1').run(cell).text.startswith('1\r\n')
+
+
+def test_programs_start_where_nothing_can_be_written_to_the_home(start_kernel):
+    result = start_kernel(HOME='/proc', ROS_LOG_DIR='').run(
+        'import labkit, subprocess, sys\n'
+        'code = "import rclpy; rclpy.init(); print(1)"\n'
+        'print(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True))'
+    )
+    assert "stdout='1\\n'" in result.text, result

@@ -1,7 +1,7 @@
-"""The callback that executes a goal: what it raises is shown as that of any other callback.
+"""Show errors of a callback that executes a goal, as for any other callback.
 
-rclpy catches it, logs one line, prints the traceback with its own frames, and aborts the goal.
-Here the lines of the learner are shown, once a run of the cell; the goal is aborted all the same.
+rclpy logs one line, prints the traceback with its own frames, and aborts the goal. Here only the
+learner's lines are shown, once per run of the cell; the goal is still aborted.
 """
 
 from __future__ import annotations
@@ -20,13 +20,7 @@ __all__ = ['guarded']
 
 
 def guarded(callback: Callable[..., Any], server: Any, console: Console) -> Callable[..., Any]:
-    """Return a callback that shows what the given one raises, and lets the goal be aborted.
-
-    Args:
-        callback: The callback of an action server that executes goals.
-        server: The action server.
-        console: Shows the error.
-    """
+    """Wrap a callback that executes goals of an action server, to show errors and abort."""
     name = getattr(callback, '__name__', type(callback).__name__)
 
     def aborted(handle: Any, error: BaseException) -> Any:

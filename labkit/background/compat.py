@@ -1,14 +1,13 @@
-"""Every private name of rclpy and ipykernel that labkit touches, and nothing else.
+"""Every private name of rclpy and ipykernel that labkit uses, and nothing else.
 
-Each function has a contract test in tests/background/test_compat.py: with a new rclpy or
-ipykernel, those tests say in a minute whether it still fits.
+Each function has a contract test in tests/background/test_compat.py, which shows within a minute
+whether a new rclpy or ipykernel still fits.
 """
 
 from __future__ import annotations
 
 import ctypes
 import sys
-import threading
 import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -17,24 +16,28 @@ from rclpy._rclpy_pybind11 import RCLError
 from rclpy.event_handler import EventHandler
 from rclpy.exceptions import InvalidHandle
 from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.task import Future
 
 if TYPE_CHECKING:
-    from types import FrameType
-
+    from rclpy.action.client import ActionClient, ClientGoalHandle
     from rclpy.action.server import ActionServer
+    from rclpy.client import Client
     from rclpy.clock import ROSClock
     from rclpy.executors import Executor
     from rclpy.node import Node
     from rclpy.subscription import Subscription
     from rclpy.task import Task
-    from rclpy.timer import Timer
+    from rclpy.timer import Rate, Timer
     from rclpy.waitable import NumberOfEntities, Waitable
 
 __all__ = [
     'RCLError',
+    'action_type_of',
     'answer_input',
+    'awaited_by',
     'call_in_kernel',
     'callback_of',
+    'client_of_goal',
     'display_under',
     'end_type_descriptions',
     'event_of',
@@ -42,22 +45,25 @@ __all__ = [
     'handler_of',
     'hear_while_cells_run',
     'is_kernel_stream',
+    'is_of_rate',
     'is_shut_down',
+    'keep_feedback',
     'new_wait_set',
     'node_of_action',
     'own_guards',
-    'rate_is_awaited',
-    'rate_sleepers',
+    'parameters_of',
+    'pending_requests',
     'running_request',
     'set_ros_time_is_active',
     'set_thread_request',
     'take_all',
     'take_logs',
     'takers',
+    'timer_of_rate',
     'write_for',
 ]
 
-# How long somebody may hold a service that was destroyed, s, such as an executor in its wait.
+# How long e.g. a waiting executor may hold a destroyed service, s.
 GONE_SEC = 1.0
 POLL_SEC = 0.001
 
@@ -65,11 +71,10 @@ POLL_SEC = 0.001
 
 
 def takers(executor: Executor) -> dict[str, Callable[[Any], Any]]:
-    """Return what takes from an entity that is ready, for each kind of entity.
+    """Return the function that takes from a ready entity, for each kind of entity.
 
-    Each is called with the entity, and returns a function that makes the coroutine which runs the
-    callback; None if there is nothing to take, because the entity was destroyed meanwhile or a
-    message has gone. A guard condition is taken by the wait itself.
+    Each returns a function that makes the coroutine which runs the callback, or None if the entity
+    was destroyed meanwhile or the message is gone. The wait itself takes a guard condition.
     """
     return {
         'subscription': executor._take_subscription,
@@ -87,7 +92,7 @@ def own_guards(executor: Executor) -> list[Any]:
 
 
 def new_wait_set(context_handle: Any, count: NumberOfEntities) -> Any:
-    """Make a wait set for so many entities."""
+    """Make a wait set for a number of entities."""
     return rclpy_implementation.WaitSet(
         count.num_subscriptions,
         count.num_guard_conditions,
@@ -100,20 +105,20 @@ def new_wait_set(context_handle: Any, count: NumberOfEntities) -> Any:
 
 
 def event_of(waitable: Waitable) -> Any:
-    """Return what a handler of an event waits for; None if the waitable is something else.
+    """Return the event of an `EventHandler`, None for any other waitable.
 
-    An `EventHandler` is asked twice a wait, and each publisher and subscription has two of them.
+    rclpy asks it twice a wait, and each publisher and subscription has two of them.
     """
     return waitable._EventHandler__event if type(waitable) is EventHandler else None  # type: ignore[attr-defined]
 
 
 def handler_of(task: Task) -> Any:
-    """Return what a task runs, a function or a coroutine; None once it is done."""
+    """Return the function or coroutine of a task; None once it is done."""
     return task._handler
 
 
 def callback_of(task: Task) -> Any:
-    """Return what a task runs; of a goal of an action, the callback that does the work."""
+    """Return the function or coroutine of a task; for a goal, the action's execute callback."""
     handler = handler_of(task)
     frame = getattr(handler, 'cr_frame', None)
     if frame is None or handler.__name__ != '_execute_goal':
@@ -121,36 +126,79 @@ def callback_of(task: Task) -> Any:
     return frame.f_locals['execute_callback']
 
 
+def awaited_by(task: Task) -> Any:
+    """Return the future that a task's coroutine awaits, None if it awaits something else."""
+    awaited: Any = handler_of(task)
+    while hasattr(awaited, 'cr_await'):
+        awaited = awaited.cr_await
+    frame = getattr(awaited, 'gi_frame', None)  # of `Future.__await__`
+    future = frame.f_locals.get('self') if frame is not None else None
+    return future if isinstance(future, Future) else None
+
+
+def is_of_rate(node: Node, *args: object) -> bool:
+    """Return whether a timer with these arguments, from its callback group on, is a rate's."""
+    return args[:1] == (node._rate_group,)
+
+
+def action_type_of(client: ActionClient) -> Any:
+    """Return the class of the action that an action client is for."""
+    return client._action_type
+
+
+def client_of_goal(handle: ClientGoalHandle) -> ActionClient:
+    """Return the action client that has sent a goal."""
+    client: ActionClient = handle._action_client
+    return client
+
+
+def keep_feedback(handle: ClientGoalHandle, result: Future) -> Callable[[], None]:
+    """Let the feedback of a goal be heard that is taken only after its result.
+
+    Of what has arrived, an action client takes the result and one feedback message at once, and
+    with the result it forgets who hears the others.
+
+    Args:
+        handle: The handle of the goal.
+        result: The future of its result, before the background could set it.
+
+    Returns:
+        A function that ends this.
+    """
+    callbacks = client_of_goal(handle)._feedback_callbacks
+    goal = bytes(handle.goal_id.uuid)
+    if (heard := callbacks.get(goal)) is not None:
+        result.add_done_callback(lambda _: callbacks.setdefault(goal, heard))  # type: ignore[no-untyped-call]
+    return lambda: callbacks.pop(goal, None)
+
+
 def is_shut_down(executor: Executor) -> bool:
-    """Tell whether `shutdown()` of an executor has been called."""
+    """Return whether `shutdown()` of an executor has been called."""
     return bool(executor._is_shutdown)
 
 
 def forget_executor(node: Node) -> None:
-    """Let `node.executor` be None: an executor that a node was removed from leaves it as it was.
+    """Set `node.executor` to None, which `Executor.remove_node` does not.
 
-    To set it in public asks the executor once more to remove the node.
+    The public setter would ask the executor once more to remove the node.
     """
     node._Node__executor_weakref = None  # type: ignore[attr-defined]
 
 
 def end_type_descriptions(node: Node) -> None:
-    """End the service of a node that describes its types, before the node is destroyed.
+    """Destroy the type description service of a node, before the node is destroyed.
 
-    rclpy (7.1) frees that one without ending it: it stays in the graph, and 0.1 MB with it, until
+    rclpy (7.1) frees it without finalizing it: it stays in the graph, and 0.1 MB with it, until
     ROS is shut down, and each further node takes longer to make (ros2/rclpy, pull request 1711).
-    It is no more than that if this can't help: the service is still in use after a second, or
-    there is no `librcl`.
-
-    Args:
-        node: The node. Whether it has such a service, or was destroyed before, does not matter.
+    That is all that happens where this can't help: the service is still in use after a second, or
+    there is no `librcl`. The node may lack the service, or be destroyed already.
     """
     owner: Any = getattr(node, '_type_description_service', None)
     inner = getattr(owner, '_type_description_srv', None)
     if inner is None:
         return
     try:
-        # One more owner of the service, and of its node: both are there until the last line.
+        # One more reference to the service and its node keeps both until the last line.
         service, node_pointer = inner.impl, node.handle.pointer
     except (InvalidHandle, AttributeError):
         return
@@ -158,7 +206,6 @@ def end_type_descriptions(node: Node) -> None:
     for one in known:
         node.destroy_service(one)
     owner.destroy()
-    # What has a pointer still is in use.
     end = time.monotonic() + GONE_SEC
     while (in_use := any(one.handle.pointer for one in known)) and time.monotonic() < end:
         time.sleep(POLL_SEC)
@@ -172,54 +219,38 @@ def end_type_descriptions(node: Node) -> None:
 
 
 def node_of_action(server: ActionServer) -> Node:
-    """Return the node that an action server belongs to."""
+    """Return the node of an action server."""
     node: Node = server._node
     return node
 
 
-def set_ros_time_is_active(clock: ROSClock, active: bool) -> None:
-    """Let a clock show the time that it is given, or the computer's again.
+def parameters_of(node: Node) -> tuple[list[str], list[str]]:
+    """Return the names of the parameters that a node was given, and of those it has declared."""
+    return list(node._parameter_overrides), list(node._parameters)
 
-    The parameter `use_sim_time` does it too. But setting it is seen by the callbacks of the node
-    and by everybody in the graph, and adds a subscription to `/clock`.
+
+def pending_requests(client: Client) -> int:
+    """Return the number of requests of a client that have no answer yet."""
+    return len(client._pending_requests)
+
+
+def timer_of_rate(rate: Rate) -> Timer:
+    """Return the timer that a rate sleeps on."""
+    timer: Timer = rate._timer
+    return timer
+
+
+def set_ros_time_is_active(clock: ROSClock, active: bool) -> None:
+    """Switch a clock between the time that it is given and the system's.
+
+    The parameter `use_sim_time` does so too, but callbacks of the node and the whole graph see it,
+    and it adds a subscription to `/clock`.
     """
     clock._set_ros_time_is_active(active)
 
 
-def rate_is_awaited(timer: Timer) -> bool | None:
-    """Tell whether a thread sleeps in the `Rate` of a timer, None if the timer is of no rate.
-
-    It is false from the tick on until the thread has done its work and sleeps again.
-    """
-    event = getattr(timer.callback, '__self__', None)
-    if not isinstance(event, threading.Event):
-        return None
-    return not event.is_set() and bool(event._cond._waiters)  # type: ignore[attr-defined]
-
-
-def rate_sleepers(timer: Timer) -> set[int]:
-    """Return the ids of the threads that sleep in the `Rate` of a timer, or wake up there."""
-    event = getattr(timer.callback, '__self__', None)
-    found = set()
-    for ident, innermost in sys._current_frames().items():
-        frame: FrameType | None = innermost
-        while frame is not None:
-            if frame.f_code is threading.Event.wait.__code__ and frame.f_locals['self'] is event:
-                found.add(ident)
-            frame = frame.f_back
-    return found
-
-
 def take_all(subscription: Subscription, most: int) -> int:
-    """Take the messages that wait for a subscription which no executor serves, as bytes.
-
-    Args:
-        subscription: The subscription.
-        most: How many to take at most.
-
-    Returns:
-        How many there were.
-    """
+    """Take at most so many messages of a subscription that no executor spins; return how many."""
     count = 0
     with subscription.handle:
         while count < most and subscription.handle.take_message(subscription.msg_type, True):
@@ -228,13 +259,13 @@ def take_all(subscription: Subscription, most: int) -> int:
 
 
 def take_logs(show: Callable[[int, str, str], None]) -> Callable[[], None]:
-    """Let each log message of rclpy's be shown by a function, besides what rclpy does with it.
+    """Call a function for each log message of rclpy, in addition to logging it.
 
     Args:
         show: Called with severity, name of the logger and message, in the thread that logs.
 
     Returns:
-        A function that takes it back.
+        A function that undoes this.
     """
     original = rclpy_implementation.rclpy_logging_rcutils_log
 
@@ -253,13 +284,13 @@ def take_logs(show: Callable[[int, str, str], None]) -> Callable[[], None]:
 
 
 def running_request() -> dict[str, Any]:
-    """Return the kernel's request that runs the current cell."""
+    """Return the request that runs the current cell."""
     request: dict[str, Any] = _shell().get_parent()
     return request
 
 
 def set_thread_request(request: dict[str, Any]) -> None:
-    """Let what the calling thread writes belong to a request of the kernel, if it can do that."""
+    """Assign the calling thread's output to a request, if the kernel can do that."""
     shell = _shell()
     if hasattr(shell, 'set_thread_parent'):
         shell.set_thread_parent(request)
@@ -273,11 +304,11 @@ def set_thread_request(request: dict[str, Any]) -> None:
 
 
 def write_for(request: dict[str, Any], stream: Any, text: str) -> None:
-    """Write what belongs to a request, in a thread for which `set_thread_request` was called."""
+    """Write output of a request, in a thread for which `set_thread_request` was called."""
     if hasattr(stream, '_parent_header') or not is_kernel_stream(stream) or not request:
         stream.write(text)
         return
-    # In that of Google Colab (6.17) a stream knows nothing of threads.
+    # In Google Colab's ipykernel (6.17) a stream has no request per thread.
     publisher = _shell().display_pub
     content = {'name': stream.name, 'text': text}
     publisher.session.send(
@@ -288,13 +319,13 @@ def write_for(request: dict[str, Any], stream: Any, text: str) -> None:
 def display_under(
     request: dict[str, Any], data: dict[str, str], display_id: str, *, update: bool
 ) -> None:
-    """Display something under the cell of a request, in any thread, after what is printed so far.
+    """Display something under the cell of a request, after what was printed so far.
 
     Args:
-        request: The kernel's request that runs the cell, or has run it.
-        data: What to display, by types.
-        display_id: What it is called when it is updated.
-        update: Whether it is shown already.
+        request: The request that runs the cell, or has run it.
+        data: The MIME bundle.
+        display_id: Its id for updates.
+        update: Whether to update what is displayed already.
     """
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
@@ -309,34 +340,29 @@ def display_under(
 
 
 def is_kernel_stream(stream: object) -> bool:
-    """Tell whether a stream is the kernel's own, which sends what is written to the notebook."""
+    """Return whether a stream is the kernel's own, which sends its text to the notebook."""
     from ipykernel.iostream import OutStream
 
     return isinstance(stream, OutStream)
 
 
 def answer_input(answer: Callable[[object], str]) -> None:
-    """Let a function of the prompt answer each `input()` of a cell from now on."""
-    # ipykernel puts this method in the place of `input` whenever it runs a cell.
+    """Answer each `input()` of a cell by a function of the prompt."""
+    # ipykernel replaces `input` by this method whenever it runs a cell.
     _shell().kernel.raw_input = answer
 
 
 def call_in_kernel(function: Callable[[], None], *, delay_sec: float = 0.0) -> None:
-    """Call a function in the kernel's main thread, as soon as no cell is running.
-
-    Args:
-        function: What to call.
-        delay_sec: How long after that, in seconds.
-    """
+    """Call a function in the kernel's main thread, `delay_sec` after no cell is running."""
     loop = _shell().kernel.io_loop
     loop.add_callback(lambda: loop.call_later(delay_sec, function))
 
 
 def hear_while_cells_run(comm: Any) -> None:
-    """Let what the page says on a comm be heard in the thread that the page has asked for.
+    """Receive messages of a comm in the thread that the page has asked for.
 
-    ipykernel (7.4) sends it to the thread that has last spoken to the page on that comm instead.
-    For what the background says that is the main thread, where it waits for the running cell.
+    ipykernel (7.4) delivers them in the thread that has last sent on that comm instead. For the
+    background that is the main thread, where they wait for the running cell.
     """
     comm._reply_subshell_for = None
 

@@ -1,51 +1,45 @@
-"""What cells wait for: conditions that are looked at between two callbacks, never during one."""
+"""Conditions that cells wait for, evaluated between two callbacks and never during one."""
 
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable
 from contextlib import suppress
 
 from labkit.background.console import Console
+from labkit.background.wait import POLL_SEC, wait_for, wake
 
-__all__ = ['POLL_SEC', 'Conditions']
-
-# While nothing happens in ROS, a condition that depends on something else is looked at this often.
-POLL_SEC = 0.05
+__all__ = ['Conditions']
 
 
 class Conditions:
-    """The conditions that are waited for, and the lock that callbacks run under.
-
-    Args:
-        console: Where the output of callbacks goes.
+    """The awaited conditions, and the lock that callbacks run under.
 
     Attributes:
-        lock: Held while a callback runs. Who holds it keeps callbacks waiting.
+        lock: Held while a callback runs; holding it delays callbacks.
     """
 
     def __init__(self, console: Console) -> None:
         self._console = console
         self.lock = threading.RLock()
         self._looks: list[Callable[[], None]] = []
-        # The thread that is looking at a condition just now.
-        self._looking: int | None = None
+        self._looking: int | None = None  # id of the thread that evaluates a condition
 
     @property
     def is_looking(self) -> bool:
-        """Tell whether some thread is looking at a condition just now."""
+        """Return whether a thread is evaluating a condition."""
         return self._looking is not None
 
     @property
     def caller_is_looking(self) -> bool:
-        """Tell whether the caller is a condition itself, or called by one."""
+        """Return whether a condition calls this."""
         return self._looking == threading.get_ident()
 
     def look(self) -> None:
-        """Look at all of them. The caller holds the lock."""
+        """Evaluate all conditions, and wake all other waits. The caller holds the lock."""
         for look in tuple(self._looks):
             look()
+        wake()
 
     def wait(
         self,
@@ -58,58 +52,49 @@ class Conditions:
         Args:
             condition: A function without arguments. It is never called during a callback.
             timeout_sec: Seconds to wait. Block forever if `None` or negative. Don't wait if 0.
-            is_over: Tells that no callback will run any more.
+            is_over: Returns whether no callback will run any more.
 
         Returns:
             Whether it became true in time.
 
         Raises:
-            Exception: What `condition` raises.
+            Exception: The exception of `condition`.
         """
-        done = threading.Event()
-        failed: list[BaseException] = []
+        seen: list[object] = []  # True, or the exception of the condition
+        alarm = threading.Event()
         with self._console.waiting() as end:
 
             def look() -> None:
                 self._looking = threading.get_ident()
                 try:
-                    if done.is_set() or not condition():
+                    if seen or not condition():
                         return
-                except BaseException as error:  # it belongs to the caller, not to this thread
-                    failed.append(error)
+                    seen.append(True)
+                except BaseException as error:  # to be raised in the caller's thread
+                    seen.append(error)
                 finally:
                     self._looking = None
                 end()
-                done.set()
+                alarm.set()
+
+            def look_between() -> bool:
+                # Between callbacks only: a running one may have counted, but not yet printed.
+                try:
+                    if self.lock.acquire(timeout=POLL_SEC):
+                        look()
+                finally:
+                    # The stop button may strike between acquiring the lock and returning, so only
+                    # the lock knows: it raises if this thread does not hold it.
+                    with suppress(RuntimeError):
+                        self.lock.release()
+                return bool(seen) or is_over()
 
             self._looks.append(look)
             try:
-                self._wait_for(done, look, timeout_sec, is_over)
+                endless = timeout_sec is None or timeout_sec < 0
+                wait_for(look_between, None if endless else timeout_sec, alarm=alarm)
             finally:
                 self._looks.remove(look)
-        if failed:
-            raise failed[0]
-        return done.is_set()
-
-    def _wait_for(
-        self,
-        done: threading.Event,
-        look: Callable[[], None],
-        timeout_sec: float | None,
-        is_over: Callable[[], bool],
-    ) -> None:
-        endless = timeout_sec is None or timeout_sec < 0
-        end = float('inf') if endless else time.monotonic() + (timeout_sec or 0.0)
-        while True:
-            # Between callbacks only: one that is half way may have counted, but not yet printed.
-            try:
-                if self.lock.acquire(timeout=POLL_SEC):
-                    look()
-            finally:
-                # The stop button may strike between acquiring and knowing of it, so the lock
-                # itself is asked: it refuses when this thread does not hold it.
-                with suppress(RuntimeError):
-                    self.lock.release()
-            left = end - time.monotonic()
-            if done.wait(max(0.0, min(POLL_SEC, left))) or left <= 0 or is_over():
-                return
+        if seen and isinstance(seen[0], BaseException):
+            raise seen[0]
+        return bool(seen)

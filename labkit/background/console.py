@@ -1,13 +1,13 @@
-"""Where prints, ROS logs and errors of callbacks go: under the cell that started their node.
+"""Show prints, ROS logs and errors of callbacks under the cell that started their node.
 
-A kernel sends what a background thread prints to whichever cell ran last. Here every node
-remembers the cell that started it, and while one of its callbacks runs, the background thread
-speaks for that cell.
+A kernel sends the output of a background thread to whichever cell ran last. Here every node has
+the cell that started it, and while one of its callbacks runs, the background thread's output goes
+to that cell.
 
-ROS logs are taken where rclpy hands them to its logging library, and printed like any other
-line, so their order among the prints of a callback is kept. (rcl's own console output is written
-by C code to the file descriptor: it is lost under nbval, and its order with prints is open. The
-records on /rosout come later, through the middleware.) /rosout itself works as always.
+ROS logs are intercepted where rclpy passes them to its logging library, and printed, so they stay
+in order with the prints of a callback. (rcl's own console output is written by C code to the file
+descriptor: it is lost under nbval, and its order with prints is undefined. The records on /rosout
+arrive later, through the middleware.) /rosout itself works as always.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from __future__ import annotations
 import io
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -29,22 +30,22 @@ from labkit.background.tracebacks import short_traceback
 __all__ = ['MAX_LINES', 'CallbackError', 'Cell', 'Console']
 
 MAX_LINES = 200
-# So much of a line is shown: a page that gets a megabyte in one line does not follow any more.
+# Most characters of a line to show: a page can't cope with a megabyte in one line.
 MAX_CHARACTERS = 2000
 _SEVERITIES = {10: 'DEBUG', 20: 'INFO', 30: 'WARN', 40: 'ERROR', 50: 'FATAL'}
 
 
 @dataclass(eq=False)
 class Cell:
-    """One execution of a notebook cell, as the place where output goes.
+    """One execution of a notebook cell, as the destination of output.
 
     Attributes:
         parent: The kernel's request that runs the cell; empty outside a kernel.
-        lines: How many lines callbacks have shown under it.
-        box: What they are shown in; None until there are some, and where no page shows them.
-        stream: What they have written to last.
-        held: Text that waits until the cell waits (only when nobody watches, see `Console`).
-        ended: Whether a later cell has been run since.
+        lines: Number of lines that callbacks have shown under it.
+        box: The box of these lines, None if there are none or no page shows them.
+        stream: The stream that they have written to last.
+        held: Text held back until the cell waits (only without a person, see `Console`).
+        ended: Whether a later cell was run.
     """
 
     parent: dict[str, Any] = field(default_factory=dict)
@@ -56,7 +57,7 @@ class Cell:
 
     @property
     def request_id(self) -> str:
-        """Return what tells this execution from any other one, '' outside a kernel."""
+        """Return the unique id of this execution, '' outside a kernel."""
         return str(self.parent.get('header', {}).get('msg_id', ''))
 
     @property
@@ -72,9 +73,9 @@ class CallbackError:
     Attributes:
         node_name: Full name of the node.
         callback: Name of the callback.
-        error: The exception, as it was raised the first time.
-        text: What is shown of it: the learner's lines and the message.
-        count: How many times it was raised.
+        error: The first exception.
+        text: The learner's lines of the traceback, and the message.
+        count: Number of times it was raised.
         cell: The execution that started the node.
     """
 
@@ -87,40 +88,45 @@ class CallbackError:
 
 
 class Console:
-    """Routes what callbacks write.
+    """Routes the output of callbacks.
 
     In a kernel without a person in front of it (nbval, `labkit record`) the output of callbacks
     appears under a cell exactly while the cell waits: it is held until a wait begins, and cut
-    when the awaited thing has happened. So a cell's output is a matter of counts, not of time.
+    when the wait ends. So a cell's output depends on counts, not on time.
     """
 
     def __init__(self) -> None:
         self.errors: list[CallbackError] = []
-        # Called when a cell ends, as long as what is printed still belongs to it, with what the
-        # cell has raised.
+        # Called at the end of a cell with its exception, while prints still belong to the cell.
         self.after_cell: Callable[[Cell, BaseException | None], None] = lambda cell, error: None
-        # Nodes started by one execution share its Cell, and with it the bound on its output.
+        # Called for each line of a log with its logger and its text, in the thread that logs.
+        self.on_log: Callable[[str, str], None] = lambda name, message: None
+        # Nodes started by one execution share its Cell, and so its limit of lines.
         self._running: Cell | None = None
+        self._is_running = False
         self._cell: Cell | None = None
         self._thread = 0
         self._waiting = 0
-        # What is counted and not shown, see `holding`.
+        # When the running cell began, ns since 1970; 0 if that is not known.
+        self.cell_began = 0
+        # Number of lines counted instead of shown, see `holding`.
         self._held: list[int] | None = None
         self._streams: dict[str, _CellStream] = {}
         self._give_logs_back: Callable[[], None] | None = None
 
     def open(self) -> None:
-        """Take over the streams and the ROS logs of a kernel. Elsewhere nothing is touched."""
+        """Take over the streams and the ROS logs of a kernel. No effect elsewhere."""
         if not settings.in_kernel() or self._give_logs_back is not None:
             return
         self._take_streams()
-        self._give_logs_back = compat.take_logs(_show_log)
+        self._give_logs_back = compat.take_logs(self._show_log)
         _shell().events.register('pre_run_cell', self._end_cell)
         _shell().events.register('post_run_cell', self._finish_cell)
+        self._is_running = True  # ROS is started by a cell
         tracebacks.install(_shell())
 
     def close(self) -> None:
-        """Give everything back as it was."""
+        """Restore the streams and the ROS logs."""
         if self._give_logs_back is None:
             return
         for name, stream in self._streams.items():
@@ -134,14 +140,15 @@ class Console:
         _shell().events.unregister('pre_run_cell', self._end_cell)
         _shell().events.unregister('post_run_cell', self._finish_cell)
 
+    def _show_log(self, severity: int, name: str, message: str) -> None:
+        self.on_log(name, message)
+        print(f'[{_SEVERITIES.get(severity, severity)}] [{name}]: {message}')
+
     def _take_streams(self) -> bool:
-        """Put our streams before those of the kernel, and leave alone what stands there else.
+        """Replace the kernel's streams by ours; return whether there were any to replace.
 
-        A cell that captures its output (`%%capture`) puts a stream of its own there for a while,
-        and then what was there before. So this is looked after again and again.
-
-        Returns:
-            Whether there was something to do.
+        Other streams stay. A cell that captures its output (`%%capture`) sets its own stream, and
+        then restores the earlier one. So this is done repeatedly.
         """
         taken = False
         for name in ('stdout', 'stderr'):
@@ -161,14 +168,19 @@ class Console:
         if self._cell is not None and self.speaks_in(threading.get_ident()):
             return self._cell
         if self._give_logs_back is None:
-            # ROS does not run, and nobody would say when this cell has ended.
+            # ROS does not run, so no event would tell that this cell has ended.
             return Cell(compat.running_request())
         if self._running is None:
             self._running = Cell(compat.running_request())
         return self._running
 
+    @property
+    def running_cell(self) -> Cell | None:
+        """The execution that runs now, None between two, or if it has started nothing."""
+        return self._running if self._is_running else None
+
     def speak_for(self, cell: Cell) -> None:
-        """Let what the calling thread writes from now on appear under `cell`."""
+        """Show the calling thread's output under `cell` from now on."""
         again = self._give_logs_back is not None and self._take_streams()
         if cell is self._cell and not again:
             return
@@ -179,7 +191,7 @@ class Console:
 
     @contextmanager
     def waiting(self) -> Iterator[Callable[[], None]]:
-        """Show the output of callbacks meanwhile; yields what ends that early."""
+        """Show the output of callbacks in a `with` block; yields a function that ends it early."""
         if threading.current_thread() is not threading.main_thread():
             yield lambda: None  # a thread that waits is not a cell that waits
             return
@@ -202,11 +214,7 @@ class Console:
 
     @contextmanager
     def holding(self) -> Iterator[list[int]]:
-        """Show nothing of what callbacks write meanwhile.
-
-        Yields:
-            A list of one number, how many lines that are.
-        """
+        """Hide the output of callbacks in a `with` block; yields a list with the line count."""
         self._held = lines = [0]
         try:
             yield lines
@@ -214,7 +222,7 @@ class Console:
             self._held = None
 
     def write(self, stream: TextIO, text: str) -> None:
-        """Write `text`, which a callback produced, under the cell of its node."""
+        """Write output of a callback under the cell of its node."""
         if self._held is not None:
             self._held[0] += text.count('\n')
             return
@@ -228,13 +236,13 @@ class Console:
             self._write_bounded(cell, stream, text)
 
     def write_under(self, cell: Cell, text: str) -> None:
-        """Write what another process has printed under the cell that started it.
+        """Write output of another process under the cell that started it.
 
-        Not when nobody watches: how fast a process prints is a matter of time.
+        Not when nobody watches: how much a process has printed depends on time.
 
         Args:
             cell: The execution that started the process.
-            text: Whole lines. Each process has a thread of its own that calls this.
+            text: Whole lines. Each process has its own thread that calls this.
         """
         if self._held is not None:
             self._held[0] += text.count('\n')
@@ -247,11 +255,11 @@ class Console:
         self._write_bounded(cell, known.target if known is not None else sys.stdout, text)
 
     def speaks_in(self, thread_id: int) -> bool:
-        """Tell whether a thread is the one whose output is routed."""
+        """Return whether a thread is the one whose output is routed."""
         return thread_id == self._thread
 
     def show_error(self, node_name: str, callback: str, error: BaseException) -> None:
-        """Show an exception of a callback: in full once a run of its cell, then as a count."""
+        """Show an exception of a callback: in full once per run of its cell, then as a count."""
         place = _place(error)
         cell = self._cell if self.speaks_in(threading.get_ident()) else self.current_cell()
         for known in self.errors:
@@ -284,7 +292,7 @@ class Console:
             cell.box = cell.box or LogBox(cell.parent, MAX_LINES)
             cell.box.add(text)
         if stream is not cell.stream and cell.stream is not None:
-            cell.stream.flush()  # or it may be overtaken by what another stream gets later
+            cell.stream.flush()  # or later text of another stream may overtake it
         cell.stream = stream
         if cell.lines >= MAX_LINES:
             return
@@ -299,31 +307,30 @@ class Console:
             compat.write_for(cell.parent, stream, text)
 
     def _end_cell(self, *_: object) -> None:
-        """Close the cell that ran before: what it still holds belongs to no wait."""
+        """Close the previous cell: text it still holds belongs to no wait."""
+        self.cell_began = time.time_ns()  # first: what comes after the last cell is of this one
         if self._running is not None:
             self._running.ended = True
             self._running.held.clear()
         self._running = None
+        self._is_running = True
 
     def _finish_cell(self, result: Any = None) -> None:
+        self._is_running = False
         if self._running is not None:
             self.after_cell(self._running, getattr(result, 'error_in_exec', None))
 
 
 def _shortened(line: str) -> str:
-    """Return as much of a line as is shown, and say how long it is."""
+    """Cut a long line, and append its length."""
     if len(line) <= MAX_CHARACTERS:
         return line
     end = '\n' * line.endswith('\n')
     return f'{line[:MAX_CHARACTERS]} ... ({len(line) - len(end):,} characters){end}'
 
 
-def _show_log(severity: int, name: str, message: str) -> None:
-    print(f'[{_SEVERITIES.get(severity, severity)}] [{name}]: {message}')
-
-
 class _CellStream(io.TextIOBase):
-    """The kernel's stream, but for what callbacks write: that goes through the console."""
+    """The kernel's stream, except that output of callbacks goes through the console."""
 
     def __init__(self, console: Console, target: TextIO) -> None:
         self.target = target
@@ -338,7 +345,7 @@ class _CellStream(io.TextIOBase):
     def flush(self) -> None:
         self.target.flush()
 
-    # What the base class has, with answers that do not fit.
+    # Overrides where the base class has unsuitable defaults; `__getattr__` does the rest.
 
     @property
     def encoding(self) -> str:  # type: ignore[override]

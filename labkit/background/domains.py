@@ -1,25 +1,31 @@
-"""A ROS domain for each notebook: claimed while its kernel lives, found by its terminals.
-
-The first hundred take domains that every program knows, the others those of `domain_ids.BETWEEN`.
-"""
+"""A ROS domain for each notebook, claimed while its kernel lives, and found by its terminals."""
 
 from __future__ import annotations
 
 import errno
 import os
+import pwd
 import socket
+import sys
 import zlib
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import NamedTuple
 
+from labkit.background.fast_dds import use_profile
 from labkit.domain_ids import (
     BETWEEN,
     LAST_DOMAIN_ID,
     PORT_BETWEEN,
+    PROFILE,
+    PROFILES_FILE,
     between_is_possible,
-    counts_ports,
     first_port,
+    is_ours,
 )
-from labkit.errors import LabError
+from labkit.errors import LabError, printable
 from labkit.settings import notebook_name
 
 __all__ = [
@@ -27,51 +33,70 @@ __all__ = [
     'claim_domain',
     'claimed_domains',
     'first_node_is_made',
+    'follow_profile',
     'number_for_ros',
+    'open_ports',
+    'opened',
 ]
 
-# Domain 0 is everybody's default, so a notebook takes one of the others.
+# Without domain 0, which is everybody's default.
 _KNOWN = range(1, LAST_DOMAIN_ID + 1)
-# Domains that notebooks leave to what they share with other computers. Of those from 102 on, the
-# system may have given a port to another program: then Fast DDS takes the next one.
+# Domains used only for sharing with other computers. From 102 on the system may have given a port
+# to another program: then Fast DDS takes the next one.
 _FOR_SHARING = (*range(215, 233), *range(LAST_DOMAIN_ID + 1, 215))
-# Names of sockets, see `DomainClaim`. The first holds for all users of the machine, the second
-# tells terminals of one user which of the notebooks are theirs.
-_CLAIM = 'labkit/ros-domain/{domain_id}'
-_NOTEBOOK = 'labkit/notebook/{user_id}/{domain_id}/'
-# Bytes in the name of a socket, the zero at its start included (unix(7), sun_path).
-_LONGEST = 108
+# Of the ports of a domain, one that no process of it uses, nor of a domain beside it.
+_CLAIM_PORT = 4
+# Whom a claim's socket is connected to: so terminals find the domain of a notebook, and pass over
+# one that is only shared.
+_LISTED, _UNLISTED = '127.0.0.1', '127.0.0.2'
+_READINGS = 100
+# As the kernel's table has them: four bytes, read as a number of this machine.
+_PEERS = {
+    f'{int.from_bytes(socket.inet_aton(peer), sys.byteorder):08X}': peer
+    for peer in (_LISTED, _UNLISTED)
+}
 
-# Whether Fast DDS counts ports in this process, None before it has read a profile.
-_counts_ports: bool | None = None
+# The file of the profile that Fast DDS uses in this process, '' for none; None until it reads one.
+_profile: str | None = None
 
 
 class DomainClaim:
     """A ROS domain that no other notebook on this machine uses while this process lives.
 
-    The claim is the name of a socket in Linux's abstract namespace. It takes no file, it counts
-    for all users of the machine, and it ends with the process, however the process ends.
+    The claim is a UDP socket on one of the domain's ports, from which nothing is sent. It needs no
+    file, is visible to all users of the machine with the account that holds it, which nobody can
+    forge, and ends with the process, however the process ends.
 
     Args:
         domain_id: The domain to claim.
         listed: Whether terminals find it as the domain of this notebook.
+        beside: An account whose claims don't count.
 
     Raises:
         BlockingIOError: Another process has claimed it.
-        OSError: The system refuses, for another reason.
+        OSError: The system refuses for another reason.
     """
 
-    def __init__(self, domain_id: int, *, listed: bool = True) -> None:
+    def __init__(self, domain_id: int, *, listed: bool = True, beside: int | None = None) -> None:
         self.domain_id = domain_id
-        notebook = Path(notebook_name()).name or f'process {os.getpid()}'
-        # The second one tells others which notebook it is.
-        start = _NOTEBOOK.format(user_id=os.getuid(), domain_id=domain_id)
-        self._sockets: list[socket.socket] = []
+        port = _claim_port(domain_id)
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
-            names = (_CLAIM.format(domain_id=domain_id), start + _printable(notebook))
-            for name in names if listed else names[:1]:
-                self._sockets.append(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM))
-                self._sockets[-1].bind(_address(name))
+            try:
+                self._socket.bind((_LISTED, port))
+            except OSError as error:
+                if error.errno != errno.EADDRINUSE or beside is None:
+                    raise
+                self._socket.bind((_LISTED, 0))
+            # Seen by others even where the port is somebody else's.
+            self._socket.connect((_LISTED if listed else _UNLISTED, port))
+            own = os.fstat(self._socket.fileno()).st_ino
+            if any(
+                port in (other.port, other.peer_port) and other.inode != own
+                for other in _udp_sockets()
+                if other.user_id != beside
+            ):
+                raise OSError(errno.EADDRINUSE, os.strerror(errno.EADDRINUSE))
         except OSError as error:
             self.close()
             if error.errno == errno.EADDRINUSE:
@@ -79,25 +104,25 @@ class DomainClaim:
             raise
 
     def close(self) -> None:
-        """Give the domain back."""
-        for claim in self._sockets:
-            claim.close()
+        """Release the domain."""
+        self._socket.close()
 
 
 def claim_domain(*, shared: bool = False, other_than: int | None = None) -> DomainClaim:
     """Claim a domain that no other notebook has.
 
-    The first hundred notebooks have domains that every program knows, the others have one between
-    two of those (`domain_ids.BETWEEN`). The search starts from a number made from the notebook's
-    name, so that a notebook whose kernel is restarted mostly meets its own domain again.
+    The first hundred notebooks get ordinary domains, the others those between them
+    (`domain_ids.BETWEEN`). The search starts from a hash of the notebook's name, so a notebook
+    usually has the same domain after a restart of its kernel. When all are taken, one of those of
+    the account that holds the most is taken, unless that is this one.
 
     Args:
-        shared: Whether it is to be shared with other computers, which know domains up to 232. It
-            is not listed as the domain of this notebook.
-        other_than: A domain that is not wanted, though nobody may have claimed it.
+        shared: Whether to share it with other computers, which know domains up to 232. It is not
+            listed as the domain of this notebook.
+        other_than: A domain to exclude.
 
     Raises:
-        LabError: All domains are taken, or the system lets none be claimed.
+        LabError: All domains are taken, or the system refuses.
     """
     name = notebook_name() or str(os.getpid())
     first = zlib.crc32(name.encode(errors='replace')) % len(_KNOWN)
@@ -106,18 +131,20 @@ def claim_domain(*, shared: bool = False, other_than: int | None = None) -> Doma
         wanted += _FOR_SHARING
     elif between_is_possible():
         wanted += BETWEEN
-    for domain_id in wanted:
-        if domain_id == other_than:
-            continue
-        try:
-            return DomainClaim(domain_id, listed=not shared)
-        except BlockingIOError:
-            continue
-        except OSError as error:
-            raise LabError(
-                f'The system does not let a ROS domain be claimed: {error}.',
-                todo='Choose a domain yourself: lab.start(domain_id=7)',
-            ) from error
+    others = [domain_id for domain_id in wanted if domain_id != other_than]
+    claim = _first_free(others, listed=not shared)
+    if claim is not None:
+        return claim
+    user_id, count = _greediest(wanted)
+    if user_id is not None:
+        claim = _first_free(others, listed=not shared, beside=user_id)
+    if claim is not None:
+        print(
+            f'All {len(wanted)} ROS domains of this machine are taken, {count} of them by '
+            f'{_account(user_id)}. This notebook takes domain {claim.domain_id} nevertheless: '
+            'nodes of that account in it hear yours, and yours hear them.'
+        )
+        return claim
     raise LabError(
         f'All {len(wanted)} ROS domains of this machine are in use by other notebooks.',
         todo='Shut down kernels that are not needed any more (in JupyterLab: the square symbol '
@@ -126,65 +153,213 @@ def claim_domain(*, shared: bool = False, other_than: int | None = None) -> Doma
     )
 
 
-def claimed_domains() -> dict[int, str]:
-    """Return the domains that this user's notebooks have claimed, and the notebooks' names.
+def _first_free(
+    wanted: list[int], *, listed: bool, beside: int | None = None
+) -> DomainClaim | None:
+    taken = {
+        port
+        for other in _udp_sockets()
+        if other.user_id != beside
+        for port in (other.port, other.peer_port)
+    }
+    for domain_id in wanted:
+        if _claim_port(domain_id) in taken:
+            continue
+        try:
+            return DomainClaim(domain_id, listed=listed, beside=beside)
+        except BlockingIOError:
+            continue
+        except OSError as error:
+            raise LabError(
+                f'The system does not let a ROS domain be claimed: {error}.',
+                todo='Choose a domain yourself: lab.start(domain_id=7)',
+            ) from error
+    return None
 
-    The names are text of others: what is no printable character in them is shown as `?`.
+
+def _greediest(wanted: list[int]) -> tuple[int | None, int]:
+    """Return the account that holds most of some domains, and how many; None if it is this one."""
+    ports = {_claim_port(domain_id) for domain_id in wanted}
+    held = {(s.user_id, port) for s in _udp_sockets() for port in (s.port, s.peer_port)}
+    counts = Counter(user_id for user_id, port in held if port in ports)
+    user_id, count = max(counts.items(), key=lambda item: (item[1], -item[0]), default=(None, 0))
+    return (user_id, count) if count > counts[os.getuid()] else (None, count)
+
+
+def claimed_domains() -> dict[int, str]:
+    """Return the domains that this user's notebooks have claimed, with the notebooks' names.
+
+    The notebook whose kernel was started last comes first.
     """
-    try:
-        table = Path('/proc/net/unix').read_text(encoding='utf-8', errors='replace')
-    except OSError:
-        return {}
-    start = _NOTEBOOK.format(user_id=os.getuid(), domain_id='').rstrip('/') + '/'
-    known = {str(domain_id) for domain_id in (*_KNOWN, *BETWEEN)}
+    known = {_claim_port(domain_id): domain_id for domain_id in (*_KNOWN, *BETWEEN)}
+    found = {
+        known[each.peer_port]: each.inode
+        for each in _udp_sockets()
+        if each.user_id == os.getuid() and each.peer == _LISTED and each.peer_port in known
+    }
+    names = _notebooks(set(found.values())) if found else {}
+    told = {domain_id: names.get(found[domain_id], (0, 'a notebook')) for domain_id in found}
+    newest_first = sorted(told, key=lambda domain_id: (-told[domain_id][0], domain_id))
+    return {domain_id: told[domain_id][1] for domain_id in newest_first}
+
+
+def open_ports() -> set[int]:
+    """Return the UDP ports that processes of this machine have opened."""
+    return {each.port for each in _udp_sockets()}
+
+
+class _UdpSocket(NamedTuple):
+    port: int
+    peer: str
+    peer_port: int
+    user_id: int
+    inode: int
+
+
+def _udp_sockets() -> list[_UdpSocket]:
+    """Return the UDP sockets of this machine with their owners, as the kernel knows them.
+
+    The kernel hands out its table in pieces, and finds the next piece by counting sockets. Where
+    one before it has gone meanwhile, another is passed over; where one has come, another is there
+    twice. So the table is whole if nothing is there twice, and if the next one is the same: what
+    has gone would be missing in that.
+    """
+    before: list[int] = []
+    # Somebody who opens and closes sockets without end must not hold up others.
+    for _ in range(_READINGS):
+        found = _read_udp_sockets()
+        inodes = sorted(each.inode for each in found if each.inode)
+        if inodes == before and len(set(inodes)) == len(inodes):
+            break
+        before = inodes
+    return found
+
+
+def _read_udp_sockets() -> list[_UdpSocket]:
+    found = []
+    for path in ('/proc/net/udp', '/proc/net/udp6'):
+        try:
+            lines = Path(path).read_text(encoding='ascii').splitlines()[1:]
+        except OSError:
+            continue
+        for words in map(str.split, lines):
+            port, peer_port = (int(word.rpartition(':')[2], 16) for word in words[1:3])
+            peer = _PEERS.get(words[2].partition(':')[0], '')
+            found.append(
+                _UdpSocket(port, peer, peer_port if peer else 0, int(words[7]), int(words[9]))
+            )
+    return found
+
+
+def _notebooks(inodes: set[int]) -> dict[int, tuple[int, str]]:
+    """Return when this user's processes that hold some sockets began, and their notebooks."""
+    wanted = {f'socket:[{inode}]': inode for inode in inodes}
     found = {}
-    for line in table.splitlines():
-        _, sign, name = line.partition(f'@{start}')
-        domain_id, slash, notebook = name.partition('/')
-        if sign and slash and domain_id in known:
-            found[int(domain_id)] = _printable(notebook)
-    return dict(sorted(found.items()))
+    for process in Path('/proc').glob('[0-9]*'):
+        for link in wanted.keys() & _links(process / 'fd'):
+            name = printable(_name(process) or f'process {process.name}')
+            found[wanted[link]] = _begun(process), name
+    return found
+
+
+def _links(folder: Path) -> set[str]:
+    """Return where the links of a folder lead, of those that can be read."""
+    found = set()
+    with suppress(OSError):
+        for name in os.listdir(folder):
+            with suppress(OSError):
+                found.add(os.readlink(folder / name))
+    return found
+
+
+def _begun(process: Path) -> int:
+    """Return when a process began, in ticks since the start of the machine (proc(5)), or 0."""
+    with suppress(OSError, ValueError, IndexError):
+        return int((process / 'stat').read_text().rpartition(')')[2].split()[19])
+    return 0
+
+
+def _name(process: Path) -> str:
+    """Return the notebook of a kernel, as the server has told it: only its user can read that."""
+    with suppress(OSError):
+        for variable in (process / 'environ').read_bytes().split(b'\0'):
+            name, _, value = variable.partition(b'=')
+            if name == b'JPY_SESSION_NAME':
+                return Path(os.fsdecode(value)).name
+    return ''
+
+
+def _claim_port(domain_id: int) -> int:
+    return first_port(domain_id) + _CLAIM_PORT
+
+
+def _account(user_id: int | None) -> str:
+    try:
+        return f'the account {pwd.getpwuid(user_id or 0).pw_name}'
+    except KeyError:
+        return f'the account with the number {user_id}'
 
 
 def number_for_ros(domain_id: int) -> int:
-    """Return the number by which ROS in this process knows a domain.
+    """Return the number that `rclpy.init` in this process needs for a domain.
 
-    Fast DDS reads its profile once, when the first node of a process is made. If that was the
-    one of the domains between (`domain_ids.BETWEEN`), it counts ports from then on.
+    With the profile of `domain_ids.BETWEEN`, domain ids are port numbers to Fast DDS.
 
     Args:
-        domain_id: The domain, as `ROS_DOMAIN_ID` has it.
+        domain_id: The domain, as in `ROS_DOMAIN_ID`.
 
     Raises:
-        LabError: It lies between two others, and the first node was made without that profile.
+        LabError: It is in `BETWEEN`, and Fast DDS has not that profile.
     """
-    counts = domain_id in BETWEEN if _counts_ports is None else _counts_ports
+    counts = domain_id in BETWEEN if _profile is None else Path(_profile).name == PROFILE.name
     if counts:
         return first_port(domain_id) - PORT_BETWEEN
     if domain_id in BETWEEN:
         raise LabError(
-            f'Domain {domain_id} can only be the first that a notebook takes part in.',
-            todo=f'Restart the kernel, and begin with lab.start(domain_id={domain_id}).',
+            f'Domain {domain_id} is one that only the whole notebook can be in.',
+            todo=f'Call lab.stop(), then lab.start(domain_id={domain_id}).',
         )
     return domain_id
 
 
 def first_node_is_made() -> None:
-    """Note which profile Fast DDS has read; called when this process has made a node."""
-    global _counts_ports
-    if _counts_ports is None:
-        _counts_ports = counts_ports()
+    """Note which profile Fast DDS has read for the first node of this process."""
+    global _profile
+    if _profile is None:
+        _profile = os.environ.get(PROFILES_FILE, '')
 
 
-def _address(name: str) -> bytes:
-    """Return a name as the address of an abstract socket, with as much of its end as fits."""
-    start, slash, end = name.rpartition('/')
-    room = _LONGEST - 1 - len(f'{start}{slash}'.encode())
-    kept = end.encode()[-room:].decode(errors='ignore')
-    return b'\0' + f'{start}{slash}{kept}'.encode()
+def follow_profile() -> None:
+    """Let Fast DDS, which reads its profile once, use the one that is set now.
+
+    Raises:
+        LabError: See `use_profile`.
+    """
+    wanted = os.environ.get(PROFILES_FILE, '')
+    if _profile is not None and (not wanted or is_ours(wanted)):
+        _use(wanted)
 
 
-def _printable(text: str) -> str:
-    """Return text without what could move a terminal's cursor, or end a line."""
-    text = text.encode(errors='replace').decode()
-    return ''.join(char if char.isprintable() else '?' for char in text)
+@contextmanager
+def opened() -> Iterator[None]:
+    """Let other computers reach the participants that are made meanwhile.
+
+    Raises:
+        LabError: See `use_profile`.
+    """
+    before = _profile or ''
+    if not is_ours(before):
+        yield
+        return
+    _use('')
+    try:
+        yield
+    finally:
+        _use(before)
+
+
+def _use(path: str) -> None:
+    global _profile
+    if path != _profile:
+        use_profile(path)
+        _profile = path

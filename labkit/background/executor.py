@@ -1,20 +1,21 @@
-"""The background thread: one executor, callbacks one after the other, and waiting for them.
+"""The background thread: one executor that runs callbacks one after the other.
 
-What was measured of rclpy in a kernel, and decides the shape of this module:
+Measurements of rclpy in a kernel that decide the design of this module:
 
 - `rcl_wait` can't be interrupted from Python, so nothing spins in the foreground: a cell that
   waits, waits for the background thread.
-- A `SingleThreadedExecutor` bears nodes that come and go while it spins; a multi-threaded one
-  fails now and then, and costs more a message.
-- rclpy makes a wait set, a task and a coroutine of its own for each message. A message takes a
-  third of the time when the wait set is kept (see `wait_set`) and the callback run directly.
-- An exception ends `Executor.spin()` silently, so each callback is run on its own.
+- A `SingleThreadedExecutor` tolerates nodes that come and go while it spins; a multi-threaded one
+  fails now and then, and costs more per message.
+- rclpy makes a wait set, a task and a coroutine for each message. A message takes a third of the
+  time when the wait set is kept (see `wait_set`) and the callback is run directly.
+- An exception ends `Executor.spin()` silently, so each callback is run separately.
 - A spinning thread at the end of the interpreter aborts the process, so it is joined at exit.
 """
 
 from __future__ import annotations
 
 import threading
+import time
 from collections import deque
 from collections.abc import Callable, Coroutine
 from contextlib import AbstractContextManager
@@ -26,36 +27,33 @@ from rclpy.executors import Executor
 from rclpy.guard_condition import GuardCondition
 from rclpy.node import Node
 from rclpy.task import Task
+from rclpy.timer import Timer
 from rclpy.waitable import Waitable
 
+from labkit import settings
 from labkit.background import compat
-from labkit.background.conditions import POLL_SEC, Conditions
+from labkit.background.conditions import Conditions
 from labkit.background.console import Console
 from labkit.background.nodes import NodeEntry, callback_name
-from labkit.background.under_way import UnderWay, Work
+from labkit.background.pending_tasks import PendingTasks, Work
+from labkit.background.wait import POLL_SEC
 from labkit.background.wait_set import KeptWaitSet, Ready
 from labkit.errors import LabError
 
 __all__ = ['BackgroundExecutor']
 
-# How long a thread may take to end that runs no callback, s: only a fault would make it longer.
+# How long a thread that runs no callback may take to end, s; only a bug would exceed it.
 END_SEC = 30.0
-# How long to wait for a callback that keeps a removed node from being let go.
+# How long to wait for a callback that keeps a removed node from being released, s.
 RELEASE_SEC = 1.0
 
 
 class BackgroundExecutor(Executor):
     """Runs the callbacks of all nodes in one background thread, in a fixed order.
 
-    Nodes come in the order in which they were added, and messages before timers: what a timer has
-    published is heard before its next tick, however late the machine is. So the output of a cell
-    is the same each time.
-
-    Args:
-        console: Where the output of callbacks goes.
-
-    Attributes:
-        thread: The background thread.
+    Nodes have their turns in the order they were added, and messages come before timers: what a
+    timer has published is received before its next tick, however slow the machine is. So the
+    output of a cell is the same each time.
     """
 
     def __init__(self, console: Console) -> None:
@@ -66,12 +64,14 @@ class BackgroundExecutor(Executor):
         self._rounds = 0
         self._round_awaited = 0
         self._running: tuple[NodeEntry, Any] | None = None
+        self._running_since = 0.0
         self._conditions = Conditions(console)
         self._closing = False
-        self._settling: threading.Event | None = None
+        self._settled = threading.Event()  # not set while somebody waits for it
+        self._settled.set()
         self._settle_lock = threading.Lock()
         self._wait_set = KeptWaitSet(self)
-        self._under_way = UnderWay(self._wait_set.give_up)
+        self._pending_tasks = PendingTasks(self._wait_set.invalidate)
         self._ready: deque[Ready | Work] = deque()
         self.thread = threading.Thread(target=self._spin, name='labkit', daemon=True)
 
@@ -81,25 +81,22 @@ class BackgroundExecutor(Executor):
 
     @property
     def is_open(self) -> bool:
-        """Tell whether the background thread was started, and not ended since."""
+        """Return whether the background thread is running."""
         return self.thread.is_alive() and not self._closing
 
     @property
     def awaiting(self) -> int:
-        """Return how many coroutines and tasks have begun, or are to, and have not ended."""
-        return len(self._under_way)
+        """Return the number of pending coroutines and tasks."""
+        return len(self._pending_tasks)
 
     def close(self, timeout_sec: float) -> bool:
-        """End the background thread, and wait for a callback that is still running.
+        """End the background thread, wait for a running callback, and return whether it ended.
 
-        A thread that runs none ends by itself, however late a busy machine lets it: the end of
-        the interpreter would abort the process before.
+        A thread that runs no callback ends by itself, and is waited for longer: otherwise the end
+        of the interpreter would abort the process.
 
         Args:
-            timeout_sec: How long to wait for a callback, s.
-
-        Returns:
-            Whether the thread has ended in time.
+            timeout_sec: Seconds to wait for a callback.
         """
         self._closing = True
         self.wake()
@@ -108,34 +105,35 @@ class BackgroundExecutor(Executor):
             if left <= (0 if self._is_busy else -END_SEC):
                 break
             self.thread.join(POLL_SEC)
-            left -= POLL_SEC  # no clock: the whole machine may have stood still meanwhile
-        self._under_way.cancel()
-        self._wait_set.give_up()
+            left -= POLL_SEC  # no clock: the whole machine may be suspended meanwhile
+        self._pending_tasks.cancel()
+        self._wait_set.invalidate()
         return not self.thread.is_alive()
 
     # -- nodes ----------------------------------------------------------------------------------
 
     def add_entry(self, entry: NodeEntry) -> None:
-        """Run the callbacks of a node from now on."""
+        """Add a node."""
         self._entries[entry.node] = entry
         self.add_node(entry.node)
         self.wake()
 
     def wake(self) -> None:
-        """Look anew at what there is. rclpy calls it when an entity was made or destroyed."""
-        self._wait_set.give_up()
-        self._rouse()
+        """Gather the entities again. rclpy calls it when one was made or destroyed."""
+        self._wait_set.invalidate()
+        self._notify()
 
-    def _rouse(self) -> None:
-        """End a wait, to look at what is under way. The entities are still the same."""
-        self._under_way.stir()
+    def _notify(self) -> None:
+        """End a wait to resume pending tasks. The entities are still the same."""
+        self._pending_tasks.notify()
         super().wake()
 
     def remove_node(self, node: Node) -> None:
-        """Run the callbacks of a node no more, and let go of its timers and subscriptions.
+        """Remove a node, and release its timers and subscriptions.
 
-        What a wait holds is destroyed only afterwards. Were a node of the same name made before,
-        the graph would take the new one's topics for the old one's, and leave them nameless.
+        Entities held by a wait are destroyed only afterwards. If a node of the same name were made
+        before that, the graph would take its endpoints for those of the old one, and leave them
+        without a node.
         """
         known = self._entries.pop(node, None)
         if known is not None and node.executor is self:
@@ -143,19 +141,19 @@ class BackgroundExecutor(Executor):
         seen = self._rounds
         super().remove_node(node)
         self.wake()
-        # Who looks at a condition keeps the thread from its next round.
+        # A callback and a condition keep the thread from its next round.
         waits_in_vain = self.in_callback() or self._conditions.caller_is_looking
         if self.is_open and not waits_in_vain:
             self._await_round_after(seen)
 
     def _await_round_after(self, seen: int) -> None:
-        """Wait until what the background waited for is let go, unless a callback keeps it."""
+        """Wait until the background has released its wait set, unless a callback is running."""
         left = END_SEC
         with self._round_begun:
             self._round_awaited += 1
             try:
                 while not self._round_begun.wait_for(lambda: self._rounds > seen, RELEASE_SEC):
-                    left -= RELEASE_SEC  # no clock: the whole machine may have stood still
+                    left -= RELEASE_SEC  # no clock: the whole machine may be suspended
                     if self._is_busy or not self.is_open or left <= 0:
                         return
             finally:
@@ -166,7 +164,7 @@ class BackgroundExecutor(Executor):
         return self._entries.get(node)
 
     def get_nodes(self) -> list[Node]:
-        """Return the nodes on this executor, in the order in which they were added."""
+        """Return the nodes on this executor, in the order they were added."""
         return list(self._entries)
 
     def create_task(
@@ -174,7 +172,7 @@ class BackgroundExecutor(Executor):
     ) -> Task:
         """Run a callback that belongs to no entity, such as one added to a future.
 
-        It is a part of the node whose callback asks for it; outside of callbacks, of the cell.
+        It belongs to the node whose callback calls this; outside of callbacks, to the cell.
         """
         running = self._running if self.in_callback() else None
         if running is not None:
@@ -183,16 +181,12 @@ class BackgroundExecutor(Executor):
             first = next(iter(self._entries.values()))
             owner = replace(first, cell=self._console.current_cell(), counts={}, budget=None)
         task = Task(callback, args, kwargs, executor=self)  # type: ignore[no-untyped-call]
-        self._under_way.add_function(task, owner)
-        self._rouse()
+        self._pending_tasks.add_function(task, owner)
+        self._notify()
         return task
 
     def spin(self, *_: Any, **__: Any) -> NoReturn:
-        """Refuse to spin: the background does, and two at once would take from each other.
-
-        Raises:
-            LabError: Always.
-        """
+        """Raise a LabError: the background spins already."""
         raise LabError(
             'This executor can not be asked to spin: it spins in the background already.',
             todo='Wait for what you expect: lab.wait_until(lambda: future.done()), or '
@@ -204,55 +198,42 @@ class BackgroundExecutor(Executor):
     # -- waiting --------------------------------------------------------------------------------
 
     def wait(self, condition: Callable[[], object], timeout_sec: float | None) -> bool:
-        """Wait until `condition()` is true; it is looked at after each callback.
-
-        Args:
-            condition: A function without arguments. It is never called during a callback.
-            timeout_sec: Seconds to wait. Block forever if `None` or negative. Don't wait if 0.
-
-        Returns:
-            Whether it became true in time.
-
-        Raises:
-            Exception: What `condition` raises.
-        """
+        """Wait until `condition()` is true, see `Conditions.wait`."""
         return self._conditions.wait(condition, timeout_sec, lambda: self._closing)
 
     def settle(self, timeout_sec: float) -> bool:
-        """Wait until nothing is left to run, nor has become ready through what was run.
+        """Wait until no callback is left to run, and return whether that was in time.
 
         Within one process a message is in the queue of its subscriptions when `publish` returns.
-        So whatever a message has set off, one callback after the other, has happened then, except
-        for what other threads do.
+        So all callbacks that a message has triggered, directly or through others, have run then,
+        except for what other threads do.
 
         Args:
             timeout_sec: Seconds to wait: a callback may not return, or a timer without a period
                 be ready for ever.
-
-        Returns:
-            Whether it became quiet in time.
         """
         with self._settle_lock:
-            done = self._settling = threading.Event()
-            self._rouse()
-            quiet = done.wait(timeout_sec)
-            self._settling = None
-        return quiet
+            settled = self._settled = threading.Event()
+            try:
+                self._notify()
+                return settled.wait(timeout_sec)
+            finally:
+                settled.set()
 
     def between_callbacks(self) -> AbstractContextManager[bool]:
-        """Return what keeps callbacks waiting for a `with` block, which must not wait itself."""
+        """Return a lock that delays callbacks in a `with` block, which must not wait itself."""
         return self._conditions.lock
 
     def in_callback(self) -> bool:
-        """Tell whether the caller is the background thread itself, that is, a callback."""
+        """Return whether a callback calls this."""
         return threading.current_thread() is self.thread
 
     def refuse_in_callback(self, what: str, todo: str = '') -> None:
-        """Raise a LabError when a callback or a condition calls: it would wait for itself.
+        """Raise a LabError if a callback or a condition calls this: it would wait for itself.
 
         Args:
-            what: What can't be done there, such as `'Waiting'`.
-            todo: What to do instead in a callback.
+            what: The refused action, such as `'Waiting'`.
+            todo: The alternative in a callback.
         """
         if self._conditions.caller_is_looking:
             raise LabError(
@@ -272,7 +253,7 @@ class BackgroundExecutor(Executor):
 
     @property
     def _is_busy(self) -> bool:
-        """Whether a callback runs, or a condition is looked at."""
+        """Whether a callback is running, or a condition being evaluated."""
         return self._running is not None or self._conditions.is_looking
 
     def caller(self) -> tuple[NodeEntry, str] | None:
@@ -283,21 +264,33 @@ class BackgroundExecutor(Executor):
         return running[0], callback_name(running[1])
 
     def running_callback(self) -> tuple[str, str] | None:
-        """Return the node and the name of the callback that runs at this moment, or None."""
+        """Return the node and the name of the running callback, or None."""
         running = self._running
         return (running[0].name, callback_name(running[1])) if running is not None else None
+
+    def running_period(self) -> float:
+        """Return the period of the timer whose callback is running, s; 0 if none is."""
+        running = self._running
+        timer = running[1] if running is not None else None
+        return timer.timer_period_ns * 1e-9 if isinstance(timer, Timer) else 0.0
+
+    def running_for(self) -> tuple[NodeEntry, str, float] | None:
+        """Return the node and the name of the running callback, and its seconds, or None."""
+        running, since = self._running, self._running_since
+        if running is None:
+            return None
+        return running[0], callback_name(running[1]), time.monotonic() - since
 
     # -- the background thread ------------------------------------------------------------------
 
     def _spin(self) -> None:
-        # A callback may have shut down this executor, or ROS past labkit: `is_open` tells.
+        # A callback may have shut down this executor or, bypassing labkit, ROS.
         while not (self._closing or compat.is_shut_down(self)):
             try:
                 self._step()
             except InvalidHandle:
-                # Something was destroyed between waiting and taking: there is nothing to run.
-                pass
-            except BaseException as error:  # a fault of labkit's own must not silence every node
+                pass  # destroyed between waiting and taking
+            except BaseException as error:  # a bug in labkit must not silence every node
                 if self.context.ok():
                     self._console.show_error('labkit itself', 'the background', error)
             if not self.context.ok():
@@ -312,36 +305,38 @@ class BackgroundExecutor(Executor):
         if self._ready:
             self._run(self._ready.popleft())
             return
-        # Before the next wait: what they await may have come with the last callback.
-        if due := self._under_way.due():
+        # Before the next wait: the last callback may have completed what they await.
+        if due := self._pending_tasks.due():
             self._ready.extend(due)
             return
-        settling = self._settling
+        settled = self._settled
         ready = self._wait_set.wait(
             self._entries,
-            may_run=self.can_execute if self._under_way else None,
-            block=settling is None,
+            may_run=self.can_execute if self._pending_tasks else None,
+            block=settled.is_set(),
         )
         self._ready.extend(ready)
-        if settling is not None and not ready:
-            self._settling = None  # before the one who waits asks anew
-            settling.set()
+        if not ready:
+            settled.set()
 
     def _run(self, work: Ready | Work) -> None:
-        """Run a callback, or go on with what is under way, and look what has come of it."""
+        """Run a callback or resume a task, handle its error, and evaluate the conditions."""
         entry = self._entry_to_run(work)
         if entry is None:
             return
         what = work.what if isinstance(work, Work) else work.entity
         self._console.speak_for(entry.cell)
         with self._conditions.lock:
-            self._running = (entry, what)
+            self._running, self._running_since = (entry, what), time.monotonic()
             if isinstance(work, Work):
-                error = self._under_way.go_on(work)
+                error = self._pending_tasks.resume(work)
             else:
                 error = self._begin(work, entry)
             self._running = None
-            # Not when the node was removed meanwhile, or an action: then the error is that it was.
+            took = time.monotonic() - self._running_since
+            if took >= settings.LONG_SEC or entry.took:
+                entry.took[callback_name(what)] = took
+            # The error of a node or action that was removed meanwhile is only that it was.
             if (
                 error is not None
                 and entry.node in self._entries
@@ -353,31 +348,31 @@ class BackgroundExecutor(Executor):
             self._conditions.look()
 
     def _entry_to_run(self, work: Ready | Work) -> NodeEntry | None:
-        """Return the node whose callback is to be run now, None if none is."""
+        """Return the node of a callback, None if the callback is not to run now."""
         if isinstance(work, Work):
-            if self._under_way.is_over(work):
+            if self._pending_tasks.is_over(work):
                 return None
-            # Spun with `rclpy.spin_once()`, it goes on when its node is spun again.
-            at_rest = work.entity is not None and work.entry.node not in self._entries
-            return None if at_rest else work.entry
+            # After `rclpy.spin_once()`, it is resumed when its node is spun again.
+            paused = work.entity is not None and work.entry.node not in self._entries
+            return None if paused else work.entry
         entry = self._entries.get(work.node)
-        if entry is not None and self._under_way and not self.can_execute(work.entity):
-            # One of its group is under way. It stays ready, but for what a wait itself takes.
+        if entry is not None and self._pending_tasks and not self.can_execute(work.entity):
+            # Its group is busy. It stays ready, except a guard condition, which the wait resets.
             if isinstance(work.entity, GuardCondition):
                 work.entity.trigger()  # type: ignore[no-untyped-call]
             return None
         return entry
 
     def _begin(self, work: Ready, entry: NodeEntry) -> BaseException | None:
-        """Run the callback of an entity; return what it raises."""
+        """Run the callback of an entity, and return its exception."""
         try:
             execute = work.take(work.entity)
         except BaseException as error:
             return error
         if execute is None:
-            self._wait_set.give_up()  # it was destroyed, perhaps past its node
+            self._wait_set.invalidate()  # it was destroyed, perhaps without its node
             return None
-        self._under_way.stir()
+        self._pending_tasks.notify()
         entry.count(work.entity)
         coroutine = execute()
         try:
@@ -387,12 +382,11 @@ class BackgroundExecutor(Executor):
         except BaseException as error:
             return error
         task = Task(coroutine)  # type: ignore[no-untyped-call]
-        self._under_way.add_callback(task, entry, work.entity)
-        return None
+        return self._pending_tasks.add_callback(task, entry, work.entity)
 
 
 def _was_destroyed(node: Node, what: object, error: BaseException) -> bool:
-    """Tell whether an error is only that an action's end was destroyed before it was taken."""
+    """Return whether an error is only that an action was destroyed before it was taken."""
     if not isinstance(what, Waitable):
         return False
     removed = isinstance(error, compat.RCLError) and what not in node.waitables

@@ -1,8 +1,8 @@
-"""A box for what nodes of a cell say: it shows the last lines, scrolls inside, and counts them.
+"""A scrolling box for the output of a cell's nodes, with a count of lines.
 
-The lines are those of the cell's stream, as without it, so that they can be copied, are coloured,
-and stay in order with what else the cell prints. What makes the box is a style, which comes in an
-output of its own before them; the count is in that output too.
+The lines remain in the cell's stream, so they can be copied, are coloured, and stay in order with
+what else the cell prints. A separate output before them has the style that makes the box, and the
+count.
 """
 
 from __future__ import annotations
@@ -18,25 +18,24 @@ from labkit.background import compat
 
 __all__ = ['LogBox']
 
-# Fewer lines need no count.
+# The count is shown if there are more lines than this.
 LINES = 12
-# The count is brought up to date so often, s.
 EVERY_SEC = 0.5
 
 
 class LogBox:
-    """The box under one cell. What is written under the cell from now on is in it.
+    """The box for all output under one cell from now on.
 
     Args:
         request: The kernel's request that runs the cell.
-        kept: So many lines are kept; of those that follow only the last one is shown.
+        kept: Number of lines to keep; of later ones only the last is shown.
     """
 
     def __init__(self, request: dict[str, Any], kept: int) -> None:
         self._request, self._kept = request, kept
-        self._name = f'labkit-log-{uuid.uuid4().hex}'
+        self._display_id = f'labkit-log-{uuid.uuid4().hex}'
         self._count, self._last = 0, ''
-        self._due, self._waits = 0.0, False
+        self._due, self._is_scheduled = 0.0, False
         self._show(update=False)
 
     def add(self, text: str) -> None:
@@ -46,14 +45,14 @@ class LogBox:
         if self._count <= LINES:
             return
         if time.monotonic() >= self._due:
-            self._tell()
-        elif not self._waits:
-            # Nothing more may come, and the last count is the one that stays.
-            self._waits = True
-            compat.call_in_kernel(self._tell, delay_sec=EVERY_SEC)
+            self._update()
+        elif not self._is_scheduled:
+            # There may be no further line to show the last count with.
+            self._is_scheduled = True
+            compat.call_in_kernel(self._update, delay_sec=EVERY_SEC)
 
-    def _tell(self) -> None:
-        self._due, self._waits = time.monotonic() + EVERY_SEC, False
+    def _update(self) -> None:
+        self._due, self._is_scheduled = time.monotonic() + EVERY_SEC, False
         self._show(update=True)
 
     def _show(self, *, update: bool) -> None:
@@ -64,7 +63,7 @@ class LogBox:
             words += f', the first {self._kept} below. The last one: {self._last[:200]}'
         style = f'<style class="labkit-style">{_rules()}</style>'
         page = f'{style}<div class="labkit-log">{html.escape(words)}</div>'
-        compat.display_under(self._request, {'text/html': page}, self._name, update=update)
+        compat.display_under(self._request, {'text/html': page}, self._display_id, update=update)
 
 
 @functools.lru_cache(maxsize=1)

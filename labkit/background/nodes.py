@@ -1,9 +1,10 @@
-"""Nodes as objects: which exist, which can be used, how to be rid of one."""
+"""Node objects: find them, check them, destroy them."""
 
 from __future__ import annotations
 
 import gc
 import threading
+import time
 import traceback
 from collections.abc import Callable
 from contextlib import suppress
@@ -14,16 +15,20 @@ from weakref import WeakKeyDictionary, WeakSet
 from rclpy.action.client import ActionClient
 from rclpy.action.server import ActionServer
 from rclpy.context import Context
-from rclpy.exceptions import InvalidHandle
+from rclpy.exceptions import InvalidHandle, NameValidationException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.validate_full_topic_name import validate_full_topic_name
+from rclpy.validate_namespace import validate_namespace
+from rclpy.validate_node_name import validate_node_name
 
 from labkit.background import compat
 from labkit.background.console import Cell
-from labkit.errors import LabError
+from labkit.errors import LabError, quoted
 
 __all__ = [
     'NodeEntry',
+    'Origin',
     'after_destroy',
     'callback_name',
     'check_node',
@@ -38,21 +43,22 @@ __all__ = [
 ]
 
 
-# Called after a node was destroyed. In one process a subscription that is left over keeps the next
-# publisher of its topic from having another type.
+# Called after a node was destroyed, to destroy subscriptions of labkit's own: within one process,
+# a remaining one would keep the next publisher of its topic from having another type.
 after_destroy: list[Callable[[], None]] = []
 
 
 @dataclass(eq=False)
 class NodeEntry:
-    """A node on the background executor, and where it came from.
+    """A node on the background executor.
 
     Attributes:
         node: The node itself.
         name: Its full name, such as `/talker`.
         cell: The execution of the cell that started it.
-        counts: How many callbacks have been run for each timer, subscription and so on.
-        budget: How many more may be run before the node leaves the executor; None for no end.
+        counts: Number of callbacks run for each timer, subscription and so on.
+        budget: Number of callbacks left before the node leaves the executor, None for no limit.
+        took: Seconds that callbacks took the last time, by name, once one of them has taken long.
     """
 
     node: Node
@@ -60,26 +66,27 @@ class NodeEntry:
     cell: Cell
     counts: dict[Any, int] = field(default_factory=dict)
     budget: int | None = None
+    took: dict[str, float] = field(default_factory=dict)
 
     @property
     def callbacks(self) -> int:
-        """Return how many of its callbacks have been run."""
+        """Return the number of its callbacks that were run."""
         return sum(self.counts.values())
 
     def count(self, entity: Any) -> None:
-        """Count one more callback, of an entity or, with None, of none."""
+        """Count a callback of an entity, or one without entity if None."""
         self.counts[entity] = self.counts.get(entity, 0) + 1
         if self.budget is not None:
             self.budget -= 1
 
     @property
     def alive(self) -> bool:
-        """Tell whether the node still exists, i.e. nobody has called `destroy_node()`."""
+        """Return whether the node can be used, see `node_exists`."""
         return node_exists(self.node)
 
 
 def node_exists(node: Node) -> bool:
-    """Tell whether a node can be used: it is not destroyed, and its ROS is not shut down."""
+    """Return whether a node can be used: it is not destroyed, and its context not shut down."""
     try:
         with node.handle:
             return bool(node.context.ok())
@@ -89,7 +96,7 @@ def node_exists(node: Node) -> bool:
 
 
 def full_name(node: Node) -> str:
-    """Return the full name of a node, such as `/talker`; '' if it exists no more."""
+    """Return the full name of a node, such as `/talker`; '' if it was destroyed."""
     try:
         return node.get_fully_qualified_name()
     except (InvalidHandle, AttributeError):
@@ -97,45 +104,62 @@ def full_name(node: Node) -> str:
 
 
 def callback_name(what: Any) -> str:
-    """Return the name of a callback, or of that of a timer, a subscription or a service."""
+    """Return the name of a callback, given as such or by its entity."""
     callback = getattr(what, 'callback', None) or what
     return getattr(callback, '__name__', None) or type(what).__name__
 
 
-class _Made:
-    """The nodes that were made since `follow`, as long as something holds them.
+@dataclass(frozen=True)
+class Origin:
+    """How a node was made: the execution of its cell, and its arguments for ROS.
 
     Attributes:
-        count: How many were ever made.
+        cell: The execution.
+        args: Arguments for this node alone.
+        shared: Rules and parameters of its program, for all nodes of that.
+        began: When, ns since 1970.
+    """
+
+    cell: Cell
+    args: tuple[str, ...] = ()
+    shared: tuple[str, ...] = ()
+    began: int = field(default_factory=time.time_ns)
+
+
+class _Made:
+    """The nodes that were made since `follow`, by weak references.
+
+    Attributes:
+        origins: How they were made.
     """
 
     def __init__(self) -> None:
-        self.count = 0
+        self.origins: WeakKeyDictionary[Node, Origin] = WeakKeyDictionary()
         self._lock = threading.Lock()
         self._nodes: WeakSet[Node] | None = None
         self._kinds: WeakSet[type[Node]] = WeakSet()
 
     def follow(self) -> None:
-        """Keep track from now on; those that are there are looked for once."""
+        """Start tracking, beginning with all existing nodes."""
         with self._lock:
             if self._nodes is None:
                 self._nodes = WeakSet(_on_the_heap())
 
     def forget(self) -> None:
-        """Keep track no more."""
+        """Stop tracking."""
         with self._lock:
             self._nodes = None
 
-    def add(self, node: Node) -> None:
-        """Note a node that is about to be made."""
+    def add(self, node: Node, origin: Origin) -> None:
+        """Add a node that is about to be made."""
         with self._lock:
-            self.count += 1
+            self.origins[node] = origin
             self._kinds.add(type(node))
             if self._nodes is not None:
                 self._nodes.add(node)
 
     def kinds(self) -> list[type[Node]]:
-        """Return the classes of all nodes that were ever noted."""
+        """Return the classes of all nodes ever added."""
         with self._lock:
             return list(self._kinds)
 
@@ -147,26 +171,26 @@ class _Made:
 
 
 made = _Made()
-"""In a notebook each new node is noted here. In a script, where rclpy is untouched, none is."""
+"""The nodes made in a notebook. A script, where rclpy is not patched, adds none."""
 
 
 def existing_nodes() -> list[Node]:
-    """Return all nodes of this process that exist, whether they are spun or not."""
+    """Return all nodes of this process that can be used, spun or not."""
     return [node for node in made.all() if node_exists(node)]
 
 
 def _on_the_heap() -> list[Node]:
-    """Look through all objects of Python, which takes tenths of a second if there are many."""
-    # type() and not isinstance(): some objects answer to __class__ with surprises.
+    """Search all of Python's objects, which may take tenths of a second."""
+    # type() and not isinstance(): some objects have a __class__ that raises or lies.
     return [thing for thing in gc.get_objects() if issubclass(type(thing), Node)]
 
 
 half_made: WeakKeyDictionary[Node, Cell] = WeakKeyDictionary()
-"""Nodes whose `__init__` has raised, and the execution of the cell that was to make them."""
+"""Nodes whose `__init__` has raised, with the execution of the cell that made them."""
 
 
 def find_half_made(error: BaseException) -> list[Node]:
-    """Return the nodes whose `__init__` a traceback comes from."""
+    """Return the nodes whose `__init__` is in the traceback of an error."""
     found: list[Node] = []
     for frame, _ in traceback.walk_tb(error.__traceback__):
         code = frame.f_code
@@ -178,7 +202,7 @@ def find_half_made(error: BaseException) -> list[Node]:
 
 
 def check_node(node: object) -> None:
-    """Raise a LabError if `node` is no node that can be spun."""
+    """Raise a LabError if `node` can't be spun."""
     if isinstance(node, type) and issubclass(node, Node):
         raise LabError(
             f'lab.spin() expects a node, but got the class {node.__name__}.',
@@ -186,32 +210,41 @@ def check_node(node: object) -> None:
         )
     if not isinstance(node, Node):
         raise LabError(
-            f'lab.spin() expects a node, but got {node!r}.',
+            f'lab.spin() expects a node, but got {quoted(node)}.',
             todo='Pass an object of a class that is made on rclpy.node.Node.',
         )
     if not node_exists(node):
-        raise LabError(
-            f'This {type(node).__name__} exists no more: it was destroyed, or ROS was shut down '
-            'since it was made.',
-            todo='Make it again; running its cell again does that.',
+        raise _gone(node)
+
+
+def _gone(node: Node) -> LabError:
+    """Return why a node does not exist."""
+    name = type(node).__name__
+    try:
+        context: Any = Node.context.fget(node)  # type: ignore[attr-defined]
+    except AttributeError:
+        return LabError(
+            f'This {name} is not a node yet: its __init__ has not called the one of Node.',
+            todo="Let super().__init__('name_of_the_node') be the first line of its __init__.",
         )
+    why = 'it was destroyed' if context.ok() else 'ROS was shut down since it was made'
+    return LabError(
+        f'This {name} exists no more: {why}.',
+        todo='Make it again; running its cell again does that.',
+    )
 
 
 def destroy_node(node: Node) -> BaseException | None:
-    """Destroy a node for certain, whatever its own `destroy_node` does.
+    """Destroy a node in any state, whatever its own `destroy_node` does.
 
-    A node whose `__init__` has raised is not asked: it may lack what `destroy_node` uses.
-
-    Args:
-        node: The node, in whatever state it is.
+    If its `__init__` has raised, its own `destroy_node` is not called: it may use attributes that
+    the node lacks.
 
     Returns:
-        What its own `destroy_node` has raised, or a LabError if that does not call the one of
-        `Node`; None if nothing is wrong with it.
+        The error of its own `destroy_node`, or a LabError if that does not call the one of `Node`.
 
     Raises:
-        KeyboardInterrupt: The stop button was pressed meanwhile. The node is destroyed all the
-            same.
+        KeyboardInterrupt: The stop button was pressed. The node is destroyed all the same.
     """
     error: BaseException | None = None
     usable = node_exists(node)
@@ -226,10 +259,14 @@ def destroy_node(node: Node) -> BaseException | None:
                 )
     except KeyboardInterrupt:
         raise
-    except BaseException as raised:  # by code of a learner's, sys.exit() included
-        error = raised if usable else None  # once ROS is shut down, nothing can be published
+    except BaseException as raised:  # by the learner's code, sys.exit() included
+        error = raised if usable else None  # publishing, for one, fails once ROS is shut down
     finally:
-        _destroy_actions(node)
+        # rclpy leaves action servers and clients alive.
+        for waitable in list(getattr(node, 'waitables', ())):
+            if isinstance(waitable, (ActionServer, ActionClient)):
+                with suppress(InvalidHandle, ValueError):
+                    waitable.destroy()  # type: ignore[no-untyped-call]
         _destroy_handle(node)
         for tell in tuple(after_destroy):
             tell()
@@ -237,7 +274,7 @@ def destroy_node(node: Node) -> BaseException | None:
 
 
 def _is_destroyed(node: Node) -> bool:
-    """Tell whether nothing of a node is left, or its `__init__` did not get as far as ROS."""
+    """Return whether a node has no handle: it was destroyed, or its `__init__` failed early."""
     try:
         with node.handle:
             return False
@@ -245,24 +282,62 @@ def _is_destroyed(node: Node) -> bool:
         return True
 
 
-def _destroy_actions(node: Node) -> None:
-    """Destroy the action servers and clients of a node, which rclpy leaves alive."""
-    for waitable in list(getattr(node, 'waitables', ())):
-        if isinstance(waitable, (ActionServer, ActionClient)):
-            with suppress(InvalidHandle, ValueError):
-                waitable.destroy()  # type: ignore[no-untyped-call]
-
-
 def _destroy_handle(node: Node) -> None:
-    """Destroy what a node has in ROS, without asking the node."""
+    """Destroy a node without calling its own methods."""
     if _is_destroyed(node):
         return
     try:
         Node.destroy_node(node)  # type: ignore[no-untyped-call]
     except Exception:
-        # Its __init__ did not get far enough, or what it looks at was written over.
+        # Its __init__ did not get far enough, or the learner has overwritten attributes.
         if not _is_destroyed(node):
             node.handle.destroy_when_not_in_use()
+
+
+class _Helper(Node):
+    """A node that lists what ROS allows: any program of DDS may announce other names.
+
+    rclpy lists those names too, and raises when it is asked about one.
+    """
+
+    def get_topic_names_and_types(self, no_demangle: bool = False) -> list[tuple[str, list[str]]]:
+        found = _told(super().get_topic_names_and_types, no_demangle)
+        return found if no_demangle else [each for each in found if _is_topic(each[0])]
+
+    def get_service_names_and_types(self) -> list[tuple[str, list[str]]]:
+        found = _told(super().get_service_names_and_types)
+        return [each for each in found if _is_topic(each[0])]
+
+    def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
+        found = _told(super().get_node_names_and_namespaces)
+        return [pair for pair in found if _is_node(*pair)]
+
+
+def _told(ask: Callable[..., list[Any]], *arguments: bool) -> list[Any]:
+    """Return a list of names, or say why ROS tells none: a single one may keep it from all."""
+    try:
+        return ask(*arguments)
+    except (RuntimeError, UnicodeDecodeError) as error:
+        if isinstance(error, RuntimeError) and 'empty node name' not in str(error):
+            raise
+        raise LabError(
+            'A program in this domain announces a name that is empty or no text. As long as it '
+            'runs, ROS can not list the names of the domain.',
+            todo='End that program, or take another domain: lab.start(domain_id=...), in a '
+            'notebook whose kernel was restarted.',
+        ) from error
+
+
+def _is_topic(name: str) -> bool:
+    with suppress(NameValidationException):
+        return bool(validate_full_topic_name(name))
+    return False
+
+
+def _is_node(name: str, namespace: str) -> bool:
+    with suppress(NameValidationException):
+        return bool(validate_node_name(name) and validate_namespace(namespace))
+    return False
 
 
 def helper_node(
@@ -272,15 +347,15 @@ def helper_node(
     context: Context | None = None,
     enable_rosout: bool = False,
 ) -> Node:
-    """Make a node of labkit's own, which costs next to nothing: it has no services.
+    """Make a cheap node for labkit's own use, without services.
 
     Args:
         name: Its name; a leading `_` hides it from lists.
         namespace: Its namespace, the root if None.
-        context: What `rclpy.init` has started; the default one if None.
+        context: Its context, the default one if None.
         enable_rosout: Whether its log messages go to `/rosout`.
     """
-    node = Node(
+    node = _Helper(
         name,
         namespace=namespace,
         context=context,
@@ -289,7 +364,7 @@ def helper_node(
         use_global_arguments=False,
         parameter_overrides=[Parameter('start_type_description_service', value=False)],  # type: ignore[no-untyped-call]
     )
-    # Each entity makes every wake-up of the executor dearer, events of a publisher among them.
+    # Each entity slows down every wake-up of the executor, and event handlers are entities.
     for publisher in node.publishers:
         handlers: Any = publisher.event_handlers  # a list, whatever its annotation says
         while handlers:

@@ -1,79 +1,174 @@
-"""What a program does that consists of nodes, and is a process of its own."""
+"""A program in a notebook: from its `rclpy.init()` to its `rclpy.shutdown()`.
+
+A tutorial's program expects a process of its own: what it passes to `init` is about its nodes, and
+`shutdown` ends these. Other cells' nodes are in the same process, but not in the program.
+"""
 
 from __future__ import annotations
 
-import contextlib
-import json
 import os
-import time
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
+from weakref import WeakSet
 
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+import rclpy.logging
+from rclpy.context import Context
 from rclpy.node import Node
-from rclpy.publisher import Publisher
-from rclpy.utilities import ok, try_shutdown
 
-from labkit.rosgraph.listings import ends_of_node
+from labkit.background.nodes import existing_nodes
+from labkit.errors import LabError
+from labkit.rosgraph.yaml_loading import load_yaml_file
 
-__all__ = ['READY', 'publish_when_heard', 'spin_until_interrupted']
+__all__ = ['Arguments', 'Program', 'renamed']
 
-READY = 'LABKIT_READY'
-"""Variable with the number of a pipe: what is written to it is read by `Process.announced`."""
+_FOR_NODES = ('-r', '--remap', '-p', '--param', '--params-file')
+_FOR_PROCESS = ('-e', '--enclave', '--log-config-file', '--log-file-name')
+# What holds in a notebook anyway.
+_DEFAULTS = ('--enable-rosout-logs', '--enable-stdout-logs', '--disable-external-lib-logs')
 
-# How long an answer waits for somebody to hear it, s.
-FOUND_SEC, POLL_SEC = 5.0, 0.005
+
+@dataclass
+class Arguments:
+    """What `rclpy.init(args=...)` says to ROS.
+
+    Attributes:
+        for_nodes: Rules and parameters, for nodes made afterwards.
+        for_process: What rcl applies only when ROS starts.
+        level: Log level of nodes made afterwards, None for the default.
+        levels: Log levels of loggers, by name.
+        rosout: Whether log messages go to `/rosout`.
+    """
+
+    for_nodes: list[str] = field(default_factory=list)
+    for_process: list[str] = field(default_factory=list)
+    level: str | None = None
+    levels: dict[str, str] = field(default_factory=dict)
+    rosout: bool = True
+
+    @classmethod
+    def read(cls, args: Sequence[str] | None) -> Arguments:
+        """Sort command line arguments; those outside of `--ros-args ... --` say nothing to ROS."""
+        found, inside = cls(), False
+        words = iter(args or ())
+        for word in words:
+            if word in ('--', '--ros-args'):
+                inside = word == '--ros-args'
+            elif not inside or word in _DEFAULTS:
+                continue
+            elif word == '--log-level':
+                name, _, level = next(words, '').rpartition(':=')
+                if name:
+                    found.levels[name] = level
+                else:
+                    found.level = level
+            elif word == '--disable-rosout-logs':
+                found.rosout = False
+            elif word in _FOR_PROCESS or re.match('--(en|dis)able-', word):
+                found.for_process += [word, *([next(words, '')] * (word in _FOR_PROCESS))]
+            else:
+                found.for_nodes += [word, *([next(words, '')] * (word in _FOR_NODES))]
+        return found
 
 
-def spin_until_interrupted(*nodes: Node) -> None:
-    """Spin nodes until Ctrl-C or until ROS is shut down, then end ROS.
+def _look_at_files(args: Sequence[str]) -> None:
+    """Raise LabError for a parameter file that cannot be read: rcl hangs over a pipe."""
+    for option, path in pairwise(args):
+        if option != '--params-file' or not os.path.exists(path):
+            continue
+        try:
+            load_yaml_file(path)
+        except (OSError, ValueError) as error:
+            why = error.strerror if isinstance(error, OSError) else error
+            raise LabError(
+                f'rclpy.init(args=...) names a parameter file, {path!r}, that cannot be read: '
+                f'{why}.',
+                todo='Name a YAML file with parameters.',
+            ) from error
 
-    At Ctrl-C a thread of rclpy shuts ROS down, at any moment: a callback that wants to publish
-    then can't, and a second shutdown in the same moment is refused. Neither is a fault.
+
+class Program:
+    """One program.
 
     Args:
-        nodes: The nodes. They are not destroyed; that happens when the process ends.
+        args: What it has passed to `rclpy.init`.
+        request_id: The execution of the cell that has called `rclpy.init`.
+        started_at: When ROS was started, see `Runtime`.
+
+    Attributes:
+        ended_in: The execution of the cell in which it has called `rclpy.shutdown`, None before.
+
+    Raises:
+        LabError: A parameter file cannot be read.
+        RuntimeError: rcl does not understand the arguments.
     """
-    executor = SingleThreadedExecutor()
-    for node in nodes:
-        executor.add_node(node)
-    try:
-        _announce(nodes)
-        executor.spin()
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    except RuntimeError:  # RCLError has no public name
-        if ok():
-            raise
-    finally:
-        with contextlib.suppress(RuntimeError):
-            try_shutdown()
+
+    def __init__(self, args: Sequence[str] | None, request_id: str, started_at: float) -> None:
+        if args:
+            _look_at_files(args)
+            # rcl judges them where it makes a context of them.
+            judge = Context()
+            judge.init(list(args), initialize_logging=False, domain_id=0)
+            judge.shutdown()
+        self.request_id = request_id
+        self.started_at = started_at
+        self.ended_in: str | None = None
+        self._args = Arguments.read(args)
+        self._before = WeakSet(existing_nodes())
+        self._loggers: list[str] = []
+        for name, level in self._args.levels.items():
+            self._set_level(name, level)
+
+    @property
+    def for_nodes(self) -> tuple[str, ...]:
+        """The rules and parameters for its nodes."""
+        return tuple(self._args.for_nodes)
+
+    def made(self, node: Node) -> bool:
+        """Return whether a node was made since the program has begun."""
+        return node not in self._before
+
+    def options(self, given: dict[str, Any]) -> dict[str, Any]:
+        """Return the keyword arguments of a new node, with what `rclpy.init` was told added."""
+        if not given.get('use_global_arguments', True):
+            return given
+        options = dict(given)
+        if self._args.for_nodes:
+            own = given.get('cli_args') or ()
+            options['cli_args'] = [*own, '--ros-args', *self._args.for_nodes]
+        if not self._args.rosout:
+            options['enable_rosout'] = False
+        return options
+
+    def set_level(self, node: Node) -> None:
+        """Set the log level of a new node."""
+        if self._args.level is not None:
+            logger = node.get_logger()  # type: ignore[no-untyped-call]
+            self._set_level(logger.name, self._args.level)
+
+    def forget_levels(self) -> None:
+        """Set the log levels back that this program has set."""
+        for name in self._loggers:
+            rclpy.logging.set_logger_level(name, rclpy.logging.LoggingSeverity.UNSET)
+
+    def _set_level(self, name: str, level: str) -> None:
+        severity = rclpy.logging.get_logging_severity_from_string(level)
+        rclpy.logging.set_logger_level(name, severity)
+        self._loggers.append(name)
 
 
-def publish_when_heard(publisher: Publisher, message: Any, count: int = 1) -> None:
-    """Publish an answer as soon as the one who asks can hear it.
-
-    A publisher and a subscription of the same node are discovered one by one. So who asks may be
-    heard before it can hear, and what is published then does not come to it.
-
-    Args:
-        publisher: The publisher.
-        message: The answer.
-        count: How many subscriptions there are then, with those of the program itself.
-    """
-    end = time.monotonic() + FOUND_SEC
-    while publisher.get_subscription_count() < count and time.monotonic() < end:
-        time.sleep(POLL_SEC)
-    publisher.publish(message)
-
-
-def _announce(nodes: tuple[Node, ...]) -> None:
-    """Say what the nodes have, if somebody waits for it; in the graph it comes piece by piece."""
-    pipe = os.environ.pop(READY, '')
-    if not pipe.isdecimal():
-        return
-    ends = {}
-    for node in nodes:
-        name = node.get_fully_qualified_name()
-        ends[name] = ends_of_node(node, name, include_hidden=True).names()
-    with contextlib.suppress(OSError), open(int(pipe), 'w', encoding='utf-8') as file:
-        json.dump(ends, file)
+def renamed(name: str, namespace: str, cli_args: Sequence[str]) -> tuple[str, str]:
+    """Return the name and namespace that a node has with its command line arguments."""
+    found = {'node': name, 'ns': namespace}
+    left = {'node', 'ns'}  # the first rule for each counts
+    for flag, rule in pairwise(cli_args):
+        match = re.fullmatch(r'(?:([^:]+):)?__(node|name|ns):=(.*)', rule)
+        if flag not in ('-r', '--remap') or match is None or match[1] not in (None, name):
+            continue
+        kind = 'ns' if match[2] == 'ns' else 'node'
+        if kind in left:
+            left.discard(kind)
+            found[kind] = match[3]
+    return found['node'], found['ns']

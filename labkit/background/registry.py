@@ -1,13 +1,12 @@
-"""Which nodes run in the background, by name, so that a cell can be run again.
+"""The nodes that run in the background, by name, so that a cell can be run again.
 
-A callback may make a node at any moment, and asks here for room for it. So the lock is held for a
-look into the table only, and never while somebody waits.
+A callback may make a node at any moment, which needs the lock. So it is held only to access the
+table, and never during a wait.
 """
 
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable
 
 from rclpy.node import Node
@@ -21,21 +20,21 @@ from labkit.background.nodes import (
     full_name,
     half_made,
 )
+from labkit.background.wait import wait_for
 
 __all__ = ['Registry']
 
-# How long somebody may hold a node that was destroyed, s. An executor of the learner's own lets go
-# at once, unless a callback keeps it.
+# How long an executor may hold a destroyed node, s. The learner's own lets go at once, unless a
+# callback is running.
 GONE_SEC = 1.0
-POLL_SEC = 0.001
 
 
 class Registry:
     """The nodes that run in the background, each name once.
 
     Args:
-        console: Knows the cell that is running.
-        count: Returns how many nodes of a full name are in the graph.
+        console: The console, which has the running cell.
+        count: Returns the number of nodes of a full name in the graph.
     """
 
     def __init__(self, console: Console, count: Callable[[str], int]) -> None:
@@ -47,13 +46,7 @@ class Registry:
     def add(
         self, executor: BackgroundExecutor, node: Node, *, budget: int | None = None
     ) -> NodeEntry:
-        """Put a node on an executor; one of the same name is destroyed.
-
-        Args:
-            executor: The background executor.
-            node: The node.
-            budget: How many callbacks to run before it leaves the executor; None for no end.
-        """
+        """Put a node on an executor, see `Runtime.add`."""
         name = node.get_fully_qualified_name()
         entry = NodeEntry(node, name, self._console.current_cell(), budget=budget)
         while True:
@@ -71,44 +64,28 @@ class Registry:
     def discard(
         self, executor: BackgroundExecutor | None, entry: NodeEntry
     ) -> BaseException | None:
-        """Take a node from its executor and destroy it, see `destroy`."""
+        """Remove a node from its executor and destroy it, see `destroy`."""
         self.release(executor, entry)
         return self.destroy(entry.node, entry.name)
 
     def destroy(self, node: Node, name: str) -> BaseException | None:
-        """Destroy a node, and show what its own `destroy_node` raises.
-
-        Args:
-            node: The node, spun by whomever or not.
-            name: Its full name.
-
-        Returns:
-            What its `destroy_node` has raised, None if nothing.
-        """
-        # A node whose __init__ did not get far enough has none.
+        """Destroy a node of any executor; show an error of its `destroy_node`, and return it."""
+        # A node whose __init__ has failed may have no such attribute.
         executor = getattr(node, 'executor', None)
         if executor is not None:
             executor.remove_node(node)
         before = self._count(name)
         error = destroy_node(node)
-        self._wait_until_fewer(name, before)
+        # An executor may hold it during its wait: the node leaves the graph only afterwards, its
+        # endpoints before. If a node of the same name were made in between, the graph would take
+        # its endpoints for those of the old one, and leave them without a node.
+        wait_for(lambda: not before or self._count(name) < before, GONE_SEC)
         if error is not None:
             self._console.show_error(name, 'destroy_node', error)
         return error
 
-    def _wait_until_fewer(self, name: str, count: int) -> None:
-        """Wait until nobody holds a node that was destroyed, such as an executor in its wait.
-
-        It leaves the graph only then; what it had leaves before. Were a node of the same name made
-        meanwhile, the graph would take the new one's topics for the old one's, and leave them
-        nameless.
-        """
-        end = time.monotonic() + GONE_SEC
-        while count and self._count(name) >= count and time.monotonic() < end:
-            time.sleep(POLL_SEC)
-
     def release(self, executor: BackgroundExecutor | None, entry: NodeEntry) -> None:
-        """Take a node from its executor and leave it alive."""
+        """Remove a node from its executor without destroying it."""
         with self._lock:
             if self._entries.get(entry.name) is entry:
                 del self._entries[entry.name]
@@ -116,7 +93,7 @@ class Registry:
             executor.remove_node(entry.node)
 
     def entries(self) -> list[NodeEntry]:
-        """Return the nodes in the order in which they were started."""
+        """Return the nodes in the order they were started."""
         with self._lock:
             return list(self._entries.values())
 
@@ -130,15 +107,15 @@ class Registry:
             self._entries.clear()
 
     def make_room(self, executor: BackgroundExecutor | None, name: str) -> None:
-        """Destroy the node of a name before another one of that name is made.
+        """Destroy the node of a name before another one of the same name is made.
 
-        Two nodes of one name in one process share rcl's publisher on /rosout, and the first that
-        goes takes it away. A node whose `__init__` failed half way is found here too, and one that
-        an executor of the learner's own spins.
+        Two nodes of one name in one process share rcl's publisher on /rosout, and the first to end
+        destroys it. This also finds nodes whose `__init__` has failed, and those that the
+        learner's own executor spins.
 
         Args:
             executor: The background executor, None if ROS is not up.
-            name: The full name of the node that is about to be made.
+            name: Full name of the new node.
         """
         self._end_half_made(self._console.current_cell())
         entry = self.get(name)
@@ -150,15 +127,15 @@ class Registry:
                 self.destroy(node, name)
 
     def _end_half_made(self, cell: Cell) -> None:
-        """End the nodes of earlier runs of a cell whose `__init__` failed, whatever their name."""
+        """Destroy nodes of any name whose `__init__` failed in an earlier run of a cell."""
         for node, made_by in list(half_made.items()):
             if cell.cell_id and made_by is not cell and made_by.cell_id == cell.cell_id:
                 self.destroy(node, full_name(node))
 
     def left_over(self, cell: Cell) -> list[NodeEntry]:
-        """Return the nodes that an earlier run of a cell has started, and this one has not.
+        """Return the nodes that only an earlier run of a cell has started.
 
-        None if this run has started no node: then it is about something else.
+        Empty if this run has started no node: then the cell is about something else.
         """
         own = [e for e in self.entries() if cell.cell_id and e.cell.cell_id == cell.cell_id]
         earlier = [entry for entry in own if entry.cell is not cell]

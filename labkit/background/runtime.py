@@ -1,7 +1,7 @@
-"""ROS in this process, started and stopped as a notebook needs it.
+"""ROS in this process, started and stopped on demand: `start`, `spin`, `remove`, `stop`.
 
-One context, one executor, one background thread (`executor`), one registry of nodes by name, so
-that a cell can be run again without leaving a second node behind.
+One context, one executor with its background thread, and one registry of nodes by name, so that a
+cell can be run again without leaving a second node behind.
 """
 
 from __future__ import annotations
@@ -10,17 +10,18 @@ import atexit
 import os
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, TypeVar
 
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import get_default_context, ok, try_shutdown
 
-from labkit import domain_ids, settings
-from labkit.background import domains
+from labkit import domain_ids, settings, stop_button
+from labkit.background import compat, domains
 from labkit.background.console import Cell, Console
 from labkit.background.executor import BackgroundExecutor
-from labkit.background.keyboard import press_enter_for_nobody
 from labkit.background.nodes import (
     NodeEntry,
     check_node,
@@ -33,28 +34,36 @@ from labkit.background.nodes import (
 )
 from labkit.background.notebook_rclpy import ORIGINALS, install
 from labkit.background.registry import Registry
-from labkit.errors import LabError
+from labkit.background.shared_memory import look_at_shared_memory
+from labkit.errors import LabError, nearest, quoted
 from labkit.rosgraph.names import full_node_name
 from labkit.rosgraph.whose import foreign_nodes
 
-__all__ = ['Runtime', 'runtime']
+__all__ = ['Runtime', 'remove', 'runtime', 'spin', 'start', 'stop']
 
 # How long stop() waits for a callback that is still running.
 JOIN_SEC = 2.0
 DUPLICATE_CHECK_SEC = 1.0
+_OPEN = (
+    'ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS or ROS_DISCOVERY_SERVER is set so that other '
+    'computers can take part: anybody who reaches this one can hear all nodes of this notebook, '
+    'publish to them and call their services, in domain {domain_id}.'
+)
+
+AnyNode = TypeVar('AnyNode', bound=Node)
 
 
 class Runtime:
-    """ROS in this process: one of it exists, `runtime`.
+    """ROS in this process: a singleton, `runtime`.
 
     Attributes:
-        console: Where the output of callbacks goes.
+        console: Output of callbacks.
         domain_id: The ROS domain, None while ROS is not started.
-        started_at: When ROS was started, as `time.monotonic()` tells it.
-        helper: A hidden node for labkit's own subscriptions and questions to the graph.
-        ended: Nodes that have called `rclpy.shutdown()`, and in which callback, by full name.
-        foreign_threads: Threads that spin an executor of the learner's own, see `notebook_rclpy`.
-        after_start: Called each time ROS has been started, in the thread that started it.
+        started_at: `time.monotonic()` when ROS was started.
+        helper: A hidden node for labkit's own subscriptions and graph queries.
+        ended: Full names of nodes that have called `rclpy.shutdown()`, with the callback's name.
+        foreign_threads: Threads that spin the learner's own executors, see `notebook_rclpy`.
+        waits: What threads wait for: a rate's timer or a client, with words for it and the cell.
     """
 
     def __init__(self) -> None:
@@ -64,9 +73,8 @@ class Runtime:
         self.helper: Node | None = None
         self.ended: dict[str, str] = {}
         self.foreign_threads: set[threading.Thread] = set()
-        self.after_start: list[Callable[[], None]] = []
-        # Held for as long as a start takes. No callback asks for it, see `start`.
-        self._starting = threading.RLock()
+        self.waits: dict[Any, tuple[str, Cell]] = {}
+        self._starting = threading.RLock()  # never taken by a callback, see `start`
         self._ending = threading.Lock()
         self._registry = Registry(self.console, self._count_nodes)
         self._reported: set[str] = set()
@@ -76,19 +84,19 @@ class Runtime:
 
     @property
     def started(self) -> bool:
-        """Tell whether ROS is up, all of it: the stop button may end `start` half way."""
+        """Return whether ROS is up completely: the stop button may end `start` half way."""
         executor = self._executor
         return executor is not None and executor.is_open and executor.context.ok()
 
     @property
     def own_domain(self) -> bool:
-        """Tell whether the domain was chosen so that no other notebook has it."""
+        """Return whether the domain was chosen so that no other notebook has it."""
         return self._claim is not None and self._claim.domain_id == self.domain_id
 
     @property
     def executor(self) -> BackgroundExecutor:
-        """Return the background executor; ROS is started if it is not up."""
-        if not self.started:  # asked for at each moment of virtual time
+        """Return the background executor, and start ROS if it is not up."""
+        if not self.started:
             self.start()
         assert self._executor is not None
         return self._executor
@@ -98,14 +106,16 @@ class Runtime:
     def start(self, *, domain_id: int | None = None, args: list[str] | None = None) -> None:
         """Start ROS in the background; without effect when it is up.
 
+        The stop button waits until that is done.
+
         Args:
             domain_id: See `labkit.start`.
             args: Command line arguments for ROS, as `rclpy.init` takes them.
         """
         domain_ids.check_domain_id(domain_id)
-        if self._is_called_by_a_callback() or self._is_up_in(domain_id):
+        if self.called_by_callback() or self._is_up_in(domain_id):
             return
-        with self._starting:
+        with stop_button.held(), self._starting:
             if self._is_up_in(domain_id):
                 return
             if self.started:
@@ -113,12 +123,14 @@ class Runtime:
             self.stop()
             self._end_foreign_start()
             domain_id = self._choose_domain(domain_id)
-            number = domains.number_for_ros(domain_id or 0)
             if domain_id is not None:
                 # The processes that the notebook starts read it.
                 domain_ids.set_domain(domain_id)
-            # Log files: nobody looks for them in a course, and a home that can't be written to
-            # would keep ROS from starting.
+            domains.follow_profile()
+            look_at_shared_memory()
+            number = domains.number_for_ros(domain_id or 0)
+            # No log files: nobody reads them in a course, and ROS does not start if the home
+            # directory is not writable.
             ros_args = [*(args or ()), '--ros-args', '--disable-external-lib-logs']
             if settings.in_kernel():
                 ros_args.append('--disable-stdout-logs')
@@ -135,17 +147,21 @@ class Runtime:
             domains.first_node_is_made()
             if settings.in_kernel():
                 install(self)
-                press_enter_for_nobody()
+                if settings.audience().same_each_time:
+                    # `text = input('Your message: ') or 'Hello'` runs with nobody there to type.
+                    compat.answer_input(_press_enter)
+                if not domain_ids.stays_here():
+                    print(_OPEN.format(domain_id=self.domain_id))
             self._executor.start()
-        for action in tuple(self.after_start):
+        for action in tuple(settings.after_start):
             action()
 
     def stop(self) -> None:
-        """Destroy all nodes, join the thread, shut ROS down."""
+        """Destroy all nodes, join the thread, and shut ROS down."""
         executor = self._executor
         if executor is None:
             return
-        # A callback that is running may make nodes meanwhile: they end with the others.
+        # First: a running callback may still make nodes, which are to end too.
         executor.close(JOIN_SEC)
         nodes = [*executor.get_nodes(), *self.unspun_nodes()]
         with self._ending:
@@ -169,53 +185,45 @@ class Runtime:
     # -- nodes ----------------------------------------------------------------------------------
 
     def end_caller(self) -> bool:
-        """End the node whose callback wants to shut ROS down: the others are none of its business.
-
-        Returns:
-            Whether a callback calls this.
-        """
+        """End the node whose callback calls this; return False outside of callbacks."""
         caller = self._executor.caller() if self._executor is not None else None
         if caller is None or caller[0].node is self.helper:
             return False
         entry, callback = caller
-        self.ended[entry.name] = callback
         print(
             f'{callback} of {entry.name} has called rclpy.shutdown(). In a program of its own '
             f'that ends all of its nodes; in a notebook it ends {entry.name} alone.'
         )
         self.discard(entry)
+        self.ended[entry.name] = callback
         return True
 
     def add(self, node: Node, *, budget: int | None = None) -> NodeEntry:
-        """Put a node on the background executor; one of the same name is destroyed.
+        """Run a node in the background, and destroy an earlier one of the same name.
 
         Args:
             node: The node.
-            budget: How many callbacks to run before it leaves the executor; None for no end.
+            budget: Number of callbacks to run before it leaves the executor, None for no limit.
 
         Raises:
-            LabError: It is not a node, or it exists no more.
+            LabError: It is not a node, or it has been destroyed.
         """
         check_node(node)
         return self._registry.add(self.executor, node, budget=budget)
 
     def discard(self, entry: NodeEntry) -> BaseException | None:
-        """Take a node from the executor and destroy it, see `destroy`."""
+        """Remove a node from the executor and destroy it, see `destroy`."""
         return self._registry.discard(self._executor, entry)
 
     def destroy(self, node: Node) -> BaseException | None:
-        """Destroy a node for certain, and show what its own `destroy_node` raises.
-
-        Returns:
-            What that was, None if nothing. Also in `console.errors`, as `destroy_node`.
-        """
+        """Destroy a node, show an error of its own `destroy_node`, and return it."""
         entry = self.entry_of(node)
         if entry is not None:
             return self.discard(entry)
         return self._registry.destroy(node, full_name(node))
 
     def release(self, entry: NodeEntry) -> None:
-        """Take a node from the executor and leave it alive."""
+        """Remove a node from the executor without destroying it."""
         self._registry.release(self._executor, entry)
 
     def nodes(self) -> list[NodeEntry]:
@@ -224,7 +232,7 @@ class Runtime:
         for entry in entries:
             if not entry.alive:
                 self.release(entry)
-        # Not one that has gone over to an executor of the learner's own.
+        # A node may have moved to an executor of the learner's own.
         return [entry for entry in entries if entry.alive and self.entry_of(entry.node) is entry]
 
     def entry_of(self, node: Node) -> NodeEntry | None:
@@ -232,7 +240,7 @@ class Runtime:
         return self._executor.entry_of(node) if self._executor is not None else None
 
     def unspun_nodes(self) -> list[Node]:
-        """Return the nodes of this process that exist but don't run in the background."""
+        """Return the nodes of this process that don't run in the background."""
         return [
             node
             for node in existing_nodes()
@@ -240,7 +248,7 @@ class Runtime:
         ]
 
     def make_room(self, name: str) -> None:
-        """Destroy the node of a name before another one of that name is made."""
+        """Destroy the node of a name before another one of the same name is made."""
         self.ended.pop(name, None)
         self._registry.make_room(self._executor, name)
 
@@ -251,7 +259,7 @@ class Runtime:
         return sum(full_node_name(*pair) == name for pair in names)
 
     def foreign_nodes(self) -> set[str]:
-        """Return the full names of the nodes that other processes have in this domain."""
+        """Return the full names of other processes' nodes in this domain."""
         return foreign_nodes(self.helper) if self.helper is not None else set()
 
     # -- waiting --------------------------------------------------------------------------------
@@ -270,10 +278,28 @@ class Runtime:
         if self._executor is not None:
             self._executor.refuse_in_callback(what, todo)
 
+    def called_by_callback(self) -> bool:
+        """Return whether a callback calls this: ROS is then up, or about to end.
+
+        Starting and stopping wait for callbacks, so a callback must not wait for them.
+        """
+        if threading.current_thread() in self.foreign_threads:
+            return self._executor is not None
+        return self._executor is not None and self._executor.in_callback()
+
+    @contextmanager
+    def waiting_for(self, entity: Any, words: str) -> Iterator[None]:
+        """Note in a `with` block that a thread waits for a rate's timer or for a client."""
+        self.waits[entity] = (words, self.console.current_cell())
+        try:
+            yield
+        finally:
+            self.waits.pop(entity, None)
+
     # -- details --------------------------------------------------------------------------------
 
     def _destroy_all(self, nodes: list[Node]) -> KeyboardInterrupt | None:
-        """Destroy nodes; the stop button ends what one of them does, and no other one's end."""
+        """Destroy nodes; return the interrupt if the stop button was pressed meanwhile."""
         interrupt = None
         for node in nodes:
             try:
@@ -281,15 +307,6 @@ class Runtime:
             except KeyboardInterrupt as pressed:
                 interrupt = pressed
         return interrupt
-
-    def _is_called_by_a_callback(self) -> bool:
-        """Tell whether a callback runs this: its ROS is up, or about to end and not to be begun.
-
-        Whoever starts or stops ROS waits for callbacks, so they can't wait for that.
-        """
-        if threading.current_thread() in self.foreign_threads:
-            return self._executor is not None
-        return self._executor is not None and self._executor.in_callback()
 
     def _is_up_in(self, domain_id: int | None) -> bool:
         return self.started and domain_id in (None, self.domain_id)
@@ -307,12 +324,12 @@ class Runtime:
         if names:
             raise LabError(
                 f'ROS runs in domain {self.domain_id} with {", ".join(names)}; '
-                f'it can move to domain {domain_id!r} only without nodes.',
+                f'it can move to domain {quoted(domain_id)} only without nodes.',
                 todo='Call lab.stop() first, then lab.start(domain_id=...), then start the nodes.',
             )
 
     def _end_foreign_start(self) -> None:
-        """Put right what `rclpy.init()` did before labkit was there."""
+        """Undo an `rclpy.init()` from before labkit was started."""
         if not ok():
             return
         names = [node.get_fully_qualified_name() for node in self.unspun_nodes()]
@@ -331,17 +348,17 @@ class Runtime:
         executor.add_entry(NodeEntry(self.helper, name, self.console.current_cell()))
 
     def _after_cell(self, cell: Cell, error: BaseException | None) -> None:
-        """Say so when a cell that was edited has left the node of its earlier run behind."""
+        """Report nodes of the cell's earlier run that an edited cell has left behind."""
         if error is not None:
             half_made.update((node, cell) for node in find_half_made(error))
         for entry in self._registry.left_over(cell):
             print(
                 f'{entry.name}, which this cell started before, still runs. '
-                f'lab.remove({entry.name!r}) ends it.'
+                f'lab.remove({quoted(entry.name)}) ends it.'
             )
 
     def _report_duplicates(self) -> None:
-        """Say so, once, when another process has a node of the same name as one of ours."""
+        """Report once when another process has a node of the same name as one of ours."""
         foreign = self.foreign_nodes()
         for entry in self.nodes():
             if entry.name not in foreign:
@@ -358,3 +375,86 @@ class Runtime:
 
 runtime = Runtime()
 atexit.register(runtime.stop)
+if settings.in_kernel():
+    install(runtime)
+
+
+def start(*, domain_id: int | None = None) -> None:
+    """Start ROS in the background.
+
+    Everything in labkit that needs ROS does this by itself; call it to choose a domain.
+
+    Args:
+        domain_id: The ROS domain to take part in, 0 to 101, or that of another notebook. By
+            default `ROS_DOMAIN_ID` if it is set, else, in a notebook, a domain that no other
+            notebook on this machine has.
+
+    Raises:
+        LabError: ROS runs in another domain already, with nodes in it.
+    """
+    runtime.start(domain_id=domain_id)
+
+
+def spin(node: AnyNode) -> AnyNode:
+    """Run a node in the background: its callbacks are called while cells come and go.
+
+    A node of the same name that this notebook started before is destroyed first, so a cell may
+    be run again as often as you like.
+
+    Args:
+        node: An instance of a subclass of `rclpy.node.Node`.
+
+    Returns:
+        The node.
+
+    Raises:
+        LabError: It is not a node, or it has been destroyed.
+    """
+    runtime.add(node)
+    return node
+
+
+def remove(node: Node | str) -> None:
+    """End a node: it is taken from the background and destroyed.
+
+    Args:
+        node: The node, or its name: `'talker'` or `'/talker'`, with its namespace if it has one.
+
+    Raises:
+        LabError: No node of that name runs here.
+    """
+    for each in [node] if isinstance(node, Node) else _find(node):
+        runtime.destroy(each)
+
+
+def stop() -> None:
+    """Destroy all nodes, end the background thread and shut ROS down.
+
+    `lab.start()`, `lab.spin()` and the rest work again afterwards.
+    """
+    runtime.stop()
+
+
+def _find(name: str) -> list[Node]:
+    """Return the nodes of a name: usually one, spun or not."""
+    running = [entry.node for entry in runtime.nodes()]
+    wanted = name if name.startswith('/') else f'/{name}'
+    found = [node for node in [*running, *runtime.unspun_nodes()] if full_name(node) == wanted]
+    if found:
+        return found
+    names = [full_name(node) for node in running]
+    near = nearest(wanted, names)
+    if wanted in runtime.foreign_nodes():
+        todo = 'It runs in another process: end it where that was started.'
+    elif near:
+        todo = f'Did you mean {near!r}?'
+    elif names:
+        todo = f'Running here: {", ".join(names)}.'
+    else:
+        todo = 'No node runs here.'
+    raise LabError(f'No node called {quoted(name)} runs in this notebook.', todo=todo)
+
+
+def _press_enter(prompt: object = '') -> str:
+    print(prompt)
+    return ''

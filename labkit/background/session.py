@@ -1,4 +1,4 @@
-"""What goes on in a thread, with a node and a cell: a recording, a playing, a shared topic."""
+"""Background work with a thread, a node and a cell: recording, playback, a shared topic."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ Kind = TypeVar('Kind', bound='Session')
 
 
 class Session:
-    """Something that goes on in a thread of its own until it is done, or stopped.
+    """Work in its own thread, until it is done or stopped.
 
     It ends with `stop()`, with its node (`lab.stop()`, `lab.remove(...)`), with its `with` block,
     and when its cell is run again.
 
     Attributes:
-        error: What has ended it early, None if nothing has.
+        error: The error that ended it early, if any.
     """
 
     _going_on: ClassVar[list[Session]] = []
@@ -44,11 +44,11 @@ class Session:
 
     @property
     def done(self) -> bool:
-        """Tell whether it has ended."""
+        """Return whether it has ended."""
         return self._ended.is_set()
 
     def stop(self) -> None:
-        """End it, and wait until all is put away. Without effect when it has ended."""
+        """End it, and wait for its thread. Without effect when it has ended."""
         self._stopping.set()
         self._end_node()
         if self._thread.is_alive() and self._thread is not threading.current_thread():
@@ -60,10 +60,10 @@ class Session:
     def __exit__(self, *_: object) -> None:
         self.stop()
 
-    # -- for those that are made on it ----------------------------------------------------------
+    # -- for subclasses -------------------------------------------------------------------------
 
     def _go(self) -> None:
-        """Begin. Until then it has no thread."""
+        """Start the thread."""
         Session._going_on.append(self)
         self._thread.start()
 
@@ -71,9 +71,9 @@ class Session:
         try:
             self._work()
         except InvalidHandle:
-            self._stopping.set()  # its node ends, and its publishers are the first to go
-        except Exception as error:  # a thread that raises tells nobody
-            # Once ROS is shut down, nothing can be published; that is no news of the disk.
+            self._stopping.set()  # its node is being destroyed, publishers first
+        except Exception as error:
+            # Publishing fails once ROS is shut down, and that needs no report.
             if isinstance(error, LabError) or node_exists(self._node):
                 self._fail(error)
         finally:
@@ -82,11 +82,11 @@ class Session:
             Session._going_on.remove(self)
 
     def _work(self) -> None:
-        """Do what is to be done, until `_stopping` is set."""
+        """Do the work until `_stopping` is set."""
         raise NotImplementedError
 
     def _fail(self, error: Exception) -> None:
-        """Keep what has ended it, and say so under its cell."""
+        """Store the error, and show it under the cell."""
         self.error = error
         runtime.console.write_under(self._cell, f'{self._name}: {error}\n')
 
@@ -96,16 +96,12 @@ class Session:
 
 
 def going_on(kind: type[Kind]) -> list[Kind]:
-    """Return those of a kind that go on, oldest first."""
+    """Return the running sessions of a class, oldest first."""
     return [session for session in tuple(Session._going_on) if isinstance(session, kind)]
 
 
 def end_earlier(kind: type[Session]) -> None:
-    """End what an earlier run of the running cell has begun.
-
-    Args:
-        kind: What of it.
-    """
+    """End the sessions of a class that an earlier run of this cell has started."""
     cell = runtime.console.current_cell()
     for session in going_on(kind):
         same = cell.cell_id and session._cell.cell_id == cell.cell_id
@@ -124,7 +120,6 @@ def _free_name(name: str) -> str:
 
 
 def _end_with_node() -> None:
-    """End each one whose node is gone."""
     for session in tuple(Session._going_on):
         if not node_exists(session._node):
             session.stop()

@@ -1,28 +1,43 @@
-"""Tracebacks as the learner's own lines: those of labkit and of ROS say nothing to a beginner.
+"""Shorten tracebacks to the learner's own lines.
 
-An error that comes up inside of ROS, or the stop button while a cell waits, would otherwise show
-pages of code that the learner has not written.
+An error inside ROS, or the stop button while a cell waits, would otherwise show pages of code that
+the learner has not written.
 """
 
 from __future__ import annotations
 
+import ast
+import importlib.util
 import linecache
 import os
 import re
+import sys
 import sysconfig
+import threading
 import traceback
-from types import TracebackType
+from collections.abc import Iterator
+from contextlib import suppress
+from types import FrameType, TracebackType
 from typing import Any
 
 import rclpy
+import rclpy.node
+from rclpy.exceptions import InvalidHandle
 
 from labkit.errors import LabError, cell_name
 
-__all__ = ['install', 'is_learners', 'short_traceback', 'without_ros']
+__all__ = [
+    'argument_at_caller',
+    'caller_expects_interrupt',
+    'install',
+    'is_learners',
+    'short_traceback',
+    'without_ros',
+]
 
 _LABKIT = os.path.dirname(os.path.dirname(os.path.abspath(__file__))) + os.sep
 _RCLPY = os.path.dirname(os.path.abspath(rclpy.__file__)) + os.sep
-# A kernel of somebody else's has packages in one folder, and ROS in another.
+# A foreign kernel may have packages in one folder, and ROS in another.
 _LIBRARIES = (
     *(sysconfig.get_path('stdlib'), sysconfig.get_path('purelib')),
     os.path.dirname(os.path.dirname(_RCLPY)),
@@ -33,12 +48,24 @@ stand after `with`. Write instead:
     rclpy.init(args=args)
     ...
     rclpy.shutdown()"""
-# What is generated from the files of messages and services: std_msgs/msg/_int16.py
+_TAKEN = """
+rclpy uses the name {name} in each node for a thing of its own. Choose another name, such as
+self.my_{name}."""
+_ON_THE_CLASS = """
+An earlier cell has set {name} on the class {kind} itself, as after msg = {kind} without brackets.
+That is undone now. Write msg = {kind}(), and run this cell again."""
+_NOT_YET = """
+This {kind} is not a node yet: its __init__ has not called the one of Node. Let
+super().__init__('name_of_the_node') be the first line of its __init__."""
+_DESTROYED = """
+This {kind} exists no more: it was destroyed, as all parts of a node are when its cell is run
+again, or when ROS is stopped. Use the new one, and let no callback or thread keep the old one."""
+# Generated modules of interfaces: std_msgs/msg/_int16.py
 _INTERFACES = tuple(f'{os.sep}{kind}{os.sep}_' for kind in ('msg', 'srv', 'action'))
 
 
 def short_traceback(error: BaseException) -> str:
-    """Return the learner's lines of a traceback and the message, without those of libraries."""
+    """Return the learner's lines of a traceback, and the message."""
     lines = []
     for frame, number in traceback.walk_tb(error.__traceback__):
         name = frame.f_code.co_filename
@@ -50,19 +77,57 @@ def short_traceback(error: BaseException) -> str:
             lines.append(f'    {source}')
     if isinstance(error, LabError):
         return '\n'.join([*lines, f'{type(error).__name__}: {error}'])
-    return '\n'.join([*lines, *map(str.rstrip, traceback.format_exception_only(error))])
+    said = map(str.rstrip, traceback.format_exception_only(error))
+    return '\n'.join([*lines, *said, *map(str.strip, _hint(error, error.__traceback__))])
 
 
 def is_learners(filename: str) -> bool:
-    """Tell whether a file is a cell, or one that the learner has written."""
+    """Return whether a file is a cell or the learner's own."""
     if cell_name(filename):
         return True
     path = os.path.abspath(filename)
     return not path.startswith((*_LIBRARIES, _LABKIT)) and os.path.exists(path)
 
 
+def caller_expects_interrupt() -> bool:
+    """Return whether the learner's code that calls this would catch a `KeyboardInterrupt`."""
+    for part, line in _around_caller():
+        if not isinstance(part, ast.Try):
+            continue
+        caught = [handler.type for handler in part.handlers]
+        words = ' '.join(ast.unparse(kind) if kind else 'BaseException' for kind in caught)
+        inside = part.body[0].lineno <= line <= (part.body[-1].end_lineno or 0)
+        if inside and re.search(r'\b(KeyboardInterrupt|BaseException)\b', words):
+            return True
+    return False
+
+
+def argument_at_caller(function: str, position: int, name: str) -> ast.expr | None:
+    """Return an argument as the learner's line has it that calls a function; None if unknown."""
+    for part, line in _around_caller():
+        if not (isinstance(part, ast.Call) and part.lineno <= line <= (part.end_lineno or 0)):
+            continue
+        called = getattr(part.func, 'attr', '') or getattr(part.func, 'id', '')
+        if called == function:
+            named = {keyword.arg: keyword.value for keyword in part.keywords}
+            return named.get(name, part.args[position] if len(part.args) > position else None)
+    return None
+
+
+def _around_caller() -> Iterator[tuple[ast.AST, int]]:
+    """Yield all parts of the learner's code on the stack, with the line that is run there."""
+    frame: FrameType | None = sys._getframe(2)
+    while frame is not None:
+        name = frame.f_code.co_filename
+        if is_learners(name):
+            with suppress(SyntaxError):
+                for part in ast.walk(ast.parse(''.join(linecache.getlines(name)))):
+                    yield part, frame.f_lineno
+        frame = frame.f_back
+
+
 def without_ros(tb: TracebackType | None) -> TracebackType | None:
-    """Return a traceback without labkit and ROS, and what those call, but with all callbacks."""
+    """Return a traceback without labkit, ROS and their libraries, but with all callbacks."""
     kept = []
     inside = False
     while tb is not None:
@@ -78,15 +143,12 @@ def without_ros(tb: TracebackType | None) -> TracebackType | None:
 
 
 def install(shell: Any) -> None:
-    """Let a notebook show errors of its cells that way, unless `%xmode Verbose` is chosen.
-
-    Args:
-        shell: The kernel's IPython shell.
-    """
+    """Shorten tracebacks of cells and of threads, unless `%xmode Verbose` is chosen."""
     formatter = shell.InteractiveTB
     if 'structured_traceback' in vars(formatter):
         return
     original = formatter.structured_traceback
+    in_thread = threading.excepthook
 
     def structured_traceback(
         kind: Any, error: Any = None, tb: Any = None, *args: Any, **options: Any
@@ -96,22 +158,66 @@ def install(shell: Any) -> None:
             tb = without_ros(tb)
         return [*original(kind, error, tb, *args, **options), *hint]
 
+    def excepthook(args: threading.ExceptHookArgs) -> None:
+        frames = [frame for frame, _ in traceback.walk_tb(args.exc_traceback)]
+        if formatter.mode == 'Verbose' or not any(
+            is_learners(frame.f_code.co_filename) for frame in frames
+        ):
+            in_thread(args)
+        elif args.exc_value is not None and not isinstance(args.exc_value, SystemExit):
+            name = args.thread.name if args.thread else 'a thread'
+            print(
+                f'An error has ended {name}:\n{short_traceback(args.exc_value)}', file=sys.stderr
+            )
+
     formatter.structured_traceback = structured_traceback
+    threading.excepthook = excepthook
 
 
 def _hint(error: object, tb: object) -> list[str]:
-    """Return what to write instead of code that is for a newer release of ROS 2."""
-    if not isinstance(error, (AttributeError, TypeError)) or not isinstance(tb, TracebackType):
+    """Return a hint where Python's words don't say what to do."""
+    known = (AttributeError, TypeError, InvalidHandle)
+    if not isinstance(error, known) or not isinstance(tb, TracebackType):
         return []
-    lines = [
-        linecache.getline(frame.f_code.co_filename, number)
-        for frame, number in traceback.walk_tb(tb)
-    ]
+    text, walked = str(error), list(traceback.walk_tb(tb))
+    if isinstance(error, InvalidHandle):
+        used = walked[-1][0]
+        gone = None if is_learners(used.f_code.co_filename) else used.f_locals.get('self')
+        return [_DESTROYED.format(kind=type(gone).__name__)] if gone is not None else []
+    lacks: Any = getattr(error, 'obj', None)
+    if isinstance(lacks, rclpy.node.Node) and not hasattr(lacks, 'context'):
+        by_ros = not is_learners(walked[-1][0].f_code.co_filename)
+        return [_NOT_YET.format(kind=type(lacks).__name__)] if by_ros else []
+    lines = [linecache.getline(frame.f_code.co_filename, number) for frame, number in walked]
     # Python 3.10 raises an AttributeError (__enter__), later ones a TypeError.
-    about_with = re.search('__enter__|context manager', str(error))
+    about_with = re.search('__enter__|context manager', text)
     if about_with and any(re.search(r'\bwith\b.*\binit\(', line) for line in lines):
         return [_WITH_INIT]
+    # In this order: rclpy's own words, Python from 3.11 on, Python 3.10.
+    taken = re.match(
+        r"(\w+)(?= cannot be mod)|property '(\w+)' of|can't set attribute '(\w+)'", text
+    )
+    name = next(filter(None, taken.groups()), '') if taken else ''
+    in_node = any(isinstance(one, rclpy.node.Node) for one in walked[-1][0].f_locals.values())
+    if in_node and isinstance(getattr(rclpy.node.Node, name, None), property):
+        return [_TAKEN.format(name=name)]
+    made: Any = walked[-1][0].f_locals.get('self')
+    read_only = re.search(r"attribute '(\w+)' is read-only", text)
+    if read_only and hasattr(made, 'get_fields_and_field_types'):
+        _undo_assignments(type(made))
+        return [_ON_THE_CLASS.format(name=read_only[1], kind=type(made).__name__)]
     return []
+
+
+def _undo_assignments(kind: Any) -> None:
+    """Give a class of messages its properties back, from its module as it was written."""
+    spec = importlib.util.find_spec(kind.__module__)
+    if spec is None or spec.loader is None:
+        return
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    for name in kind.get_fields_and_field_types():
+        setattr(kind, name, vars(vars(module)[kind.__name__])[name])
 
 
 def _is_ros(filename: str) -> bool:

@@ -1,19 +1,19 @@
-"""What the background waits for: one wait set, kept from wait to wait.
+"""A wait set that is kept from wait to wait.
 
-rclpy makes a new wait set for every callback, enters the handle of every entity of every node,
-and leaves it again: the more nodes there are, the longer each message takes. Here the entities
-are gathered once and only put in again before each wait, until `give_up` is called. rclpy wakes
-an executor whenever something is created or destroyed; that is when.
+rclpy makes a new wait set for every callback, and enters and exits the handle of every entity of
+every node: the more nodes there are, the longer each message takes. Here the entities are gathered
+once and only added again before each wait, until `invalidate` is called. That is when rclpy wakes
+the executor: whenever something was created or destroyed.
 
-Why nothing is used after it was destroyed: an entity is entered when it is gathered, and what is
-entered is destroyed only when it is left. `give_up` leaves all of them: at once while nobody
-waits; during a wait, when that has returned, for which the caller triggers the executor's guard
+Why nothing is used after it was destroyed: gathering an entity enters its handle, and an entered
+handle is destroyed only after it was exited. `invalidate` exits all of them: at once outside of a
+wait; during a wait, when it has returned, for which the caller triggers the executor's guard
 condition. A guard condition stays triggered, so it does not matter whether the wait has begun
-already. What was ready by then may be destroyed before its turn: taking from it enters it once
-more, and rclpy answers that there is nothing to take.
+already. A ready entity may be destroyed before its turn: taking from it enters its handle again,
+and rclpy answers that there is nothing to take.
 
-rclpy's own fast executor, `rclpy.experimental.EventsExecutor`, runs callbacks in the order in
-which their events come. Here the order is fixed, and each callback is looked after.
+rclpy's own fast executor, `rclpy.experimental.EventsExecutor`, runs callbacks in the order of
+their events. Here the order is fixed, and errors of each callback are handled.
 """
 
 from __future__ import annotations
@@ -35,12 +35,13 @@ if TYPE_CHECKING:
 
 __all__ = ['KeptWaitSet', 'Ready']
 
-# Who destroys an entity past its node tells nobody. So all are let go this often, s.
+# Nothing reports an entity that is destroyed without its node, so all are gathered again this
+# often, s.
 RENEW_SEC = 1.0
 
 FOREVER = -1
 
-# Kind of entity, the node's name for them; in the order in which those of a node have their turn.
+# Kind of entity and the node's attribute, in the order of the turns within a node.
 _KINDS = (
     ('subscription', 'subscriptions'),
     ('guard_condition', 'guards'),
@@ -59,14 +60,14 @@ _COUNTED = {
 
 @dataclass(frozen=True)
 class Ready:
-    """Something of a node that can be waited for.
+    """An entity of a node that is ready.
 
     Attributes:
         entity: The subscription, timer, client, service, guard condition or waitable.
         node: Its node.
-        take: Takes what is there. Returns a function that makes the coroutine which runs the
+        take: Takes from the entity. Returns a function that makes the coroutine which runs the
             callback, or None if there is nothing.
-        turn: Those with a lower number have their turn before.
+        turn: Its place in the order, lowest first.
     """
 
     entity: Any
@@ -76,15 +77,11 @@ class Ready:
 
 
 class KeptWaitSet:
-    """The entities of all nodes of an executor, to wait for.
-
-    Args:
-        executor: The executor. Only one thread may wait; any thread may call `give_up`.
-    """
+    """The wait set for all nodes of an executor. Only one thread may wait."""
 
     def __init__(self, executor: Executor) -> None:
         self._executor = executor
-        # Reentrant: anything here may set off the garbage collector, and that a destructor.
+        # Reentrant: anything here may trigger the garbage collector, and that a destructor.
         self._lock = threading.RLock()
         self._takers = {**compat.takers(executor), 'timer': self._take_timer}
         self._call_timer = compat.takers(executor)['timer']
@@ -99,8 +96,8 @@ class KeptWaitSet:
         self._stale = True
         self._renew_at = 0.0
 
-    def give_up(self) -> None:
-        """Let go of everything, and gather anew before the next wait. Any thread may call it."""
+    def invalidate(self) -> None:
+        """Release all entities, and gather again before the next wait. Any thread may call it."""
         with self._lock:
             self._stale = True
             if not self._waiting:
@@ -113,12 +110,12 @@ class KeptWaitSet:
 
         Args:
             nodes: The nodes, in the order of their turns.
-            may_run: Tells whether an entity's callback may run now, None if all may. Looked at
-                when the entities are gathered: call `give_up` when an answer changes.
+            may_run: Returns whether an entity's callback may run now, None if all may. Called when
+                the entities are gathered: call `invalidate` when an answer changes.
             block: Whether to wait at all.
 
         Returns:
-            What is ready, in the order in which to take it: messages before timers.
+            The ready entities in the order of their turns: messages before timers.
         """
         with self._lock:
             try:
@@ -127,7 +124,7 @@ class KeptWaitSet:
                     self._gather(nodes, may_run)
                 wait_set = self._fill()
             except BaseException:
-                self._leave()  # a waitable of somebody's own, which has grown: count again
+                self._leave()  # a custom waitable may have more entities now: count again
                 raise
             self._waiting = True
         try:
@@ -140,8 +137,7 @@ class KeptWaitSet:
                     self._leave()
 
     def _gather(self, nodes: Iterable[Node], may_run: Callable[[Any], bool] | None) -> None:
-        # First: what changes from here on has its effect on the next wait.
-        self._stale = False
+        self._stale = False  # first: a change from here on affects the next wait
         self._renew_at = time.monotonic() + RENEW_SEC
         nodes = list(nodes)
         turn = 0
@@ -176,9 +172,9 @@ class KeptWaitSet:
             self._plan(self._wait_set)
 
     def _plan(self, wait_set: Any) -> None:
-        """Note what to put in before each wait, so that no handler of an event need be asked."""
+        """Note what to add before each wait, so that event handlers are asked only once."""
         for event in self._events:
-            # It notes its place, which stays the same: events come first, in this order.
+            # It stores its index, which stays the same: events come first, in this order.
             event.entity.add_to_wait_set(wait_set)
             self._add.append((wait_set.add_event, compat.event_of(event.entity)))
         for kind, handles in self._handles.items():
@@ -186,14 +182,14 @@ class KeptWaitSet:
             self._add += [(add, handle) for handle in handles]
 
     def _take_timer(self, timer: Any) -> Any:
-        # One that an earlier callback of this round has cancelled or reset is not due any more.
+        # An earlier callback of this round may have cancelled or reset it.
         try:
             return self._call_timer(timer) if timer.is_ready() else None
         except InvalidHandle:
             return None
 
     def _enter(self, handle: Any) -> bool:
-        """Keep what belongs to a handle from being destroyed; return False if it was before."""
+        """Enter a handle, which keeps it from being destroyed; return False if it was already."""
         try:
             handle.__enter__()
         except InvalidHandle:
@@ -202,7 +198,7 @@ class KeptWaitSet:
         return True
 
     def _leave(self) -> None:
-        """Let what was entered be destroyed."""
+        """Exit all entered handles."""
         self._stale = True
         self._wait_set = None
         self._waitables, self._events, self._add = [], [], []
@@ -211,7 +207,7 @@ class KeptWaitSet:
             self._entered.pop().__exit__(None, None, None)
 
     def _fill(self) -> Any:
-        """Put everything into the wait set: a wait empties it."""
+        """Add all entities to the wait set, which each wait empties."""
         wait_set = self._wait_set
         if wait_set is None:
             raise InvalidHandle('ROS is shut down')

@@ -1,4 +1,4 @@
-"""Which topics of the graph are recorded, in the terms of the real `ros2 bag record`."""
+"""The selection of topics to record, in the terms of the real `ros2 bag record`."""
 
 from __future__ import annotations
 
@@ -8,26 +8,30 @@ from dataclasses import dataclass
 
 from rclpy.node import Node
 
-from labkit.errors import LabError
+from labkit.errors import LabError, quoted
 from labkit.rosgraph.listings import topics as topics_of
 from labkit.rosgraph.names import full_topic_name, is_hidden
 
-__all__ = ['TopicChoice', 'choose']
+__all__ = ['SERVICE_EVENTS', 'TopicChoice', 'choose']
+
+# End of the topic's name on which a service with introspection tells what happens.
+SERVICE_EVENTS = '/_service_event'
 
 
 @dataclass(frozen=True)
 class TopicChoice:
-    """Which topics are meant. Hidden ones only if they are named, or asked for.
+    """A selection of topics. Hidden ones only if they are named, or requested.
 
     Attributes:
-        everything: Whether all are; then names, types and `regex` say nothing.
+        everything: Whether all topics are selected; then names, types and `regex` are ignored.
         names: Full names of topics.
-        types: Names of types: their topics, too.
-        regex: A pattern: topics whose name contains it, too.
-        exclude: Patterns: not the topics whose name contains one of them.
-        exclude_names: Not these.
-        exclude_types: Not those of these types.
-        hidden: Whether hidden topics are meant, too.
+        types: Types of topics to add.
+        regex: Pattern: topics with matching names are added.
+        exclude: Patterns: topics with matching names are left out.
+        exclude_names: Names of topics to leave out.
+        exclude_types: Types of topics to leave out.
+        hidden: Whether to include hidden topics.
+        services: Whether to include the events of all services with introspection.
     """
 
     everything: bool = True
@@ -38,6 +42,7 @@ class TopicChoice:
     exclude_names: Collection[str] = ()
     exclude_types: Collection[str] = ()
     hidden: bool = False
+    services: bool = False
 
     def __post_init__(self) -> None:
         for pattern in (self.regex, *self.exclude):
@@ -45,14 +50,14 @@ class TopicChoice:
                 re.compile(pattern)
             except re.error as error:
                 raise LabError(
-                    f'{pattern!r} is no regular expression: {error}.',
+                    f'{quoted(pattern)} is no regular expression: {error}.',
                     todo="In one, .* stands for anything: '/robot/.*' is all that begins with "
                     '/robot/.',
                 ) from error
 
     def takes(self, name: str, msg_type: str) -> bool:
-        """Tell whether a topic is meant."""
-        if name in self.names:
+        """Return whether a topic is selected."""
+        if name in self.names or (self.services and name.endswith(SERVICE_EVENTS)):
             wanted = True
         elif is_hidden(name) and not self.hidden:
             return False
@@ -67,7 +72,7 @@ class TopicChoice:
         )
 
     def found(self, node: Node) -> list[tuple[str, list[str]]]:
-        """Return the topics that somebody publishes and that are meant, with their types."""
+        """Return the selected topics that have publishers, with their types."""
         return [
             (name, types)
             for name, types in topics_of(node, include_hidden=True)
@@ -81,23 +86,24 @@ def choose(
     regex: str | None = None,
     exclude: str | Iterable[str] | None = None,
 ) -> TopicChoice:
-    """Return which topics are meant.
+    """Return a selection of topics.
 
     Args:
-        node: The node whose name and namespace complete a name.
-        topics: A name, or several; all if None and `regex` is None.
-        regex: A pattern: topics whose name contains it.
-        exclude: A pattern, or several: not the topics whose name contains it.
+        node: The node whose name and namespace complete the names.
+        topics: One name or several; all topics if None and `regex` is None.
+        regex: Pattern: topics with matching names.
+        exclude: One pattern or several: leave out topics with matching names.
 
     Raises:
-        LabError: It is no name of a topic, or no pattern.
+        LabError: A name or a pattern is invalid.
     """
     names = [topics] if isinstance(topics, str) else topics
     try:
         wanted = frozenset(full_topic_name(name, node) for name in names or ())
     except TypeError as error:
         raise LabError(
-            f'topics must be a name, a list of names, or None for all, but it is {topics!r}.',
+            'topics must be a name, a list of names, or None for all, but it is '
+            f'{quoted(topics)}.',
             todo="Write topics=['/odom', '/scan'].",
         ) from error
     patterns = [exclude] if isinstance(exclude, str) else list(exclude or ())

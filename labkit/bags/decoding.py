@@ -1,4 +1,4 @@
-"""Messages from the bytes of a bag: with the class that is installed, or as the bag defines it."""
+"""Decoding the messages of a bag: with the installed class, or by the bag's own definition."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ __all__ = ['Decoder']
 
 
 class Decoder:
-    """Makes messages of bytes.
+    """Decodes messages.
 
     Args:
-        definitions: Name of a type -> its definition in the bag, and the language of that.
+        definitions: Type name -> its definition in the bag, and the language of that.
     """
 
     def __init__(self, definitions: Mapping[str, tuple[str, str]]) -> None:
@@ -27,23 +27,28 @@ class Decoder:
         self._store: Any = None
 
     def decode(self, msg_type: str, data: bytes) -> Any:
-        """Return a message.
+        """Decode a message.
 
         Args:
             msg_type: Name of its type.
-            data: Its bytes, in CDR.
+            data: The message in CDR.
 
         Raises:
-            LabError: The type is not known, or the bytes are no message of it.
+            LabError: The type is unknown, or the data is not a message of it.
         """
         try:
             found = self._class(msg_type)
             if found is not None:
                 return deserialize_message(data, found)
-            return self._foreign(msg_type).deserialize_cdr(data, msg_type)
+            store = self._foreign(msg_type)
+            least = _least_size(store, msg_type)
+            if least > len(data):
+                # Without a look at the data, rosbags would make as much as the definition says.
+                raise ValueError(f'a message has at least {least} bytes')
+            return store.deserialize_cdr(data, msg_type)
         except LabError:
             raise
-        except Exception as error:  # of two libraries, about bytes that anybody may have written
+        except Exception as error:  # two libraries, and data from anywhere
             raise LabError(
                 f'These {len(data)} bytes are no message of {msg_type}: '
                 f'{type(error).__name__}: {error}',
@@ -59,7 +64,7 @@ class Decoder:
         return self._classes[msg_type]
 
     def _foreign(self, msg_type: str) -> Any:
-        """Return what decodes a type that is not installed here."""
+        """Return a type store that decodes a type not installed here."""
         from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
 
         if self._store is None:
@@ -81,3 +86,23 @@ class Decoder:
         known = self._store.fielddefs
         self._store.register({name: what for name, what in found.items() if name not in known})
         return self._store
+
+
+def _least_size(store: Any, msg_type: str) -> int:
+    """Return how many bytes a message of a type has at least."""
+    from rosbags.interfaces import Nodetype
+
+    sizes: dict[str, int] = {}
+
+    def of_type(name: str) -> int:
+        if name not in sizes:
+            sizes[name] = max(1, sum(of_field(what) for _, what in store.fielddefs[name][1]))
+        return sizes[name]
+
+    def of_field(what: Any) -> int:
+        kind, inside = what
+        if kind == Nodetype.ARRAY:
+            return int(inside[1] * of_field(inside[0]))
+        return of_type(inside) if kind == Nodetype.NAME else 1
+
+    return of_type(msg_type)

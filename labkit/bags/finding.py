@@ -1,7 +1,9 @@
-"""What lies at a path: the files of a bag, or a sentence why it is none."""
+"""Opening the files of a bag, or explaining why a path is not one."""
 
 from __future__ import annotations
 
+import shutil
+import tempfile
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -11,9 +13,10 @@ from labkit.bags.mcap_file import McapFile
 from labkit.bags.metadata import FILE_NAME, Metadata, read_metadata
 from labkit.bags.sqlite_file import SqliteFile
 from labkit.bags.stored import Damaged, StoredFile
-from labkit.errors import LabError, nearest
+from labkit.bags.unpacking import unpacked_size
+from labkit.errors import LabError, nearest, quoted
 
-__all__ = ['Found', 'decompressed', 'find', 'is_bag']
+__all__ = ['Found', 'find', 'find_without_metadata', 'is_bag']
 
 _STORAGES: dict[str, tuple[str, Callable[[Path], StoredFile]]] = {
     '.mcap': ('mcap', McapFile),
@@ -21,20 +24,22 @@ _STORAGES: dict[str, tuple[str, Callable[[Path], StoredFile]]] = {
 }
 _ROS_1 = b'#ROSBAG V'
 NEWEST_VERSION = 9
+# Files are unpacked up to this part of the room that is left.
+MOST_OF_DISK = 0.9
 
 
 @dataclass
 class Found:
-    """The files of a bag, open.
+    """The open files of a bag.
 
     Attributes:
-        path: The folder, or the one file.
+        path: Its folder, or its single file.
         storage: `'mcap'` or `'sqlite3'`.
         files: The files, in order.
-        metadata: What `metadata.yaml` says, None if there is none to rely on.
-        note: What is wrong, as a sentence; '' if nothing is.
-        stored_at: Where the bag takes space.
-        compressed_messages: Whether each message is compressed for itself.
+        metadata: The content of `metadata.yaml`, None if there is no reliable one.
+        note: Any fault, as a sentence; '' if there is none.
+        stored_at: The files on disk.
+        compressed_messages: Whether messages are compressed one by one.
     """
 
     path: Path
@@ -56,17 +61,17 @@ class Found:
 
 
 def is_bag(path: Path) -> bool:
-    """Tell whether a path looks like a bag: a folder with its files, or one of those."""
+    """Return whether a path looks like a bag: a folder with its files, or one of those."""
     if path.is_dir():
         return (path / FILE_NAME).is_file() or bool(_data_files(path))
     return path.suffix in _STORAGES and path.is_file()
 
 
 def find(path: Path) -> Found:
-    """Open what lies at a path.
+    """Open the bag at a path.
 
     Raises:
-        LabError: It is no bag that can be read.
+        LabError: There is no readable bag.
     """
     try:
         if path.is_dir():
@@ -75,25 +80,28 @@ def find(path: Path) -> Found:
             return _find_file(path)
     except PermissionError as error:
         raise LabError(
-            f'{str(path)!r} may not be read: {error.strerror}.', todo='Change its permissions.'
+            f'{quoted(str(path))} may not be read: {error.strerror}.',
+            todo='Change its permissions.',
         ) from error
     except OSError as error:
-        raise LabError(f'{str(path)!r} can not be read: {error}.') from error
-    raise _nothing_at(path)
+        raise LabError(f'{quoted(str(path))} can not be read: {error}.') from error
+    raise _missing(path)
 
 
-def decompressed(data: bytes) -> bytes:
-    """Return the bytes of a message that was compressed for itself.
+def find_without_metadata(path: Path) -> Found:
+    """Open the data files in a folder, whatever its `metadata.yaml` says.
 
     Raises:
-        ValueError: They are damaged.
+        LabError: There are none, or they can't be read.
     """
-    from rosbags.rosbag2.storage_mcap import DECOMPRESSORS
-
-    try:
-        return DECOMPRESSORS['zstd'](data, 0)
-    except Exception as error:  # of a library, about bytes that anybody may have written
-        raise ValueError(str(error)) from error
+    files = _data_files(path) if path.is_dir() else []
+    if not files:
+        raise LabError(
+            f'{quoted(str(path))} is no folder with files .mcap or .db3.',
+            todo='Pass the folder of the bag.',
+        )
+    found, note = _open_all(path, files, '')
+    return Found(path, _STORAGES[files[0].suffix][0], found, None, note, files)
 
 
 # --- Folders and files ---------------------------------------------------------------------------
@@ -112,14 +120,17 @@ def _find_folder(path: Path) -> Found:
     if metadata is not None:
         if metadata.compression:
             return _find_compressed(path, metadata)
-        files = [path / Path(name).name for name in metadata.files]
+        there, files = files, [path / Path(name).name for name in metadata.files]
+        if len(there) == len(files) and not any(file.is_file() for file in files):
+            files = there
+            note = f'Its {FILE_NAME} names other files; those in the folder are read.'
     elif files and not note:
-        note = f'It was not finished ({FILE_NAME} is missing); it is read as far as it goes.'
+        note = f'It is not complete ({FILE_NAME} is missing); it is read as far as it goes.'
     if not files:
         raise _no_bag(path)
     found, notes = _open_all(path, files, note)
     if notes != note:
-        metadata = None  # it would count what is not there
+        metadata = None  # its counts include missing messages
     return Found(path, _STORAGES[files[0].suffix][0], found, metadata, notes, files)
 
 
@@ -132,8 +143,8 @@ def _find_file(path: Path) -> Found:
         return _find_folder(path.parent)
     if path.suffix not in _STORAGES:
         raise LabError(
-            f'{str(path)!r} is no bag: expected a folder with {FILE_NAME}, or a file .mcap or '
-            '.db3.',
+            f'{quoted(str(path))} is no bag: expected a folder with {FILE_NAME}, or a file .mcap '
+            'or .db3.',
             todo='Pass the name of the folder that the bag is in.',
         )
     files, note = _open_all(path, [path], '')
@@ -141,12 +152,12 @@ def _find_file(path: Path) -> Found:
 
 
 def _open_all(path: Path, files: Sequence[Path], note: str) -> tuple[list[StoredFile], str]:
-    """Open files; return them, and what is wrong as a sentence."""
+    """Open files; return them, and a note about faults."""
     missing = [file.name for file in files if not file.is_file()]
     if missing:
         raise LabError(
-            f'{str(path)!r} lacks {", ".join(missing)}, which its {FILE_NAME} names.',
-            todo='Copy the whole folder of the bag, with all of its files.',
+            f'{quoted(str(path))} lacks {", ".join(missing)}, which its {FILE_NAME} names.',
+            todo='Maybe the folder was not copied whole: it needs all of its files.',
         )
     found: list[StoredFile] = []
     try:
@@ -160,9 +171,10 @@ def _open_all(path: Path, files: Sequence[Path], note: str) -> tuple[list[Stored
         why = error if isinstance(error, Damaged) else f'is damaged: {error}'
         if str(why) == 'is empty' and len(files) > 1 and note:
             return found, note
+        what, todo = _something_else(file)
         raise LabError(
-            f'{str(file)!r} {why}.',
-            todo='It holds nothing that can be read. Record it anew, or get another copy.',
+            f'{quoted(str(file))} {what or why}.',
+            todo=todo or 'It holds nothing that can be read. Is there another copy of it?',
         ) from error
     except OSError:
         for opened in found:
@@ -174,10 +186,24 @@ def _open_all(path: Path, files: Sequence[Path], note: str) -> tuple[list[Stored
     return found, note
 
 
-def _data_files(path: Path) -> list[Path]:
-    """Return the files of messages in a folder, in the order in which they were written."""
+def _something_else(file: Path) -> tuple[str, str]:
+    """Return what lies in the place of a data file, and what to do; '' if that is not known."""
+    with file.open('rb') as content:
+        begin = content.read(200).lstrip().lower()
+    if begin.startswith(b'version https://git-lfs'):
+        return (
+            'is a pointer of Git LFS: the data itself was not fetched',
+            'Fetch it where the repository was cloned: git lfs pull',
+        )
+    if begin.startswith((b'<!doctype html', b'<html')):
+        return 'is a web page', 'Download the file itself, not the page that shows it.'
+    return '', ''
 
-    def place(file: Path) -> tuple[int, str]:
+
+def _data_files(path: Path) -> list[Path]:
+    """Return the data files in a folder, in the order in which they were written."""
+
+    def order(file: Path) -> tuple[int, str]:
         number = file.stem.rpartition('_')[2]
         return (int(number) if number.isdecimal() else -1, file.name)
 
@@ -185,31 +211,31 @@ def _data_files(path: Path) -> list[Path]:
     kinds = {file.suffix for file in files}
     if len(kinds) > 1:
         raise LabError(
-            f'{str(path)!r} holds files of two kinds, {" and ".join(sorted(kinds))}, and no '
+            f'{quoted(str(path))} holds files of two kinds, {" and ".join(sorted(kinds))}, and no '
             f'{FILE_NAME} that says which of them are the bag.',
             todo='Pass the name of one file.',
         )
-    return sorted(files, key=place)
+    return sorted(files, key=order)
 
 
 def _check(path: Path, metadata: Metadata) -> None:
     storages = [name for name, _ in _STORAGES.values()]
     if metadata.storage not in storages:
         raise LabError(
-            f'{str(path)!r} is stored as {metadata.storage!r}; here {" and ".join(storages)} can '
-            'be read.',
+            f'{quoted(str(path))} is stored as {quoted(metadata.storage)}; here '
+            f'{" and ".join(storages)} can be read.',
             todo='Convert it where its storage plugin is installed: ros2 bag convert.',
         )
     if metadata.version > NEWEST_VERSION:
         raise LabError(
-            f'{str(path)!r} is of version {metadata.version}; the newest that is known here is '
-            f'{NEWEST_VERSION}, that of ROS 2 Jazzy.',
+            f'{quoted(str(path))} is of version {metadata.version}; the newest that is known here '
+            f'is {NEWEST_VERSION}, that of ROS 2 Jazzy.',
             todo='Convert it with the ROS 2 that has recorded it.',
         )
 
 
 def _find_compressed(path: Path, metadata: Metadata) -> Found:
-    """Open a bag that was compressed: `rosbags` unpacks files to a folder for the time being."""
+    """Open a compressed bag; `rosbags` unpacks compressed files to a temporary folder."""
     from rosbags.rosbag2 import Reader, ReaderError
 
     names = [path / Path(name).name for name in metadata.files]
@@ -218,6 +244,9 @@ def _find_compressed(path: Path, metadata: Metadata) -> Found:
         return Found(path, metadata.storage, files, metadata, note, names, True)
     reader = Reader(path)
     try:
+        free = shutil.disk_usage(tempfile.gettempdir()).free
+        if sum(unpacked_size(name, free) for name in names) > free * MOST_OF_DISK:
+            raise ValueError(f'there is no room for it in {tempfile.gettempdir()}')
         reader.open()
         unpacked = [Path(str(each.path)) for each in reader.storage.storages]  # type: ignore[attr-defined]
         files, note = _open_all(path, unpacked, '')
@@ -225,16 +254,16 @@ def _find_compressed(path: Path, metadata: Metadata) -> Found:
         with suppress(Exception):
             reader.close()
         raise LabError(
-            f'{str(path)!r} is compressed, and can not be unpacked: {error}.',
+            f'{quoted(str(path))} is compressed, and can not be unpacked: {error}.',
             todo='Is there another copy of it?',
         ) from error
     return Found(path, metadata.storage, files, metadata, note, names, False, [reader.close])
 
 
-# --- What to say ---------------------------------------------------------------------------------
+# --- Errors --------------------------------------------------------------------------------------
 
 
-def _nothing_at(path: Path) -> LabError:
+def _missing(path: Path) -> LabError:
     beside: list[str] = []
     with suppress(OSError):
         beside = [each.name for each in path.parent.iterdir() if is_bag(each)]
@@ -244,8 +273,8 @@ def _nothing_at(path: Path) -> LabError:
     elif beside:
         todo = f'There are these bags: {", ".join(sorted(beside)[:10])}.'
     else:
-        todo = f'Record one: lab.record({str(path)!r}).'
-    return LabError(f'There is no bag {str(path)!r}.', todo=todo)
+        todo = f'Record one: lab.record({quoted(str(path))}).'
+    return LabError(f'There is no bag {quoted(str(path))}.', todo=todo)
 
 
 def _no_bag(path: Path) -> LabError:
@@ -254,17 +283,18 @@ def _no_bag(path: Path) -> LabError:
     inner = [each for each in path.iterdir() if each.is_dir() and is_bag(each)]
     if inner:
         return LabError(
-            f'{str(path)!r} is no bag, but it holds some.', todo=f'Pass {str(inner[0])!r}.'
+            f'{quoted(str(path))} is no bag, but it holds some.',
+            todo=f'Pass {quoted(str(inner[0]))}.',
         )
     what = 'is empty' if not any(path.iterdir()) else f'holds no {FILE_NAME}, no .mcap, no .db3'
     return LabError(
-        f'{str(path)!r} is no bag: the folder {what}.',
+        f'{quoted(str(path))} is no bag: the folder {what}.',
         todo='Pass the name of the folder that the bag is in.',
     )
 
 
 def _ros_1(path: Path) -> LabError:
     return LabError(
-        f'{str(path)!r} is a bag of ROS 1, which has another format.',
+        f'{quoted(str(path))} is a bag of ROS 1, which has another format.',
         todo=f'Convert it in a terminal: rosbags-convert --src {path} --dst {path.stem}',
     )

@@ -1,10 +1,11 @@
-"""What is in a bag, in the words of the real `ros2 bag info`."""
+"""A summary of a bag, in the words of the real `ros2 bag info`."""
 
 from __future__ import annotations
 
 import time
 
 from labkit.bags.reader import Bag, BagTopic
+from labkit.errors import printable
 
 __all__ = ['describe', 'size_in_words', 'topic_names']
 
@@ -13,14 +14,14 @@ _SERVICE_END, _SERVICE_TYPE_END = '/_service_event', '_Event'
 
 
 def describe(bag: Bag) -> str:
-    """Return what the real command prints."""
+    """Return the output of the real command."""
     topics = [topic for topic in bag.topics if not _is_service(topic)]
     services = [topic for topic in bag.topics if _is_service(topic)]
     messages = sum(topic.count for topic in topics)
     indent = '\n' + ' ' * _INDENT
     lines = [
         '',
-        f'Files:             {indent.join(bag.files)}',
+        f'Files:             {indent.join(map(printable, bag.files))}',
         f'Bag size:          {size_in_words(bag.size_bytes)}',
         f'Storage id:        {bag.storage}',
         f'ROS Distro:        {bag.ros_distro}',
@@ -36,8 +37,8 @@ def describe(bag: Bag) -> str:
 
 
 def topic_names(bag: Bag) -> list[str]:
-    """Return the names of the topics, without those that tell of service calls."""
-    return [topic.name for topic in bag.topics if not _is_service(topic)]
+    """Return the names of the topics, without those of service events."""
+    return [printable(topic.name) for topic in bag.topics if not _is_service(topic)]
 
 
 def size_in_words(size: int) -> str:
@@ -50,7 +51,7 @@ def size_in_words(size: int) -> str:
 
 
 def _topic(topic: BagTopic) -> str:
-    return (
+    return printable(
         f'Topic: {topic.name} | Type: {topic.msg_type} | Count: {topic.count} | '
         f'Serialization Format: {topic.serialization_format}'
     )
@@ -59,7 +60,7 @@ def _topic(topic: BagTopic) -> str:
 def _service(topic: BagTopic) -> str:
     name = topic.name.removesuffix(_SERVICE_END)
     msg_type = topic.msg_type.removesuffix(_SERVICE_TYPE_END)
-    return (
+    return printable(
         f'Service: {name} | Type: {msg_type} | Event Count: {topic.count} | '
         f'Serialization Format: {topic.serialization_format}'
     )

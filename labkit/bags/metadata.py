@@ -1,9 +1,9 @@
-"""`metadata.yaml` of a bag, and QoS profiles as they stand in it. Written as version 9: Jazzy."""
+"""`metadata.yaml` of a bag, with its QoS profiles. Written in version 9, that of Jazzy."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +18,12 @@ from rclpy.qos import (
 )
 
 from labkit.bags.stored import Damaged
+from labkit.rosgraph.yaml_loading import load_yaml, load_yaml_file
 
 __all__ = [
     'FILE_NAME',
+    'BagTopic',
     'Metadata',
-    'TopicMetadata',
     'profiles_from',
     'profiles_to_text',
     'read_metadata',
@@ -40,64 +41,67 @@ _POLICIES: dict[str, Any] = {
     'liveliness': LivelinessPolicy,
 }
 _TIMES = ('deadline', 'lifespan', 'liveliness_lease_duration')
-_ENDLESS_NS = 2**63 - 1
+_INFINITE_NS = 2**63 - 1
 
 
 @dataclass(frozen=True)
-class TopicMetadata:
-    """What `metadata.yaml` says of a topic with one type.
+class BagTopic:
+    """A topic of a bag.
 
     Attributes:
         name: Full name of the topic.
-        msg_type: Name of the type.
-        serialization_format: `'cdr'`.
-        qos: The offered QoS profiles, as in the file.
-        type_hash: `RIHS01_...`, '' if it is not known.
-        count: How many messages it has.
+        msg_type: Name of its type, such as `std_msgs/msg/String`.
+        count: Number of its messages in the bag.
+        qos_profiles: Profiles offered by its publishers, as far as recorded.
+        serialization_format: Usually `'cdr'`.
+        definition: Definition of the type, '' if the bag has none.
+        encoding: Language of the definition: `'ros2msg'` or `'ros2idl'`.
+        type_hash: `RIHS01_...`, '' if the bag has none.
     """
 
     name: str
     msg_type: str
-    serialization_format: str
-    qos: Any
-    type_hash: str
     count: int
+    qos_profiles: list[QoSProfile] = field(repr=False)
+    serialization_format: str = field(default='cdr', repr=False)
+    definition: str = field(default='', repr=False)
+    encoding: str = field(default='', repr=False)
+    type_hash: str = field(default='', repr=False)
 
 
 @dataclass(frozen=True)
 class Metadata:
-    """What `metadata.yaml` says of a bag.
+    """The content of `metadata.yaml`.
 
     Attributes:
         storage: `'mcap'` or `'sqlite3'`.
-        files: The names of its files, in order.
+        files: Names of its files, in order.
         start_ns: Time of the first message, ns.
-        duration_ns: From the first to the last message, ns.
-        topics: Its topics.
+        duration_ns: Time from the first to the last message, ns.
         compression: `''`, `'file'` or `'message'`.
-        version: Of the format of metadata.yaml.
-        ros_distro: Whose rosbag2 has written it; `'unknown'` if it does not say.
+        version: Version of the format of metadata.yaml.
+        ros_distro: Distribution that wrote the bag; `'unknown'` if not stated.
     """
 
     storage: str
     files: Sequence[str]
     start_ns: int
     duration_ns: int
-    topics: Sequence[TopicMetadata]
+    topics: Sequence[BagTopic]
     compression: str = ''
     version: int = VERSION
     ros_distro: str = ROS_DISTRO
 
     @property
     def count(self) -> int:
-        """Return how many messages the bag has."""
+        """Number of messages in the bag."""
         return sum(topic.count for topic in self.topics)
 
     def text(self, files: Sequence[Mapping[str, Any]] = ()) -> str:
         """Return the file's text.
 
         Args:
-            files: What is to be said of each file: path, start_ns, duration_ns, count.
+            files: Entries for the files: path, start_ns, duration_ns, count.
         """
         information = {
             'version': VERSION,
@@ -125,52 +129,55 @@ class Metadata:
 
 
 def read_metadata(path: Path) -> Metadata:
-    """Read a file.
+    """Read a `metadata.yaml`.
 
     Raises:
-        Damaged: It does not say what it should.
+        Damaged: It has another form.
         OSError: It can't be read.
     """
     try:
-        content = yaml.load(path.read_text(encoding='utf-8'), Loader=_Loader)
-        found = content[_ROOT]
+        found = load_yaml_file(path)[_ROOT]
         mode = str(found.get('compression_mode') or '').lower()
         return Metadata(
             str(found['storage_identifier']),
             [str(name) for name in found['relative_file_paths']],
-            int(found['starting_time']['nanoseconds_since_epoch']),
-            int(found['duration']['nanoseconds']),
+            _whole(found['starting_time']['nanoseconds_since_epoch'], -(2**63)),
+            _whole(found['duration']['nanoseconds']),
             [_topic_from(each) for each in found['topics_with_message_count']],
             '' if mode == 'none' else mode,
-            int(found.get('version', 1)),
+            _whole(found.get('version', 1)),
             str(found.get('ros_distro') or 'unknown'),
         )
-    except (yaml.YAMLError, KeyError, TypeError, ValueError, AttributeError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise Damaged('can not be understood') from error
 
 
-_Loader: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
+def _whole(value: Any, least: int = 0) -> int:
+    """Return a whole number that a field of 64 bits can hold."""
+    if not isinstance(value, int) or not least <= value < 2**64:
+        raise ValueError('a number is out of range')
+    return value
 
 
-def _topic_from(entry: Mapping[str, Any]) -> TopicMetadata:
+def _topic_from(entry: Mapping[str, Any]) -> BagTopic:
     known = entry['topic_metadata']
-    return TopicMetadata(
+    return BagTopic(
         str(known['name']),
         str(known['type']),
+        _whole(entry['message_count']),
+        profiles_from(known.get('offered_qos_profiles')),
         str(known.get('serialization_format') or 'cdr'),
-        known.get('offered_qos_profiles') or '',
-        str(known.get('type_description_hash') or ''),
-        int(entry['message_count']),
+        type_hash=str(known.get('type_description_hash') or ''),
     )
 
 
-def _topic_to(topic: TopicMetadata) -> dict[str, Any]:
+def _topic_to(topic: BagTopic) -> dict[str, Any]:
     return {
         'topic_metadata': {
             'name': topic.name,
             'type': topic.msg_type,
             'serialization_format': topic.serialization_format,
-            'offered_qos_profiles': topic.qos or [],
+            'offered_qos_profiles': profiles_to_list(topic.qos_profiles),
             'type_description_hash': topic.type_hash,
         },
         'message_count': topic.count,
@@ -181,24 +188,24 @@ def _topic_to(topic: TopicMetadata) -> dict[str, Any]:
 
 
 def profiles_from(stored: Any) -> list[QoSProfile]:
-    """Return QoS profiles from what a bag says: a list, or YAML of one; none if it is neither.
+    """Return QoS profiles from a list, or YAML of one; none from anything else.
 
-    Before version 9 policies are numbers, and the longest time that there is means no end.
+    Before version 9, policies are numbers, and the greatest possible time means infinity.
     """
     try:
-        entries = yaml.load(stored, Loader=_Loader) if isinstance(stored, str) else stored
+        entries = load_yaml(stored) if isinstance(stored, str) else stored
         return [_profile_from(entry) for entry in entries or ()]
-    except (yaml.YAMLError, KeyError, TypeError, ValueError, AttributeError):
+    except (KeyError, TypeError, ValueError, AttributeError):
         return []
 
 
 def profiles_to_list(profiles: Sequence[QoSProfile]) -> list[dict[str, Any]]:
-    """Return QoS profiles as version 9 writes them."""
+    """Return QoS profiles in the form of version 9."""
     return [_profile_to(profile) for profile in profiles]
 
 
 def profiles_to_text(profiles: Sequence[QoSProfile]) -> str:
-    """Return QoS profiles as YAML, as it stands in the files of messages."""
+    """Return QoS profiles as YAML, in the form used inside data files."""
     return yaml.safe_dump(profiles_to_list(profiles), sort_keys=False) if profiles else ''
 
 
@@ -206,7 +213,7 @@ def _profile_from(entry: Mapping[str, Any]) -> QoSProfile:
     policies = {name: _policy(kinds, entry[name]) for name, kinds in _POLICIES.items()}
     times = {name: _duration(entry[name]) for name in _TIMES if name in entry}
     return QoSProfile(  # type: ignore[no-untyped-call]
-        depth=int(entry.get('depth', 0)),
+        depth=_whole(entry.get('depth', 0)),
         avoid_ros_namespace_conventions=bool(entry.get('avoid_ros_namespace_conventions')),
         **policies,
         **times,
@@ -234,7 +241,8 @@ def _policy(kinds: Any, value: Any) -> Any:
 
 
 def _duration(value: Mapping[str, int]) -> Duration:
-    total = int(value['sec']) * 10**9 + int(value['nsec'])
-    # rmw_time_t of older versions had 32 bits less: their longest time is no end, too.
-    endless = total >= _ENDLESS_NS or int(value['sec']) >= 2**31 - 1
-    return Duration(nanoseconds=_ENDLESS_NS if endless else total)
+    sec = _whole(value['sec'])
+    total = sec * 10**9 + _whole(value['nsec'])
+    # rmw_time_t of older versions has 32 bits: its greatest time means infinity, too.
+    infinite = total >= _INFINITE_NS or sec >= 2**31 - 1
+    return Duration(nanoseconds=_INFINITE_NS if infinite else total)

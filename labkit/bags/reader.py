@@ -1,10 +1,10 @@
-"""A bag, open for reading: `open_bag`."""
+"""Reading a bag: `open_bag`."""
 
 from __future__ import annotations
 
 import heapq
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,14 +12,14 @@ import numpy as np
 
 from labkit.bags import finding
 from labkit.bags.decoding import Decoder
-from labkit.bags.metadata import Metadata, profiles_from
+from labkit.bags.metadata import BagTopic, Metadata, profiles_from
 from labkit.bags.stored import StoredFile
-from labkit.errors import LabError, nearest
+from labkit.bags.unpacking import unpacked
+from labkit.errors import LabError, nearest, quoted
 
 if TYPE_CHECKING:
     import os
 
-    from rclpy.qos import QoSProfile
     from typing_extensions import Self
 
 __all__ = ['Bag', 'BagMessage', 'BagTopic', 'open_bag']
@@ -28,39 +28,13 @@ _FIRST_NS, _LAST_NS = -(2**63), 2**63 - 1
 
 
 @dataclass(frozen=True)
-class BagTopic:
-    """A topic of a bag.
-
-    Attributes:
-        name: Full name of the topic.
-        msg_type: Name of its type, such as `std_msgs/msg/String`.
-        count: How many messages the bag has of it.
-        qos_profiles: What its publishers offered, as far as the bag knows.
-        serialization_format: `'cdr'`, mostly.
-        definition: How the type is defined, '' if the bag does not say.
-        encoding: The language of that: `'ros2msg'` or `'ros2idl'`.
-        type_hash: `RIHS01_...`, '' if the bag does not say.
-    """
-
-    name: str
-    msg_type: str
-    count: int
-    qos_profiles: list[QoSProfile] = field(repr=False)
-    serialization_format: str = field(default='cdr', repr=False)
-    definition: str = field(default='', repr=False)
-    encoding: str = field(default='', repr=False)
-    type_hash: str = field(default='', repr=False)
-
-
-@dataclass(frozen=True)
 class BagMessage:
     """A message of a bag.
 
     Attributes:
         topic: Full name of its topic.
-        msg_type: Name of its type.
-        stamp_ns: When it was recorded, ns since 1970.
-        data: Its bytes, as they went over the network.
+        stamp_ns: Time of recording, ns since 1970.
+        data: Its serialized data.
     """
 
     topic: str
@@ -71,10 +45,10 @@ class BagMessage:
 
     @property
     def message(self) -> Any:
-        """Return the message itself. One of a type that is not installed here has its fields, too.
+        """The deserialized message, also of a type that is not installed here.
 
         Raises:
-            LabError: The type is not known, or the bytes are no message of it.
+            LabError: The type is unknown, or the data is not a message of it.
         """
         return self._decoder.decode(self.msg_type, self.data)
 
@@ -83,16 +57,14 @@ class Bag:
     """A bag, open for reading. Made by `open_bag`; a context manager.
 
     Attributes:
-        path: Its folder, or its one file.
+        path: Its folder, or its single file.
         storage: `'mcap'` or `'sqlite3'`.
         start_ns: Time of the first message, ns since 1970; 0 if there is none.
         end_ns: Time of the last message, ns; 0 if there is none.
-        size_bytes: What its files take.
-        message_count: How many messages it has.
-        topics: Its topics, in order of their names.
-        note: What is wrong with it, as a sentence; '' if it is whole.
-        files: Names of its files.
-        ros_distro: Whose rosbag2 has written it, `'unknown'` if it does not say.
+        size_bytes: Size of its files, bytes.
+        message_count: Number of messages.
+        note: Any fault, as a sentence; '' if it is intact.
+        ros_distro: Distribution that wrote the bag; `'unknown'` if not stated.
     """
 
     def __init__(self, found: finding.Found) -> None:
@@ -119,14 +91,14 @@ class Bag:
 
     @property
     def duration_sec(self) -> float:
-        """Return the time from the first to the last message, s."""
+        """The time from the first to the last message, s."""
         return (self.end_ns - self.start_ns) / 1e9
 
     def topic(self, name: str) -> BagTopic:
         """Return a topic.
 
         Raises:
-            LabError: The bag has none of that name.
+            LabError: There is no such topic.
         """
         names = [topic.name for topic in self.topics]
         for topic in self.topics:
@@ -135,7 +107,7 @@ class Bag:
         near = nearest(name, names)
         known = f'It has {", ".join(names)}.' if names else 'It has none.'
         raise LabError(
-            f'{self.path.name!r} has no topic {name!r}.',
+            f'{quoted(self.path.name)} has no topic {quoted(name)}.',
             todo=f'Did you mean {near!r}?' if near else known,
         )
 
@@ -145,15 +117,15 @@ class Bag:
         start_sec: float | None = None,
         end_sec: float | None = None,
     ) -> Iterator[BagMessage]:
-        """Yield messages in order of time. They are read as they are asked for.
+        """Yield messages in order of time, reading them lazily.
 
         Args:
             topics: Names of topics; all if None.
-            start_sec: The first time, s since the beginning of the bag.
-            end_sec: The last time, s since the beginning of the bag.
+            start_sec: Start, s from the beginning of the bag.
+            end_sec: End, s from the beginning of the bag.
 
         Raises:
-            LabError: The bag has no such topic, or is damaged at some place.
+            LabError: The bag has no such topic, or is damaged.
         """
         names = self._names(topics)
         first = _FIRST_NS if start_sec is None else self.start_ns + round(start_sec * 1e9)
@@ -161,7 +133,7 @@ class Bag:
         return self._read(names, first, last)
 
     def stamps(self, topic: str) -> Any:
-        """Return the times of a topic's messages, ns since 1970, in order, as an array of numpy.
+        """Return the times of a topic's messages in order, ns since 1970, as a numpy array.
 
         Raises:
             LabError: The bag has no such topic, or is damaged.
@@ -169,7 +141,7 @@ class Bag:
         name = self.topic(topic).name
         if name not in self._stamps:
             try:
-                each = [file.stamps(number) for file, number in self._places(name)]
+                each = [file.stamps(number) for file, number in self._topics_called(name)]
             except (ValueError, OSError) as error:
                 raise self._damaged(error) from error
             found = np.concatenate([np.empty(0, dtype=np.int64), *each])
@@ -177,7 +149,7 @@ class Bag:
         return self._stamps[name]
 
     def at(self, topic: str, t_ns: int) -> BagMessage | None:
-        """Return the last message of a topic at a time or before it, None if there is none.
+        """Return a topic's last message at or before a time, None if there is none.
 
         Args:
             topic: Name of the topic.
@@ -187,7 +159,7 @@ class Bag:
             LabError: The bag has no such topic, or is damaged.
         """
         best: BagMessage | None = None
-        for file, number in self._places(self.topic(topic).name):
+        for file, number in self._topics_called(self.topic(topic).name):
             try:
                 found = file.last(number, t_ns)
             except (ValueError, OSError) as error:
@@ -197,7 +169,7 @@ class Bag:
         return best
 
     def close(self) -> None:
-        """Close its files."""
+        """Close the files."""
         self._found.close()
 
     def __enter__(self) -> Self:
@@ -219,8 +191,8 @@ class Bag:
         wanted = [topics] if isinstance(topics, str) else topics
         return {self.topic(name).name for name in wanted}
 
-    def _places(self, name: str) -> list[tuple[StoredFile, int]]:
-        """Return where the messages of a topic are."""
+    def _topics_called(self, name: str) -> list[tuple[StoredFile, int]]:
+        """Return the files with a topic, and the topic's number in each."""
         return [
             (file, number)
             for file in self._found.files
@@ -245,12 +217,12 @@ class Bag:
     def _message(self, file: StoredFile, number: int, stamp_ns: int, data: bytes) -> BagMessage:
         topic = file.topics[number]
         if self._found.compressed_messages:
-            data = finding.decompressed(data)
+            data = unpacked(data)
         return BagMessage(topic.name, topic.msg_type, stamp_ns, data, self._decoder)
 
     def _damaged(self, error: Exception) -> LabError:
         return LabError(
-            f'{str(self.path)!r} is damaged: {error}.',
+            f'{quoted(str(self.path))} is damaged: {error}.',
             todo='What comes before that can be read. Is there another copy of it?',
         )
 
@@ -259,13 +231,13 @@ def open_bag(path: str | os.PathLike[str]) -> Bag:
     """Open a bag for reading.
 
     Args:
-        path: Its folder, or one file of messages: `.mcap` or `.db3`.
+        path: Its folder, or one data file: `.mcap` or `.db3`.
 
     Returns:
         The bag: `with open_bag('drive') as bag: ...`
 
     Raises:
-        LabError: There is none, or it can't be read. It says why, and what to do.
+        LabError: There is none, or it can't be read.
     """
     found = finding.find(Path(path))
     try:
@@ -273,35 +245,26 @@ def open_bag(path: str | os.PathLike[str]) -> Bag:
     except (ValueError, OSError) as error:
         found.close()
         raise LabError(
-            f'{str(path)!r} is damaged: {error}.', todo='Is there another copy of it?'
+            f'{quoted(str(path))} is damaged: {error}.', todo='Is there another copy of it?'
         ) from error
 
 
 def _topics(files: Sequence[StoredFile], metadata: Metadata | None) -> list[BagTopic]:
-    """Return what is known of topics: counted by `metadata.yaml` if it is there."""
-    definitions: dict[tuple[str, str], Any] = {}
-    counts: dict[tuple[str, str], int] = {}
+    """Return the topics of files, with counts from `metadata.yaml` if there is one."""
+    found: dict[tuple[str, str], BagTopic] = {}
     for file in files:
-        for topic in file.topics.values():
-            definitions.setdefault((topic.name, topic.msg_type), topic)
-        if metadata is None:
-            for number, count in file.counts().items():
-                key = (file.topics[number].name, file.topics[number].msg_type)
-                counts[key] = counts.get(key, 0) + count
-    told = {(topic.name, topic.msg_type): topic for topic in metadata.topics} if metadata else {}
-    found = []
-    for key in sorted({*definitions, *told}):
-        stored, said = definitions.get(key), told.get(key)
-        known: Any = said or stored
-        found.append(
-            BagTopic(
-                *key,
-                said.count if said else counts.get(key, 0),
-                profiles_from(known.qos),
-                known.serialization_format,
-                stored.definition if stored else '',
-                stored.encoding if stored else '',
-                known.type_hash,
-            )
-        )
-    return found
+        counts = file.counts() if metadata is None else {}
+        for number, stored in file.topics.items():
+            key = (stored.name, stored.msg_type)
+            if key not in found:
+                found[key] = BagTopic(
+                    *(*key, 0, profiles_from(stored.qos), stored.serialization_format),
+                    *(stored.definition, stored.encoding, stored.type_hash),
+                )
+            count = found[key].count + counts.get(number, 0)
+            found[key] = replace(found[key], count=count)
+    for told in metadata.topics if metadata is not None else ():
+        key = (told.name, told.msg_type)
+        known = found.get(key, told)
+        found[key] = replace(told, definition=known.definition, encoding=known.encoding)
+    return [found[key] for key in sorted(found)]

@@ -1,8 +1,7 @@
-"""Record topics to a bag, in the background: `record`.
+"""Record topics to a bag in the background: `record`.
 
-Messages are taken as they came over the network and never decoded. The callback of a subscription
-does no more than to put one into a queue; a thread of its own writes what is there, many at a
-time, and several times a second so that it can be read whatever happens.
+Messages are never decoded. A subscription's callback only puts them into a queue; a thread writes
+them in batches, and flushes several times a second so that they survive a crash.
 """
 
 from __future__ import annotations
@@ -11,15 +10,16 @@ import os
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rclpy.event_handler import SubscriptionEventCallbacks
-from rclpy.qos import QoSProfile
+from rclpy.parameter import Parameter
 
+from labkit.asking.discovery import asking_node
+from labkit.asking.listener import Listener
+from labkit.asking.silence import why_silent
 from labkit.background.compat import RCLError
-from labkit.background.discovery import asking_node
 from labkit.background.nodes import node_exists
 from labkit.background.runtime import runtime
 from labkit.background.session import Session, end_earlier, going_on
@@ -27,43 +27,42 @@ from labkit.bags.choice import TopicChoice, choose
 from labkit.bags.metadata import profiles_to_text
 from labkit.bags.schemas import ENCODING, full_definition
 from labkit.bags.writer import BagWriter, Message, check_storage
-from labkit.errors import LabError, LabTimeout
+from labkit.errors import LabError, LabTimeout, quoted
 from labkit.rosgraph.endpoints import publishers
 from labkit.rosgraph.interfaces import message_class
-from labkit.rosgraph.matching import nobody_publishes, other_type_here, qos_mismatch
+from labkit.rosgraph.matching import nobody_publishes, other_type_here
 from labkit.rosgraph.names import full_topic_name
-from labkit.rosgraph.qos import match_all
 
 if TYPE_CHECKING:
     from rclpy.node import Node
-    from rclpy.subscription import Subscription
+    from rclpy.qos import QoSProfile
 
 __all__ = ['Recording', 'record']
 
 NODE_NAME = 'rosbag2_recorder'
-# How often it looks for new topics; that of the real recorder.
-LOOK_SEC = 0.1
-# How many messages a topic may be behind, as long as other callbacks keep the background busy.
+# Period of looking for new topics, as in the real recorder.
+DISCOVERY_SEC = 0.1
+# Queue depth of subscriptions, for times when other callbacks keep the background busy.
 DEPTH = 1000
-# What waits to be written may take so much memory; that of the real recorder.
+# Memory limit for unwritten messages, as in the real recorder.
 CACHE_BYTES = 100 << 20
-# What a small message takes in memory besides its bytes.
+# Memory overhead of a message.
 _MESSAGE_BYTES = 250
-# What was received so long ago can be read from the file, whatever happens.
+# Messages older than this are on disk, whatever happens, s.
 FLUSH_SEC = 0.5
 _DRAIN_SEC = 0.03
 _BATCH = 2000
 
 
 class Recording(Session):
-    """A recording that goes on in the background. Made by `record`; a context manager.
+    """A recording in the background. Made by `record`; a context manager.
 
     Attributes:
         path: The folder of the bag.
-        lost: How many messages came but were not written, because the disk was too slow.
-        skipped: Topics that can not be recorded, with the reason.
-        warnings: What there is to know besides, as sentences.
-        error: What has ended it early, None if nothing has.
+        lost: Number of messages dropped because they came faster than they were written.
+        skipped: Topics that can't be recorded, with the reason.
+        warnings: Further remarks, as sentences.
+        error: The error that ended it early, None if there was none.
     """
 
     def __init__(
@@ -75,8 +74,15 @@ class Recording(Session):
         max_duration_sec: float | None = None,
         cache_bytes: int = CACHE_BYTES,
         discovery: bool = True,
+        overrides: Mapping[str, QoSProfile] | None = None,
+        use_sim_time: bool = False,
     ) -> None:
         super().__init__(NODE_NAME)
+        self._overrides = overrides or {}
+        # Stamps by /clock; messages before its first one are not recorded.
+        self._clock = self._node.get_clock() if use_sim_time else None
+        if use_sim_time:
+            self._node.set_parameters([Parameter('use_sim_time', value=True)])  # type: ignore[no-untyped-call]
         self.path = writer.path
         self.lost = 0
         self.skipped: dict[str, str] = {}
@@ -85,47 +91,46 @@ class Recording(Session):
         self._writing = threading.Lock()
         self._queue: deque[Message] = deque()
         self._cache_bytes = cache_bytes
-        self._came_bytes = self._written_bytes = 0
+        self._received_bytes = self._written_bytes = 0
         self._left = -1 if count is None else count
         self._duration_sec = max_duration_sec
         self._accepting = True
         self._wake = threading.Event()
         self._counts: dict[str, int] = {}
-        self._subscriptions: dict[str, Subscription] = {}
-        self._numbers: dict[str, int] = {}
-        self._look()
+        self._listeners: dict[str, Listener] = {}
+        self.discover()
         if discovery:
-            self._node.create_timer(LOOK_SEC, self._look)
+            self._node.create_timer(DISCOVERY_SEC, self.discover)
         self._go()
 
     @property
     def counts(self) -> dict[str, int]:
-        """Return how many messages of each topic were recorded, by the topic's name."""
+        """Number of recorded messages by topic."""
         return dict(sorted(self._counts.items()))
 
     @property
     def count(self) -> int:
-        """Return how many messages were recorded."""
+        """Number of recorded messages."""
         return sum(self._counts.values())
 
     @property
     def waiting(self) -> int:
-        """Return how many of these wait in memory to be written."""
+        """Number of recorded messages still in memory."""
         return len(self._queue)
 
     def wait_for(
         self, count: int, topic: str | None = None, *, timeout_sec: float | None = 5.0
     ) -> None:
-        """Wait until so many messages were recorded.
+        """Wait until some number of messages has been recorded.
 
         Args:
-            count: How many, since the recording began.
-            topic: Of this topic; of all if None.
+            count: Number of messages since the start of the recording.
+            topic: Topic to count; all if None.
             timeout_sec: Seconds to wait. Block forever if `None` or negative. Don't wait if 0.
 
         Raises:
-            LabTimeout: Fewer came. It says how many, and why if none did.
-            LabError: The recording has ended early.
+            LabTimeout: Fewer arrived. It says how many, and why if none did.
+            LabError: The recording ended early.
         """
         name = full_topic_name(topic, self._node_for_names()) if topic is not None else None
 
@@ -136,15 +141,15 @@ class Recording(Session):
         if recorded() >= count:
             return
         if self.error is not None:
-            raise LabError(f'The recording of {str(self.path)!r} has ended: {self.error}')
+            raise LabError(f'The recording of {quoted(str(self.path))} has ended: {self.error}')
         what = 'messages' if name is None else f'messages of {name}'
         raise LabTimeout(
-            f'{recorded() or "None"} of {count} {what} came to {str(self.path)!r}.',
+            f'{recorded() or "None"} of {count} {what} came to {quoted(str(self.path))}.',
             todo=self._why_silent(name),
         )
 
     def stop(self) -> None:
-        """End the recording: what has come is written, and the bag is whole."""
+        """Stop recording: write everything, and complete the bag."""
         self._accepting = False
         self._wake.set()
         super().stop()
@@ -160,27 +165,26 @@ class Recording(Session):
 
     # -- taking messages ------------------------------------------------------------------------
 
-    def _look(self) -> None:
-        """Subscribe to what has appeared since the last look."""
+    def discover(self) -> None:
+        """Subscribe to new topics. Called between callbacks."""
         if not self._accepting:
             return
         for name, types in self._choice.found(self._node):
-            if name not in self.skipped and not (name in self._subscriptions and self._fits(name)):
-                why = self._subscribe(name, types)
-                if why:
-                    self.skipped[name] = why
+            listener = self._listeners.get(name)
+            if listener is not None:
+                offered = [end.qos for end in publishers(self._node, name)]
+                # Not to request more: messages would be lost in between.
+                if not listener.hears_all(offered):
+                    listener.follow(offered)
+                    self._warn(name, listener)
+            elif name not in self.skipped and (why := self._subscribe(name, types)):
+                self.skipped[name] = why
 
-    def _fits(self, name: str) -> bool:
-        """Tell whether a subscription hears all publishers; if not it is given up."""
-        subscription = self._subscriptions[name]
-        found = publishers(self._node, name)
-        if not any(qos_mismatch(end.qos, subscription.qos_profile) for end in found):
-            return True
-        self._node.destroy_subscription(subscription)
-        return False
+    def _warn(self, name: str, listener: Listener) -> None:
+        self.warnings += [f'{name}: {note}' for note in listener.notes]
 
     def _subscribe(self, name: str, types: list[str]) -> str:
-        """Record a topic; return why that can't be done, '' if it can."""
+        """Record a topic; return why that is impossible, '' if it is not."""
         if len(types) > 1:
             return f'it has more than one type: {", ".join(types)}'
         try:
@@ -189,48 +193,53 @@ class Recording(Session):
         except (LabError, OSError):
             return f'its type {types[0]} is not installed here'
         infos = self._node.get_publishers_info_by_topic(name)
-        profile = QoSProfile(depth=DEPTH)  # type: ignore[no-untyped-call]
-        if infos:
-            for warning in match_all(profile, [info.qos_profile for info in infos]):
-                self.warnings.append(f'{name}: {warning}')
-        if name not in self._numbers:
-            with self._writing:
-                self._numbers[name] = self._writer.add_topic(
-                    name,
-                    types[0],
-                    qos=profiles_to_text([info.qos_profile for info in infos]),
-                    definition=definition,
-                    encoding=ENCODING,
-                    type_hash=str(infos[0].topic_type_hash) if infos else '',
-                )
-            self._counts[name] = 0
-        try:
-            self._subscriptions[name] = self._node.create_subscription(
-                msg_type,
+        offered = [info.qos_profile for info in infos]
+        with self._writing:
+            number = self._writer.add_topic(
                 name,
-                self._taker(name, self._numbers[name]),
-                profile,
-                # Each event costs a tenth of a message's way.
-                event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+                types[0],
+                qos=profiles_to_text(offered),
+                definition=definition,
+                encoding=ENCODING,
+                type_hash=str(infos[0].topic_type_hash) if infos else '',
+            )
+        self._counts[name] = 0
+        callback = self._make_callback(name, number)
+        try:
+            listener = Listener(
+                self._node,
+                name,
+                msg_type,
+                callback,
+                offered=offered,
+                qos_profile=self._overrides.get(name),
+                depth=DEPTH,
                 raw=True,
             )
         except (RCLError, LabError) as error:
             return other_type_here(self._node, name, msg_type) or str(error)
+        self._listeners[name] = listener
+        self._warn(name, listener)
         return ''
 
-    def _taker(self, name: str, number: int) -> Callable[..., None]:
-        """Return the callback of a subscription. It runs in the background, as short as can be."""
+    def _make_callback(self, name: str, number: int) -> Callable[..., None]:
+        """Return the callback of a subscription. It runs in the background and must be fast."""
         put, counts = self._queue.append, self._counts
 
         def record(data: bytes, info: dict[str, int]) -> None:
             if not self._accepting:
                 return
-            if self._came_bytes - self._written_bytes > self._cache_bytes:
+            if self._received_bytes - self._written_bytes > self._cache_bytes:
                 self.lost += 1
                 return
-            stamp = info['received_timestamp'] or time.time_ns()
+            if self._clock is None:
+                stamp = info['received_timestamp'] or time.time_ns()
+            else:
+                stamp = self._clock.now().nanoseconds
+                if not stamp:
+                    return
             put((number, stamp, info['source_timestamp'], data))
-            self._came_bytes += len(data) + _MESSAGE_BYTES
+            self._received_bytes += len(data) + _MESSAGE_BYTES
             counts[name] += 1
             self._left -= 1
             if not self._left:
@@ -239,7 +248,7 @@ class Recording(Session):
 
         return record
 
-    # -- writing, in a thread of its own --------------------------------------------------------
+    # -- writing, in a thread -------------------------------------------------------------------
 
     def _work(self) -> None:
         now = time.monotonic()
@@ -265,9 +274,9 @@ class Recording(Session):
             with self._writing:
                 self._writer.abandon()
             raise LabError(
-                f'{str(self.path)!r} can not be written: {error.strerror or error}. The '
+                f'{quoted(str(self.path))} can not be written: {error.strerror or error}. The '
                 'recording has ended.',
-                todo='What was written before can be read. Is the disk full?',
+                todo='What was written before can be read.',
             ) from error
 
     def _write_batch(self) -> None:
@@ -278,7 +287,7 @@ class Recording(Session):
                 self._writer.write(batch)
             self._written_bytes += sum(len(each[3]) + _MESSAGE_BYTES for each in batch)
 
-    # -- what to say ----------------------------------------------------------------------------
+    # -- messages -------------------------------------------------------------------------------
 
     def _node_for_names(self) -> Node:
         return self._node if node_exists(self._node) else asking_node()
@@ -294,13 +303,14 @@ class Recording(Session):
             return f'It is not among the chosen topics. Recorded: {", ".join(self._counts)}.'
         if name not in self._counts:
             return nobody_publishes(self._node, name)
-        return 'Is the publisher running?'
+        listener = self._listeners[name]
+        return why_silent(self._node, name, listener.msg_type, listener.profile)
 
-    def _is_heard(self) -> bool:
-        """Tell whether all publishers that are there know of the recording."""
+    def _is_discovered(self) -> bool:
+        """Return whether all existing publishers have discovered the recording."""
         return all(
-            subscription.get_publisher_count() >= len(publishers(self._node, name))
-            for name, subscription in self._subscriptions.items()
+            listener.subscription.get_publisher_count() >= len(publishers(self._node, name))
+            for name, listener in self._listeners.items()
         )
 
 
@@ -316,36 +326,35 @@ def record(
     overwrite: bool = False,
     timeout_sec: float | None = 5.0,
 ) -> Recording:
-    """Record topics to a bag, in the background.
+    """Record topics to a bag in the background.
 
-    It ends with `stop()`, at the end of a `with` block, at `lab.stop()`, when the kernel is shut
+    It ends with `stop()`, at the end of a `with` block, with `lab.stop()`, when the kernel is shut
     down, and when the cell is run again. As with `ros2 bag record`, topics that appear later are
-    recorded too, and each message has the time at which it came.
+    recorded too, and each message has its time of arrival.
 
     Args:
-        path: The folder of the bag. It is made.
-        topics: A name, or several. All that are not hidden if None.
-        regex: A regular expression: topics whose name contains it.
-        exclude: One or several: not the topics whose name contains it.
+        path: Folder of the new bag.
+        topics: One name or several. All that are not hidden if None.
+        regex: Regular expression: topics with matching names.
+        exclude: One or several: leave out topics with matching names.
         storage: `'mcap'` or `'sqlite3'`.
-        max_duration_sec: It ends after so many seconds.
-        count: It ends after so many messages.
-        overwrite: Whether a bag of that name may be replaced.
-        timeout_sec: Seconds to wait until what is published from now on is heard, where a
-            publisher is there already. Block forever if `None` or negative. Don't wait if 0.
+        max_duration_sec: Time limit, s.
+        count: Limit on the number of messages.
+        overwrite: Whether to replace an existing bag.
+        timeout_sec: Seconds to wait for existing publishers to discover the recording. Block
+            forever if `None` or negative. Don't wait if 0.
 
     Returns:
-        The recording: its `counts`, `wait_for(...)`, `stop()`.
+        The recording, with `counts`, `wait_for(...)` and `stop()`.
 
     Raises:
-        LabError: The folder is there already, or can't be written; or an argument is not what it
-            should be.
+        LabError: The folder exists, or can't be written; or an argument is invalid.
     """
     check_storage(storage)
     if count is not None and (not isinstance(count, int) or count < 1):
-        raise LabError(f'count must be a whole number of at least 1, but it is {count!r}.')
+        raise LabError(f'count must be a whole number of at least 1, but it is {quoted(count)}.')
     if max_duration_sec is not None and not max_duration_sec > 0:
-        raise LabError(f'max_duration_sec must be above 0, but it is {max_duration_sec!r}.')
+        raise LabError(f'max_duration_sec must be above 0, but it is {quoted(max_duration_sec)}.')
     node = asking_node()
     end_earlier(Recording)
     choice = choose(node, topics, regex, exclude)
@@ -356,7 +365,7 @@ def record(
         count=count,
         max_duration_sec=max_duration_sec,
     )
-    runtime.wait(lambda: recording.done or recording._is_heard(), timeout_sec)
+    runtime.wait(lambda: recording.done or recording._is_discovered(), timeout_sec)
     return recording
 
 
@@ -364,19 +373,13 @@ def _refuse_twice(path: Path) -> None:
     for session in going_on(Recording):
         if session.path.resolve() == path.resolve():
             raise LabError(
-                f'{str(path)!r} is being recorded just now.',
+                f'{quoted(str(path))} is being recorded just now.',
                 todo='Choose another name, or end that recording first with its stop().',
             )
 
 
 def start_recording(writer: BagWriter, choice: TopicChoice, **limits: Any) -> Recording:
-    """Begin a recording; a bag that can't be recorded is closed.
-
-    Args:
-        writer: The bag.
-        choice: Which topics.
-        limits: As `Recording` takes them.
-    """
+    """Start a recording; close the bag if that fails."""
     try:
         return Recording(writer, choice, **limits)
     except BaseException:

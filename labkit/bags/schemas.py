@@ -1,4 +1,4 @@
-"""How a type is defined, with all types within it, in the words that rosbag2 stores."""
+"""Definitions of types with all nested types, in the form that rosbag2 stores."""
 
 from __future__ import annotations
 
@@ -13,17 +13,26 @@ __all__ = ['ENCODING', 'full_definition']
 
 ENCODING = 'ros2msg'
 _LINE = '=' * 80
+# Parts of actions and services that no file defines.
+_MADE = {
+    'FeedbackMessage': ['unique_identifier_msgs/UUID goal_id', '{}_Feedback feedback'],
+    'Event': [
+        'service_msgs/ServiceEventInfo info',
+        '{}_Request[<=1] request',
+        '{}_Response[<=1] response',
+    ],
+}
 
 
 @functools.cache
 def full_definition(msg_type: str) -> str:
-    """Return the definition of a type and, after a line each, of the types within it.
+    """Return the definition of a type, followed by those of nested types.
 
     Args:
-        msg_type: Full name of a message type that is installed.
+        msg_type: Full name of an installed message type.
 
     Raises:
-        OSError: Its definition is not where it should be.
+        OSError: The definition file is missing.
     """
     text = _text_of(msg_type)
     found, waiting = [text], _within(msg_type, text)
@@ -31,7 +40,7 @@ def full_definition(msg_type: str) -> str:
     while waiting:
         name = waiting.pop(0)
         text = _text_of(name)
-        # As rosbag2 has it, a message has no `msg` in its name; what it is a part of stays.
+        # rosbag2 omits `msg` from the names of messages, but keeps parts of actions.
         found.append(f'{_LINE}\nMSG: {name.replace("/msg/", "/")}\n{text}')
         more = [other for other in _within(name, text) if other not in known]
         known.update(more)
@@ -40,20 +49,23 @@ def full_definition(msg_type: str) -> str:
 
 
 def _text_of(name: str) -> str:
-    if not interfaces.is_part_of_action(name):
+    if not interfaces.is_part(name):
         return interfaces.path_of(name).read_text(encoding='utf-8')
-    action, _, part = name.rpartition('_')
-    if part == 'FeedbackMessage':
-        return f'unique_identifier_msgs/UUID goal_id\n{action}_Feedback feedback\n'
-    text = interfaces.path_of(action).read_text(encoding='utf-8')
-    goal, result, feedback = re.split(r'(?m)^---\s*$', text)
-    return {'Goal': goal, 'Result': result, 'Feedback': feedback}[part].lstrip('\n')
+    whole, _, part = name.rpartition('_')
+    if part in _MADE:
+        return ''.join(f'{line.format(whole)}\n' for line in _MADE[part])
+    text = interfaces.path_of(whole).read_text(encoding='utf-8')
+    names = ('Goal', 'Result', 'Feedback') if '/action/' in name else ('Request', 'Response')
+    parts = re.split(r'(?m)^---\s*$', text)
+    return dict(zip(names, parts, strict=True))[part].lstrip('\n')
 
 
 def _within(name: str, text: str) -> list[str]:
-    """Return the names of the types of a definition's fields."""
-    if name.endswith('_FeedbackMessage'):
-        return ['unique_identifier_msgs/msg/UUID', f'{name.removesuffix("Message")}']
+    """Return the names of the message types of a definition's fields."""
+    whole, _, part = name.rpartition('_')
+    if part in _MADE:
+        types = [re.split(r'[\[ ]', line.format(whole))[0] for line in _MADE[part]]
+        return [each if each.count('/') == 2 else each.replace('/', '/msg/') for each in types]
     package, _, word = name.split('/')
     fields = parse_message_string(package, word.replace('_', ''), text).fields
     found = [

@@ -18,11 +18,8 @@ __all__ = ['SqliteFile']
 class SqliteFile:
     """An sqlite3 file, open for reading. See `StoredFile`.
 
-    Args:
-        path: The file.
-
     Raises:
-        Damaged: It is no sqlite3 file of rosbag2.
+        Damaged: It is not an sqlite3 file of rosbag2.
         OSError: It can't be read.
     """
 
@@ -40,17 +37,17 @@ class SqliteFile:
             raise Damaged(f'is no sqlite3 file of rosbag2 ({error})') from error
 
     def counts(self) -> dict[int, int]:
-        """Return how many messages each topic has."""
-        rows = self._ask('SELECT topic_id, COUNT(*) FROM messages GROUP BY topic_id')
+        """Return the number of messages of each topic."""
+        rows = self._query('SELECT topic_id, COUNT(*) FROM messages GROUP BY topic_id')
         return dict.fromkeys(self.topics, 0) | {
             topic: count for topic, count in rows if topic in self.topics
         }
 
     def span(self) -> tuple[int, int] | None:
-        """Return the times of the first and the last message, ns; None if there is none."""
-        # Each for itself is taken from the file's index.
+        """Return the times of the first and the last message, ns; None without messages."""
+        # Two queries, so that each uses the index.
         first, last = next(
-            self._ask(
+            self._query(
                 'SELECT (SELECT MIN(timestamp) FROM messages), '
                 '(SELECT MAX(timestamp) FROM messages)'
             )
@@ -58,24 +55,24 @@ class SqliteFile:
         return None if first is None else (first, last)
 
     def stamps(self, topic: int) -> Any:
-        """Return the times of a topic's messages, ns, in order."""
-        rows = self._ask('SELECT timestamp FROM messages WHERE topic_id = ?', topic)
+        """Return the times of a topic's messages in order, ns."""
+        rows = self._query('SELECT timestamp FROM messages WHERE topic_id = ?', topic)
         return np.sort(np.fromiter((stamp for (stamp,) in rows), dtype=np.int64))
 
     def read(
         self, topics: Collection[int], start_ns: int, end_ns: int
     ) -> Iterator[tuple[int, int, bytes]]:
-        """Yield time, topic and bytes of the messages from a time to a time, in order of time."""
+        """Yield time, topic and data of the messages between two times, in order of time."""
         marks = ','.join('?' * len(topics))
-        yield from self._ask(
+        yield from self._query(
             'SELECT timestamp, topic_id, data FROM messages WHERE timestamp BETWEEN ? AND ? '
             f'AND topic_id IN ({marks}) ORDER BY timestamp, id',
             *(max(start_ns, -(2**63)), min(end_ns, 2**63 - 1), *topics),
         )
 
     def last(self, topic: int, t_ns: int) -> tuple[int, bytes] | None:
-        """Return time and bytes of the last message of a topic at a time or before, or None."""
-        rows = self._ask(
+        """Return time and data of a topic's last message at or before a time, or None."""
+        rows = self._query(
             'SELECT timestamp, data FROM messages WHERE topic_id = ? AND timestamp <= ? '
             'ORDER BY timestamp DESC, id DESC LIMIT 1',
             *(topic, t_ns),
@@ -83,17 +80,17 @@ class SqliteFile:
         return next(rows, None)
 
     def close(self) -> None:
-        """Close it."""
+        """Close the file."""
         self._database.close()
 
-    def _ask(self, question: str, *values: int) -> Iterator[Any]:
-        """Yield the rows of an answer.
+    def _query(self, query: str, *values: int) -> Iterator[Any]:
+        """Yield the rows of a query.
 
         Raises:
             ValueError: The file is damaged.
         """
         try:
-            yield from self._database.execute(question, values)
+            yield from self._database.execute(query, values)
         except sqlite3.DatabaseError as error:
             raise ValueError(str(error)) from error
 
@@ -126,11 +123,12 @@ class SqliteFile:
 
 
 def _connect(path: Path) -> sqlite3.Connection:
-    """Open a file; what a killed program has left unfinished beside it is put right first."""
-    place = path.resolve().as_uri()
+    """Open a file; sqlite first recovers what a killed program has left beside it."""
+    uri = path.resolve().as_uri()
     for mode in ('mode=ro', 'mode=rw', 'immutable=1'):
         with contextlib.suppress(sqlite3.OperationalError):
-            database = sqlite3.connect(f'{place}?{mode}', uri=True, check_same_thread=False)
+            database = sqlite3.connect(f'{uri}?{mode}', uri=True, check_same_thread=False)
+            database.text_factory = lambda text: text.decode(errors='replace')
             try:
                 database.execute('PRAGMA schema_version').fetchall()
             except sqlite3.OperationalError:

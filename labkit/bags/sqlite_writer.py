@@ -28,12 +28,12 @@ _TABLES = """
         data BLOB NOT NULL);
     CREATE INDEX timestamp_idx ON messages (timestamp ASC);
 """
-# With each statement the lock of Python goes to another thread and back, so one has many rows; one
-# with more than 999 values is refused by some versions of sqlite.
+# Each statement releases and takes Python's lock, so one inserts many rows; some versions of
+# sqlite refuse more than 999 values.
 _ROWS = 100
 _INSERT = 'INSERT INTO messages(topic_id, timestamp, data) VALUES'
 _INSERT_ROWS = _INSERT + ','.join(['(?,?,?)'] * _ROWS)
-# So much is written in one transaction at most, bytes.
+# Most bytes in one transaction.
 _TRANSACTION_BYTES = 8 << 20
 
 
@@ -41,10 +41,10 @@ class SqliteWriter:
     """An sqlite3 file, open for writing.
 
     Args:
-        path: The file, which must not be there.
+        path: The file, which must not exist.
 
     Raises:
-        OSError: In each method: it can't be written.
+        OSError: In any method: it can't be written.
     """
 
     suffix = '.db3'
@@ -55,10 +55,9 @@ class SqliteWriter:
         self._waiting = 0
         self._types: set[str] = set()
         path.touch(exist_ok=False)
-        # Made in one thread, used in another one, never in two at once.
+        # Made in one thread and used in another, never in two at once.
         self._database = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
-        # Whatever happens to this process, what was committed is there; only the computer itself
-        # must not stop.
+        # Committed data survives the process; only the computer itself must not stop.
         self._do('PRAGMA synchronous = OFF')
         for statement in _TABLES.strip().split(';'):
             self._do(statement)
@@ -82,7 +81,7 @@ class SqliteWriter:
         self.flush()
 
     def write(self, messages: Sequence[tuple[int, int, int, bytes]]) -> None:
-        """Write messages: number of the topic, times of receipt and of publishing, ns, bytes."""
+        """Write messages, see `Message`."""
         rows = [(topic, stamp, data) for topic, stamp, _, data in messages]
         whole = len(rows) - len(rows) % _ROWS
         try:
@@ -99,16 +98,16 @@ class SqliteWriter:
             self.flush()
 
     def flush(self) -> None:
-        """Commit what waits, so that it can be read whatever happens from now on."""
+        """Commit everything, so that it survives a crash."""
         self._do('COMMIT')
         self._do('BEGIN')
         self._waiting = 0
 
     def finish(self, metadata: str) -> None:
-        """Commit what waits, and close the file.
+        """Commit everything, and close the file.
 
         Args:
-            metadata: The text of metadata.yaml, as far as it is about this file.
+            metadata: The part of metadata.yaml about this file.
         """
         self._do(
             'INSERT INTO metadata(metadata_version, metadata) VALUES(?, ?)', VERSION, metadata

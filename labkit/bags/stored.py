@@ -1,4 +1,4 @@
-"""What the readers of the two kinds of files have in common."""
+"""The interface of the readers of both kinds of files."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ __all__ = ['Damaged', 'StoredFile', 'StoredTopic']
 
 
 class Damaged(Exception):
-    """Report that a file is not what it should be. The words follow "its file ..."."""
+    """Report that a file is invalid. The message follows "its file ..."."""
 
 
 @dataclass(frozen=True)
 class StoredTopic:
-    """A topic with one type, as a file knows it.
+    """A topic with one type, as stored in a file.
 
     Attributes:
         id: Its number in the file.
         name: Full name of the topic.
         msg_type: Name of the type, such as `std_msgs/msg/String`.
         serialization_format: `'cdr'`.
-        qos: The offered QoS profiles, as text.
-        definition: The type's definition, '' if the file has none.
-        encoding: Its language: `'ros2msg'` or `'ros2idl'`.
+        qos: The offered QoS profiles, as YAML.
+        definition: Definition of the type, '' if the file has none.
+        encoding: Language of the definition: `'ros2msg'` or `'ros2idl'`.
         type_hash: `RIHS01_...`, '' if the file has none.
     """
 
@@ -40,12 +40,11 @@ class StoredTopic:
 
 
 class StoredFile(Protocol):
-    """A file of messages, open for reading.
+    """A data file, open for reading.
 
     Attributes:
-        path: Where it is.
         topics: Its topics, by number.
-        note: What is wrong with it, '' if it is whole.
+        note: Any fault, '' if it is intact.
     """
 
     path: Path
@@ -53,27 +52,27 @@ class StoredFile(Protocol):
     note: str
 
     def counts(self) -> dict[int, int]:
-        """Return how many messages each topic has."""
+        """Return the number of messages of each topic."""
         ...
 
     def span(self) -> tuple[int, int] | None:
-        """Return the times of the first and the last message, ns; None if there is none."""
+        """Return the times of the first and the last message, ns; None without messages."""
         ...
 
     def stamps(self, topic: int) -> Any:
-        """Return the times of a topic's messages, ns, in order, as an array of numpy."""
+        """Return the times of a topic's messages in order, ns, as a numpy array."""
         ...
 
     def read(
         self, topics: Collection[int], start_ns: int, end_ns: int
     ) -> Iterator[tuple[int, int, bytes]]:
-        """Yield time, topic and bytes of the messages from a time to a time, in order of time."""
+        """Yield time, topic and data of the messages between two times, in order of time."""
         ...
 
     def last(self, topic: int, t_ns: int) -> tuple[int, bytes] | None:
-        """Return time and bytes of the last message of a topic at a time or before, or None."""
+        """Return time and data of a topic's last message at or before a time, or None."""
         ...
 
     def close(self) -> None:
-        """Close it."""
+        """Close the file."""
         ...

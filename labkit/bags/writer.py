@@ -1,19 +1,16 @@
-"""A bag, open for writing: its files, one after the other, and `metadata.yaml` at the end."""
+"""Writing a bag: its files, one after the other, and `metadata.yaml` at the end."""
 
 from __future__ import annotations
 
 import os
 import shutil
 from collections.abc import Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any, Protocol
 
-import yaml
-
-from labkit.bags.metadata import FILE_NAME, Metadata, TopicMetadata
+from labkit.bags.metadata import FILE_NAME, BagTopic, Metadata, profiles_from
 from labkit.bags.stored import StoredTopic
-from labkit.errors import LabError, nearest
+from labkit.errors import LabError, nearest, quoted
 from labkit.files import write_atomically
 
 __all__ = ['STORAGES', 'BagWriter', 'check_storage']
@@ -22,7 +19,7 @@ STORAGES = ('mcap', 'sqlite3')
 _SUFFIXES = ('.mcap', '.db3', '.db3-journal', '.db3-wal', '.db3-shm')
 
 Message = tuple[int, int, int, bytes]
-"""Number of the topic, time of receipt, ns, time of publishing, ns, bytes."""
+"""Topic number, receive time, ns, publish time, ns, and data."""
 
 
 class _File(Protocol):
@@ -43,16 +40,16 @@ class BagWriter:
     Args:
         path: Its folder.
         storage: `'mcap'` or `'sqlite3'`.
-        overwrite: Whether a bag that is there is replaced.
-        split_bytes: A new file is begun after so many bytes; 0 for never.
-        split_sec: A new file is begun after so many seconds; 0 for never.
+        overwrite: Whether to replace an existing bag.
+        split_bytes: Size after which a new file begins; 0 for never.
+        split_sec: Duration after which a new file begins, s; 0 for never.
 
     Attributes:
         path: Its folder.
 
     Raises:
-        LabError: The folder is there, or can't be made.
-        OSError: In each method: it can't be written.
+        LabError: The folder exists, or can't be created.
+        OSError: In any method: it can't be written.
     """
 
     _first_ns: int
@@ -78,9 +75,8 @@ class BagWriter:
         try:
             self._begin_file()
         except OSError as error:
-            with suppress(OSError):
-                path.rmdir()
-            raise LabError(f'{str(path)!r} can not be written: {error}.') from error
+            shutil.rmtree(path, ignore_errors=True)  # made a moment ago
+            raise LabError(f'{quoted(str(path))} can not be written: {error}.') from error
 
     def add_topic(
         self,
@@ -91,33 +87,27 @@ class BagWriter:
         definition: str,
         encoding: str,
         type_hash: str = '',
-        serialization_format: str = 'cdr',
     ) -> int:
-        """Add a topic.
+        """Add a topic; return its number.
 
         Args:
             name: Full name of the topic.
             msg_type: Name of its type.
             qos: The offered QoS profiles, as YAML.
-            definition: How the type is defined.
-            encoding: The language of the definition.
-            type_hash: `RIHS01_...`, '' if it is not known.
-            serialization_format: Of the messages.
+            definition: Definition of the type.
+            encoding: Language of the definition.
+            type_hash: `RIHS01_...`, '' if unknown.
 
-        Returns:
-            Its number.
         """
         number = len(self._topics) + 1
-        topic = StoredTopic(
-            number, name, msg_type, serialization_format, qos, definition, encoding, type_hash
-        )
+        topic = StoredTopic(number, name, msg_type, 'cdr', qos, definition, encoding, type_hash)
         self._topics[number] = topic
         self._counts[number] = 0
         self._file.add_topic(topic)
         return number
 
     def write(self, messages: Sequence[Message]) -> None:
-        """Write messages, in the order in which they came."""
+        """Write messages in order of arrival."""
         if self._split_bytes or self._split_ns:
             for message in messages:
                 self._write([message])
@@ -125,7 +115,7 @@ class BagWriter:
             self._write(messages)
 
     def _write(self, messages: Sequence[Message]) -> None:
-        """Write messages to one file, a new one if it is time to."""
+        """Write messages to one file, beginning a new one if it is full."""
         if self._is_full(messages[0][1]):
             self._end_file()
             self._begin_file()
@@ -139,18 +129,18 @@ class BagWriter:
                 self._last_ns = stamp
 
     def flush(self) -> None:
-        """Write what waits, so that it can be read whatever happens from now on."""
+        """Write everything, so that it survives a crash."""
         self._file.flush()
 
     def close(self) -> None:
-        """Write what a whole bag has at its end. Without effect when it is closed."""
+        """Complete the bag. Without effect if it is closed."""
         if self._open:
             self._open = False
             self._end_file()
             write_atomically(self.path / FILE_NAME, self._metadata(self._written).encode())
 
     def abandon(self) -> None:
-        """Close it as it is: it can be read as far as it goes."""
+        """Close the bag as it is: it can be read as far as it goes."""
         if self._open:
             self._open = False
             self._file.abandon()
@@ -192,9 +182,9 @@ class BagWriter:
         last = max((file['start_ns'] + file['duration_ns'] for file in filled), default=0)
         counts = self._counts if files is self._written else self._in_file
         topics = [
-            TopicMetadata(
-                *(topic.name, topic.msg_type, topic.serialization_format),
-                *(yaml.safe_load(topic.qos or '[]'), topic.type_hash, counts.get(number, 0)),
+            BagTopic(
+                *(topic.name, topic.msg_type, counts.get(number, 0), profiles_from(topic.qos)),
+                *(topic.serialization_format, '', '', topic.type_hash),
             )
             for number, topic in self._topics.items()
         ]
@@ -206,22 +196,22 @@ def check_storage(storage: str) -> str:
     """Return the name of a storage.
 
     Raises:
-        LabError: There is none of that name.
+        LabError: There is no such storage.
     """
     if storage in STORAGES:
         return storage
     near = nearest(str(storage), STORAGES)
     raise LabError(
-        f'storage must be one of {", ".join(map(repr, STORAGES))}, but it is {storage!r}.',
+        f'storage must be one of {", ".join(map(repr, STORAGES))}, but it is {quoted(storage)}.',
         todo=f'Did you mean {near!r}?' if near else '',
     )
 
 
 def _make_folder(path: Path, *, overwrite: bool) -> None:
-    """Make the folder of a bag; one that is there is taken away if that is wanted.
+    """Create the folder of a bag, replacing an existing one if requested.
 
     Raises:
-        LabError: It is there, or is no bag, or can't be made.
+        LabError: It exists, or is not a bag, or can't be created.
     """
     try:
         if os.path.lexists(path):
@@ -234,13 +224,13 @@ def _make_folder(path: Path, *, overwrite: bool) -> None:
         path.mkdir(parents=True)
     except OSError as error:
         raise LabError(
-            f'{str(path)!r} can not be made: {error.strerror or error}.',
+            f'{quoted(str(path))} can not be made: {error.strerror or error}.',
             todo='Choose a folder that you may write to.',
         ) from error
 
 
 def _remove(path: Path) -> None:
-    """Remove a bag, and nothing else."""
+    """Remove a bag, but nothing else."""
     entries = list(path.iterdir()) if path.is_dir() and not path.is_symlink() else None
     others = [
         entry.name
@@ -248,9 +238,9 @@ def _remove(path: Path) -> None:
         if entry.name != FILE_NAME and not entry.name.endswith(_SUFFIXES)
     ]
     if entries is None or others:
-        what = f'holds {others[0]!r}, too' if others else 'is no folder'
+        what = f'holds {quoted(others[0])}, too' if others else 'is no folder'
         raise LabError(
-            f'{str(path)!r} {what}, so it is not replaced.',
+            f'{quoted(str(path))} {what}, so it is not replaced.',
             todo='Choose another name, or remove it yourself.',
         )
     shutil.rmtree(path)

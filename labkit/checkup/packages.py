@@ -1,4 +1,4 @@
-"""Python, and the packages that it has."""
+"""Python and its packages."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _JUPYTER = ('jupyterlab', 'ipykernel', 'ipywidgets', 'anywidget')
 
 
 def python() -> str:
-    """Look at the machine and the running Python."""
+    """Check the machine and the running Python."""
     check_platform()
     here = f'{platform.python_version()} ({sys.executable})'
     fits = sys.implementation.name == 'cpython' and sys.maxsize > 2**32
@@ -35,24 +35,30 @@ def python() -> str:
 
 
 def ros_packages() -> str:
-    """Look whether the packages of ROS 2 are there, of one distribution, from one place."""
+    """Check that the ROS 2 packages are installed, from one distribution and one place."""
     wanted = {name: version for name, version in _pinned().items() if name.startswith('ros-')}
     _compare(wanted)
     spec = importlib.util.find_spec('rclpy')
     origin = (spec.origin if spec is not None else None) or ''
-    # Not what Python was started with: a kernel may have entered the environment since.
+    # Not the path at startup: a kernel may have entered the environment since.
     own = sysconfig.get_path('platlib', vars={'platbase': sys.prefix})
     if not is_inside(origin, os.path.join(own, 'rclpy')):
+        sourced = [entry for entry in _python_path() if is_inside(origin, entry)]
         raise LabError(
             f'Python takes rclpy from {origin!r}, not from its own environment {sys.prefix!r}.',
-            todo='Start from a terminal where no ROS 2 has been sourced, and from a folder '
-            'without a file or folder called rclpy.',
+            todo=f'PYTHONPATH has {sourced[0]!r}: start from a terminal where no ROS 2 has been '
+            'sourced.'
+            if sourced
+            else f'Start from another folder than {os.getcwd()!r}, or rename what is called rclpy '
+            'there.'
+            if is_inside(origin, os.getcwd())
+            else 'Start from a terminal where no ROS 2 has been sourced.',
         )
     return f'Jazzy, rclpy {wanted["ros-rclpy"]}'
 
 
 def jupyter() -> str:
-    """Look whether JupyterLab and what belongs to it are those of environment.txt."""
+    """Check that JupyterLab and its parts are the versions in environment.txt."""
     wanted = {name: version for name, version in _pinned().items() if name in _JUPYTER}
     spec = importlib.util.find_spec('ipykernel')
     if spec is not None and not is_inside(spec.origin or '', sys.prefix, follow_links=False):
@@ -62,8 +68,12 @@ def jupyter() -> str:
     return ', '.join(f'{name} {wanted[name]}' for name in _JUPYTER if name in wanted)
 
 
+def _python_path() -> list[str]:
+    return [entry for entry in os.environ.get('PYTHONPATH', '').split(os.pathsep) if entry]
+
+
 def _pinned() -> dict[str, str]:
-    """Return the packages and versions that environment.txt asks for in this Python."""
+    """Return the packages and versions that environment.txt pins for this Python."""
     try:
         lines = (ROOT / 'environment.txt').read_text(encoding='utf-8').splitlines()
     except OSError as error:

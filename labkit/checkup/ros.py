@@ -1,4 +1,4 @@
-"""ROS itself: middleware, domain, nodes, topics, callbacks; in this process and seen from it."""
+"""ROS itself: middleware, domain, nodes, topics and callbacks, as seen from this process."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ import subprocess
 import sys
 import threading
 from collections import Counter
+from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
 from labkit import domain_ids, settings
+from labkit.checkup.found import Found
 from labkit.errors import LabError, first_few
 from labkit.rosgraph.names import is_hidden
 
@@ -20,15 +22,15 @@ if TYPE_CHECKING:
 __all__ = ['callbacks', 'domain', 'middleware', 'nodes', 'topics']
 
 RANGES = ('OFF', 'LOCALHOST', 'SUBNET', 'SYSTEM_DEFAULT')
-# On Linux, the ports of these domains overlap with those that the system hands out by itself
-# (docs.ros.org, "The ROS_DOMAIN_ID").
+# On Linux, the ports of these domains overlap with the system's ephemeral ports (docs.ros.org,
+# "The ROS_DOMAIN_ID").
 UNSAFE_DOMAIN_IDS = range(domain_ids.LAST_DOMAIN_ID + 1, 215)
 TOPIC = f'_labkit/doctor_{os.getpid()}'
 ARRIVAL_SEC = 2.0
-# A busy machine may take long to start Python; it is a limit, not a measure.
+# Python may start slowly on a busy machine; this is a limit, not an estimate.
 PROCESS_SEC = 30.0
 
-# In a process of its own: a library of another installation can end a process without a word.
+# In its own process: a library of another installation can crash a process.
 _TRY = """
 import rclpy
 from rclpy.node import Node
@@ -50,7 +52,7 @@ rclpy.shutdown()
 
 
 def middleware() -> str:
-    """Look whether the middleware loads, and a message really passes through it."""
+    """Check that the middleware loads and delivers a message."""
     runtime = _runtime()
     if runtime is not None and runtime.started and not runtime.executor.in_callback():
         name = _try_here(runtime)
@@ -65,14 +67,14 @@ def middleware() -> str:
 
 
 def _try_here(runtime: Runtime) -> str:
-    """Pass a message through the background thread; return the middleware's name."""
+    """Send a message through the background thread; return the middleware's name."""
     from rclpy.utilities import get_rmw_implementation_identifier
     from std_msgs.msg import String
 
     node = runtime.helper
     assert node is not None
     heard = threading.Event()
-    # Not lab.wait_until(): nodes would show their output under this cell meanwhile.
+    # Not lab.wait_until(): nodes would print under this cell meanwhile.
     subscription = node.create_subscription(String, TOPIC, lambda _: heard.set(), 10)
     publisher = node.create_publisher(String, TOPIC, 10)
     try:
@@ -83,20 +85,23 @@ def _try_here(runtime: Runtime) -> str:
         node.destroy_subscription(subscription)
     if arrived:
         return str(get_rmw_implementation_identifier())
-    running = runtime.executor.running_callback()
-    if running is None:
+    running = runtime.executor.running_for()
+    if running is None or running[2] < ARRIVAL_SEC:
         raise LabError(
-            f'A message did not arrive within {ARRIVAL_SEC:.0f} s.', todo='Restart the kernel.'
+            f'A message did not arrive within {ARRIVAL_SEC:.0f} s.',
+            todo='Maybe this machine, or the callbacks of this notebook, have too much to do. If '
+            'it stays so, restart the kernel.',
         )
+    entry, callback, seconds = running
     raise LabError(
-        f'No message can arrive: the callback {running[1]} of {running[0]} has been running for '
-        f'more than {ARRIVAL_SEC:.0f} s, and while it runs no other callback can.',
+        f'No message can arrive: the callback {callback} of {entry.name} has been running for '
+        f'{seconds:.0f} s, and while it runs no other callback can.',
         todo='Restart the kernel, and let that callback return soon: no endless loop, no sleep.',
     )
 
 
 def _try_in_a_process() -> str:
-    """Pass a message in a process of its own; return the middleware's name."""
+    """Send a message in a new process; return the middleware's name."""
     env = dict(os.environ)
     env.pop('ROS_DOMAIN_ID', None)
     if domain_ids.counts_ports():
@@ -107,6 +112,7 @@ def _try_in_a_process() -> str:
         'Mend the other red lines first. If this one stays: delete the environment, and run '
         'python3 -m labkit lab.'
     )
+    late = f'Maybe this machine has too much to do: look again when it rests. {todo}'
     try:
         done = subprocess.run(
             [sys.executable, '-c', code],
@@ -119,19 +125,19 @@ def _try_in_a_process() -> str:
         )
     except subprocess.TimeoutExpired:
         raise LabError(
-            f'ROS was started, but did not answer within {PROCESS_SEC:.0f} s.', todo=todo
+            f'ROS was started, but did not answer within {PROCESS_SEC:.0f} s.', todo=late
         ) from None
     for line in done.stdout.splitlines():
         if line.startswith('doctor: '):
             _, name, count = line.split()
             if count == '1':
                 return name
-            raise LabError(f'A message did not arrive within {ARRIVAL_SEC:.0f} s.', todo=todo)
+            raise LabError(f'A message did not arrive within {ARRIVAL_SEC:.0f} s.', todo=late)
     raise LabError(f'ROS does not start: {_reason(done)}', todo=todo)
 
 
 def _reason(done: subprocess.CompletedProcess[str]) -> str:
-    """Return the line that says why a process failed."""
+    """Return the line of a process's errors that says why it failed."""
     lines = [line.strip() for line in done.stderr.splitlines() if line.strip()]
     for line in lines:
         if line.split(':')[0].endswith(('Error', 'Exception')):
@@ -143,7 +149,7 @@ def _reason(done: subprocess.CompletedProcess[str]) -> str:
 
 
 def domain() -> str:
-    """Look at who can hear this process: the domain, and the range in which others are found."""
+    """Check who can communicate with this process: domain and discovery range."""
     wanted = domain_ids.read_domain_id()
     if wanted in UNSAFE_DOMAIN_IDS:
         raise LabError(
@@ -172,10 +178,10 @@ def domain() -> str:
 
 
 def _range() -> str:
-    """Return how far ROS looks for other nodes.
+    """Return the discovery range.
 
     Raises:
-        LabError: The variable that says so has a value that ROS does not know.
+        LabError: The variable has a value that ROS does not know.
     """
     value = os.environ.get('ROS_AUTOMATIC_DISCOVERY_RANGE') or 'LOCALHOST'
     if value not in RANGES:
@@ -191,17 +197,13 @@ def _range() -> str:
 
 
 def nodes() -> str:
-    """Look for nodes that nobody spins, that nobody means any more, or that have a double."""
+    """Check for nodes that are not spun, left over, or have a double."""
     runtime = _runtime()
     if runtime is None:
         return 'none'
     entries = [entry for entry in runtime.nodes() if not is_hidden(entry.name)]
     found = [*_unspun(runtime), *_left_behind(entries), *_doubles(runtime, entries)]
-    if found:
-        raise LabError(
-            ' '.join(text for text, _ in found),
-            todo=' '.join(dict.fromkeys(todo for _, todo in found)),
-        )
+    _raise_for_faults('parameters', 'remap', 'life', besides=found)
     return first_few([entry.name for entry in entries]) if entries else 'none'
 
 
@@ -209,7 +211,7 @@ def _unspun(runtime: Runtime) -> list[tuple[str, str]]:
     names = [
         node.get_fully_qualified_name()
         for node in runtime.unspun_nodes()
-        # A node on another executor is spun by whoever made that.
+        # A node on another executor is spun by the owner of that one.
         if node.executor is None and not is_hidden(node.get_name())
     ]
     counts = Counter(names)
@@ -224,7 +226,7 @@ def _unspun(runtime: Runtime) -> list[tuple[str, str]]:
 
 
 def _left_behind(entries: list[NodeEntry]) -> list[tuple[str, str]]:
-    """Find nodes of a cell, or of a class, that was edited and run again since."""
+    """Find nodes of a cell, or of a class, that has been edited and run again."""
     found = []
     for position, entry in enumerate(entries):
         later = [other for other in entries[position + 1 :] if other.cell is not entry.cell]
@@ -248,7 +250,7 @@ def _left_behind(entries: list[NodeEntry]) -> list[tuple[str, str]]:
 
 
 def _is_of_an_older_class(node: object) -> bool:
-    """Tell whether a node's class was defined anew in the notebook since the node was made."""
+    """Return whether a node's class has been redefined in the notebook since the node was made."""
     kind = type(node)
     if kind.__module__ != '__main__' or '.' in kind.__qualname__:
         return False
@@ -257,12 +259,20 @@ def _is_of_an_older_class(node: object) -> bool:
 
 
 def _doubles(runtime: Runtime, entries: list[NodeEntry]) -> list[tuple[str, str]]:
+    from labkit.rosgraph.whose import missing_nodes
+
     foreign = runtime.foreign_nodes()
+    missing = missing_nodes(runtime.helper) if runtime.helper is not None else set()
     return [
         (
             f'Another process has a node called {entry.name}, too.',
-            'Give each node a name of its own. (A process that was killed stays in the graph for '
-            '20 s: then wait, and look again.)',
+            'Give each node a name of its own.',
+        )
+        if entry.name not in missing
+        else (
+            f'The graph has another node called {entry.name}, but this machine has no process '
+            'with its number.',
+            'Maybe it was killed: the graph forgets it after 20 s. Look again then.',
         )
         for entry in entries
         if entry.name in foreign
@@ -270,63 +280,92 @@ def _doubles(runtime: Runtime, entries: list[NodeEntry]) -> list[tuple[str, str]
 
 
 def topics() -> str:
-    """Look for ends of topics that can never exchange a message, and actions served twice."""
+    """Check for endpoints that can't communicate, and actions served twice."""
     runtime = _runtime()
     if runtime is None or runtime.helper is None:
         return 'none'
-    from labkit.background.discovery import soon
+    from labkit.asking.discovery import poll_until
     from labkit.rosgraph.snapshot import is_whole, read_graph
 
     node = runtime.helper
-    soon(lambda: is_whole(node))
+    poll_until(lambda: is_whole(node))
     graph = read_graph(node)
-    pairs = graph.mismatches
-    if pairs:
-        raise LabError(
-            ' '.join(
-                f'On {pair.topic}, {pair.subscription} does not hear {pair.publisher}: '
-                f'{pair.reason[:1].lower()}{pair.reason[1:]}.'
-                for pair in pairs
-            ),
-            todo=' '.join(dict.fromkeys(pair.todo for pair in pairs)),
+    apart = [
+        (
+            f'On {pair.topic}, {pair.subscription} does not hear {pair.publisher}: '
+            f'{pair.reason[:1].lower()}{pair.reason[1:]}.',
+            pair.todo,
         )
-    twice = [action for action in graph.actions if len(action.servers) > 1]
-    if twice:
-        raise LabError(
-            ' '.join(
-                f'The action {action.name} is served by {len(action.servers)} nodes: '
-                f'{", ".join(action.servers)}. Each of them answers each goal.'
-                for action in twice
-            ),
-            todo='End the server that does not belong there.',
+        for pair in graph.mismatches
+    ]
+    said = {pair.topic for pair in graph.mismatches}
+    twice = [
+        (
+            f'The action {action.name} is served by {len(action.servers)} nodes: '
+            f'{", ".join(action.servers)}. Each of them answers each goal.',
+            'End the server that does not belong there.',
         )
+        for action in graph.actions
+        if len(action.servers) > 1
+    ]
+    _raise_for_faults('names', 'types', 'qos', 'messages', besides=[*apart, *twice], said=said)
     actions = [f'{action.name} (action)' for action in graph.actions]
     names = [*(topic.name for topic in graph.topics), *actions]
     return first_few(names) if names else 'none'
 
 
 def callbacks() -> str:
-    """Look for exceptions that callbacks of this process's nodes have raised."""
+    """Check for exceptions in callbacks of this process's nodes."""
     runtime = _runtime()
     errors = runtime.console.errors if runtime is not None else []
-    if runtime is None or not errors:
+    if runtime is None:
         return 'no errors'
-    # A node that was started anew since has another cell, or another execution of the same one.
+    # A restarted node has another cell, or another execution of the same one.
     running = {(entry.name, id(entry.cell)) for entry in runtime.nodes()}
-    texts = [
-        f'{error.callback} of {error.node_name} failed'
-        f'{f" {error.count} times" if error.count > 1 else ""}: '
-        f'{type(error.error).__name__}: {error.error}'
+    failed = [
+        (
+            f'{error.callback} of {error.node_name} failed'
+            f'{f" {error.count} times" if error.count > 1 else ""}: '
+            f'{type(error.error).__name__}: {error.error}',
+            'Mend the callback, and run its cells again.',
+        )
         for error in errors
         if (error.node_name, id(error.cell)) in running
     ]
-    if texts:
-        raise LabError('; '.join(texts), todo='Mend the callback, and run its cells again.')
-    return 'no errors but of nodes that are gone'
+    _raise_for_faults('time', besides=failed)
+    return 'no errors but of nodes that are gone' if errors else 'no errors'
+
+
+def _raise_for_faults(
+    *groups: str, besides: Sequence[tuple[str, str]] = (), said: Collection[str] = ()
+) -> None:
+    """Raise a LabError if there are silent faults of some groups of kinds.
+
+    Args:
+        groups: The groups.
+        besides: What else was found, with what to do.
+        said: Topics of which it was said that their ends do not match.
+    """
+    from labkit.silent.watch import faults
+
+    found = [fault for fault in faults() if fault.kind.id.partition('.')[0] in groups]
+    # Others that the doctor has looked for already are told in its own words.
+    known = ('life.unspun', 'names.double', 'time.stuck-callback')
+    told = [
+        *besides,
+        *(
+            (str(fault), fault.advice)
+            for fault in found
+            if fault.kind.id not in known
+            and not (fault.kind.id.startswith(('types.', 'qos.')) and fault.about in said)
+        ),
+    ]
+    if told:
+        raise Found(told)
 
 
 def _runtime() -> Runtime | None:
-    """Return the runtime of this process, None if ROS was not loaded into it."""
+    """Return the runtime of this process, None if ROS is not loaded."""
     if 'rclpy.node' not in sys.modules:
         return None
     from labkit.background.runtime import runtime

@@ -1,4 +1,4 @@
-"""Network, shared memory and disk: what messages and files pass through."""
+"""Network, shared memory, disk and compiler."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from labkit.setup.compiler import check_compiler
 __all__ = ['compiler', 'disk', 'network', 'shared_memory']
 
 SHARED_MEMORY = Path('/dev/shm')
-# Fast DDS takes 0.65 MB for each process.
+# Fast DDS takes 0.65 MB per process.
 SHARED_MEMORY_BYTES = 8_000_000
-# A bag of an hour's odometry is 80 MB.
+# A bag of one hour of odometry is 80 MB.
 DISK_BYTES = 200_000_000
-# Where DDS looks for other participants: DDSI-RTPS 2.5, 9.6.1.4.1.
+# Discovery group of DDS: DDSI-RTPS 2.5, 9.6.1.4.1.
 MULTICAST_GROUP = '239.255.0.1'
 ANSWER_SEC = 0.5
 
 
 def network() -> str:
-    """Look whether packets come back on the loopback interface, and by multicast."""
+    """Check that packets come back on the loopback interface, and by multicast."""
     try:
         _send_and_receive('127.0.0.1')
     except OSError as error:
@@ -66,8 +66,8 @@ def _send_and_receive(address: str, place: bytes = b'') -> None:
     """Send a packet and wait for it to come back.
 
     Args:
-        address: Where to.
-        place: For a multicast group: the network to send to and to listen on.
+        address: Destination.
+        place: For a multicast group: the network interface.
 
     Raises:
         OSError: It can't be sent, or does not come back.
@@ -88,7 +88,7 @@ def _send_and_receive(address: str, place: bytes = b'') -> None:
 
 
 def shared_memory() -> str:
-    """Look at the memory through which processes of one machine pass messages."""
+    """Check the memory through which processes on one machine exchange messages."""
     if not SHARED_MEMORY.is_dir() or not os.access(SHARED_MEMORY, os.W_OK | os.X_OK):
         raise LabError(
             f'{SHARED_MEMORY} can not be written to; messages between processes pass through it.',
@@ -109,13 +109,13 @@ def shared_memory() -> str:
 
 
 def _stale_files() -> tuple[int, int]:
-    """Return how many of Fast DDS's files belong to no living process, and their size in bytes.
+    """Return number and size in bytes of Fast DDS's files that belong to no living process.
 
-    A process keeps the file of a segment or port locked, by a second file whose name ends in
-    `_el`. Locks are read off the system's list: trying one would disturb its owner.
+    A process locks the file of a segment or port through a second file whose name ends in `_el`.
+    Locks are read from the system's list: trying one would disturb its owner.
     """
     device = os.stat(SHARED_MEMORY).st_dev
-    # As the list names a file: device in hexadecimal numbers, inode. See proc_locks(5).
+    # The list names a file by device, in hexadecimal, and inode. See proc_locks(5).
     start = f'{os.major(device):02x}:{os.minor(device):02x}:'
     with open('/proc/locks', encoding='ascii') as file:
         locked = {line.split()[-3] for line in file}
@@ -133,7 +133,7 @@ def _stale_files() -> tuple[int, int]:
 
 
 def disk() -> str:
-    """Look at the space for what the learner makes, and for what labkit remembers."""
+    """Check the disk space for the learner's files and labkit's state."""
     folder, state = Path.cwd(), settings.state_dir()
     existing = next(path for path in (state, *state.parents) if path.exists())
     for path in (folder, existing):
@@ -156,7 +156,7 @@ def disk() -> str:
 
 
 def compiler() -> str:
-    """Look for what builds interfaces. Only lesson 12 needs it, so it may be missing."""
+    """Check the compiler for interfaces. Only lesson 12 needs it, so it may be missing."""
     try:
         return check_compiler()
     except LabError as error:

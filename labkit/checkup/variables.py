@@ -1,4 +1,4 @@
-"""Environment variables that another installation, or an old habit, has left."""
+"""Environment variables left over from another installation, or from old habits."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ import sysconfig
 from pathlib import Path
 
 from labkit import settings
-from labkit.errors import LabError, first_few
+from labkit.checkup.found import Found
+from labkit.errors import first_few
 from labkit.files import is_inside
 from labkit.setup.machine import clean_environment
 
@@ -16,21 +17,18 @@ __all__ = ['variables']
 
 
 def variables() -> str:
-    """Look for environment variables that another installation, or an old habit, has left."""
+    """Check for environment variables left over from another installation, or from old habits."""
     found = [*_foreign_entries(), *_lost_libraries(), *_wrong_values()]
     if found:
-        raise LabError(
-            ' '.join(text for text, _ in found),
-            todo=' '.join(dict.fromkeys(todo for _, todo in found)),
-        )
+        raise Found(found)
     peers = os.environ.get('ROS_STATIC_PEERS', '')
     return f'ROS_STATIC_PEERS lets {peers!r} take part' if peers else 'none from elsewhere'
 
 
 def _foreign_entries() -> list[tuple[str, str]]:
-    """Find folders of another ROS 2 among those that Python and the system search."""
+    """Find folders of another ROS 2 in the search paths of Python and the system."""
     clean = clean_environment()
-    # A workspace of the learner's own, built on this environment, is welcome.
+    # The learner's own workspace, built on this environment, is fine.
     workspaces = [
         entry
         for entry in _entries('AMENT_PREFIX_PATH')
@@ -65,15 +63,15 @@ def _lost_libraries() -> list[tuple[str, str]]:
         return []
     return [
         (
-            '_ROS_WHEELS_BOOTSTRAP_COMPLETE was set by another environment, so this one does not '
-            'find its libraries.',
+            '_ROS_WHEELS_BOOTSTRAP_COMPLETE is set, and LD_LIBRARY_PATH lacks the libraries of '
+            'this environment: they are not found. Maybe another environment has set it.',
             'Start with: env -u _ROS_WHEELS_BOOTSTRAP_COMPLETE -u LD_LIBRARY_PATH jupyter lab',
         )
     ]
 
 
 def _wrong_values() -> list[tuple[str, str]]:
-    """Find variables that change what ROS does, to something that the course can't use."""
+    """Find variables that set ROS to something the course can't use."""
     found = []
     asked = {**settings.dropped_variables, **os.environ}.get('RMW_IMPLEMENTATION', '')
     if asked not in ('', 'rmw_fastrtps_cpp'):
@@ -109,7 +107,7 @@ def _unset(name: str) -> str:
 
 
 def _libraries() -> list[str]:
-    """Return the folders in which this environment's ROS packages have their libraries."""
+    """Return the library folders of this environment's ROS packages."""
     folder = Path(sysconfig.get_path('platlib'))
     return [os.path.realpath(path) for path in folder.glob('ros_*.libs')]
 

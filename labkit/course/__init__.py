@@ -1,1 +1,1 @@
-"""The course as a whole: the learner's folder, and running, recording and testing the lessons."""
+"""The learner's folder, and running, recording and testing the lessons."""

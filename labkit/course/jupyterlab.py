@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from labkit.course import learner_folder
+from labkit.course.copies import copies_folder
 from labkit.errors import SetupError
 from labkit.settings import state_dir
 from labkit.setup.environment import (
@@ -32,18 +33,18 @@ __all__ = [
     'write_home',
 ]
 
-# The page with all lessons; see `labkit.exercises.home`.
+# The overview of all lessons; see `labkit.exercises.progress_page`.
 HOME = 'Home.md'
 
 
 def start_lab(arguments: Sequence[str]) -> NoReturn:
-    """Make the environment, bring the lessons up to date, and become JupyterLab.
+    """Make the environment, update the lessons, and become JupyterLab.
 
     Args:
-        arguments: Options for JupyterLab, besides those set here.
+        arguments: Further options for JupyterLab.
 
     Raises:
-        SetupError: This machine, or a port that was asked for, does not allow it.
+        SetupError: This machine, or a requested port, does not allow it.
     """
     _check_port(arguments)
     python = prepare()
@@ -54,27 +55,27 @@ def start_lab(arguments: Sequence[str]) -> NoReturn:
         *lesson_options(),
         '--ServerApp.ip=127.0.0.1',
         f'--LabApp.default_url=/lab/tree/{first}',
-        # What is open in another JupyterLab of the learner's is not looked for here.
+        # Do not restore what is open in another JupyterLab of the learner's.
         f'--LabApp.workspaces_dir={state_dir() / "workspaces"}',
-        # Else each kernel warns that others on this machine could listen to it.
+        # Otherwise each kernel warns that others on this machine could listen in.
         '--KernelManager.transport_encryption=auto',
     ]
-    if _asked_port(arguments) is not None:
+    if _requested_port(arguments) is not None:
         options.append('--ServerApp.port_retries=0')
     if os.geteuid() == 0:
         options.append('--allow-root')  # containers, and WSL set up without a user
     if 'microsoft' in platform.release().lower() or os.path.exists('/snap/bin/firefox'):
-        # A Windows browser, or Firefox as a snap, can't read the file through which JupyterLab
-        # opens its page otherwise.
+        # A Windows browser, or Firefox as a snap, can't read the file that JupyterLab usually
+        # opens.
         options.append('--ServerApp.use_redirect_file=False')
     os.chdir(learner_folder.WORK)
-    # Isolated: no module of the learner's takes the place of one that JupyterLab needs.
+    # Isolated, so that the learner's modules can't shadow those that JupyterLab needs.
     server = str(Path(__file__).with_name('server.py'))
     os.execve(python, [str(python), '-I', server, *options, *arguments], variables)
 
 
 def prepare() -> Path:
-    """Make the environment, and bring the lessons up to date.
+    """Make the environment, and update the lessons.
 
     Returns:
         The environment's interpreter.
@@ -89,13 +90,13 @@ def prepare() -> Path:
 
 
 def start_command(command: Sequence[str]) -> NoReturn:
-    """Become a command of somebody else's that starts JupyterLab, as Binder has one.
+    """Become an external command that starts JupyterLab, as on Binder.
 
-    Its programs are taken from the environment, and it starts in the learner's folder.
+    Programs come from the environment, and it starts in the learner's folder.
 
     Args:
-        command: The command. Its options are its own; what the course sets for JupyterLab lies in
-            a file, in the folder that the variable `JUPYTER_CONFIG_PATH` names.
+        command: The command with its options. The course's settings for JupyterLab are in a file,
+            in the folder named by `JUPYTER_CONFIG_PATH`.
     """
     variables = lesson_variables()
     write_home(PYTHON, variables)
@@ -104,37 +105,41 @@ def start_command(command: Sequence[str]) -> NoReturn:
 
 
 def lesson_options() -> list[str]:
-    """Return the options for a JupyterLab on the learner's folder, wherever it runs."""
+    """Return the options of every JupyterLab on the learner's folder."""
     return [
         f'--ServerApp.root_dir={learner_folder.WORK}',
-        # Without it a server whose output is no terminal gives login shells, and those may set
-        # PATH anew: the command `ros2` would be gone.
+        # Otherwise a server without a terminal starts login shells, which may reset PATH: then the
+        # command `ros2` would be gone.
         f'--ServerApp.terminado_settings=shell_command={os.environ.get("SHELL") or "/bin/sh"}',
+        # Half of it is how long a kernel may end ROS by itself. A slow machine needs more than the
+        # usual 2.5 s; one that ends sooner is not waited for.
+        '--KernelManager.shutdown_wait_time=30',
     ]
 
 
 def lesson_variables() -> dict[str, str]:
-    """Return the variables of a JupyterLab on the learner's folder, wherever it runs."""
+    """Return the variables of every JupyterLab on the learner's folder."""
     variables = environment_variables()
-    # A kernel that was installed for the user would belong to another Python, without ROS.
+    # A kernel installed for the user would belong to another Python, without ROS.
     variables['JUPYTER_PREFER_ENV_PATH'] = '1'
+    variables['LABKIT_COPIES'] = str(copies_folder())
     variables['LABKIT_HOME_PAGE'] = str(learner_folder.WORK / HOME)
     return variables
 
 
 def write_home(python: Path, variables: Mapping[str, str]) -> str:
-    """Write the page with all lessons.
+    """Write the overview of all lessons.
 
     Args:
         python: The environment's interpreter.
-        variables: What `lesson_variables` has returned.
+        variables: The result of `lesson_variables`.
 
     Returns:
-        The file to open: the page, if it has news.
+        The file to open: the overview, once there is progress to show.
     """
     page = variables['LABKIT_HOME_PAGE']
     done = subprocess.run(
-        [str(python), '-m', 'labkit.exercises.home', page],
+        [str(python), '-m', 'labkit.exercises.progress_page', page],
         cwd=ROOT,
         env=variables,
         stdin=subprocess.DEVNULL,
@@ -145,15 +150,15 @@ def write_home(python: Path, variables: Mapping[str, str]) -> str:
     return HOME if done.returncode == 0 and begun else learner_folder.FIRST
 
 
-def _asked_port(arguments: Sequence[str]) -> int | None:
-    """Return the port that is asked for in the options, None if there is none."""
+def _requested_port(arguments: Sequence[str]) -> int | None:
+    """Return the port requested in the options, None if there is none."""
     text = ' '.join(arguments)
     found = re.search(r'--(?:port|ServerApp\.port)[= ](\d+)', text)
     return int(found[1]) if found else None
 
 
 def _check_port(arguments: Sequence[str]) -> None:
-    port = _asked_port(arguments)
+    port = _requested_port(arguments)
     if port is None:
         return  # JupyterLab takes the first free one from 8888 on
     with socket.socket() as probe:

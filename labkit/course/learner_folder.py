@@ -1,7 +1,7 @@
 """The learner's folder `work`: copies of the lessons.
 
-What a learner has written is never lost: a file is replaced only while its bytes are exactly the
-ones that were put there. A small record in the folder says which those are.
+The learner's work is never lost: a file is replaced only while its bytes are exactly those that
+were put there. A small record in the folder keeps their digests.
 """
 
 from __future__ import annotations
@@ -10,32 +10,55 @@ import contextlib
 import hashlib
 import json
 import os
+import platform
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from labkit.errors import LabError, SetupError
-from labkit.files import rename_to_free, write_atomically
+from labkit.files import read_json, rename_to_free, write_atomically
 from labkit.setup.environment import ROOT
 
-__all__ = ['FIRST', 'WORK', 'copy_lessons', 'fresh_lesson', 'put', 'reset']
+__all__ = [
+    'FIRST',
+    'WORK',
+    'back_up',
+    'choose',
+    'copy_lessons',
+    'fresh_lesson',
+    'is_untouched',
+    'put',
+    'reset',
+    'without_outputs',
+]
 
 LESSONS = ROOT / 'notebooks'
 # On a hub each learner has one in their home.
 WORK = Path(os.environ.get('LABKIT_WORK') or ROOT / 'work')
 RECORD = '.labkit.json'
-# Where the old copies of lessons go, in the learner's folder.
+# Folder for old copies of lessons, inside the learner's.
 BACKUPS = 'backups'
 FIRST = '00_start_here.ipynb'
-# Files next to the lessons that are for their tests, or made by running them.
+# As in the messaging protocol of Jupyter, `kernel_info`, from ipykernel for this Python.
+_LANGUAGE = {
+    'name': 'python',
+    'version': platform.python_version(),
+    'mimetype': 'text/x-python',
+    'codemirror_mode': {'name': 'ipython', 'version': 3},
+    'pygments_lexer': 'ipython3',
+    'nbconvert_exporter': 'python',
+    'file_extension': '.py',
+}
+# Files next to the lessons that belong to tests, or are made by running them.
 _NOT_FOR_LEARNERS = re.compile(r'\.|__pycache__$|conftest\.py$')
 
 
 def copy_lessons() -> list[str]:
-    """Bring the learner's folder up to date, without touching what the learner has changed.
+    """Update the learner's folder, without touching what the learner has changed.
 
     Returns:
-        Sentences about what is worth knowing: one for each lesson that has a newer version.
+        One sentence for each lesson that has a newer version.
 
     Raises:
         SetupError: The folder can't be written to.
@@ -51,7 +74,7 @@ def copy_lessons() -> list[str]:
         news = []
         for name in _published():
             fresh = _fresh(name)
-            if _place(name, fresh, record):
+            if _update(name, fresh, record):
                 record[name] = _digest(fresh)
             elif record.get(name) != _digest(fresh):
                 news.append(
@@ -59,7 +82,7 @@ def copy_lessons() -> list[str]:
                     f'is. For the new one: python3 -m labkit reset {_number(name)}'
                 )
         write_atomically(WORK / RECORD, json.dumps(record, indent=1).encode())
-        _gather_backups()
+        _collect_backups()
     except OSError as error:
         raise SetupError(
             f'{str(error.filename or WORK)!r} can not be written ({error.strerror}).',
@@ -75,7 +98,7 @@ def reset(lesson: str) -> str:
         lesson: The lesson's number or name: `'02'`, `'2'`, `'talker'`, `'02_talker_listener'`.
 
     Returns:
-        A sentence that says what was done.
+        A sentence about the result.
 
     Raises:
         LabError: There is no such lesson, or more than one.
@@ -85,7 +108,7 @@ def reset(lesson: str) -> str:
 
 
 def fresh_lesson(lesson: str) -> tuple[str, bytes]:
-    """Return the file name of a lesson, and what a learner's copy of it holds at first.
+    """Return the file name of a lesson, and the content of a learner's fresh copy.
 
     Args:
         lesson: See `reset`.
@@ -93,25 +116,26 @@ def fresh_lesson(lesson: str) -> tuple[str, bytes]:
     Raises:
         LabError: There is no such lesson, or more than one.
     """
-    name = _find(lesson)
+    names = [name for name in _published() if name.endswith('.ipynb') and os.sep not in name]
+    name = choose(lesson, names)
     return name, _fresh(name)
 
 
 def put(name: str, fresh: bytes) -> str:
-    """Put a file into the learner's folder; keep what is there in `backups`, unless it is equal.
+    """Put a file into the learner's folder; keep a different one in `backups`.
 
     Args:
         name: File name.
-        fresh: What it is to hold.
+        fresh: Its content.
 
     Returns:
-        A sentence that says what was done.
+        A sentence about the result.
     """
     copy_lessons()
     path = WORK / name
     if path.is_file() and path.read_bytes() == fresh:
         return f'{path} is a fresh copy already.'
-    backup = _back_up(path, name) if os.path.lexists(path) else None
+    backup = back_up(path, name) if os.path.lexists(path) else None
     write_atomically(path, fresh)
     record = _read_record()
     record[name] = _digest(fresh)
@@ -123,7 +147,7 @@ def put(name: str, fresh: bytes) -> str:
 
 
 def _published() -> list[str]:
-    """Return the names of all files that a learner gets, relative to both folders."""
+    """Return the names of all files for learners, relative to both folders."""
     found = []
     for folder, folders, files in os.walk(LESSONS):
         folders[:] = [name for name in folders if not _NOT_FOR_LEARNERS.match(name)]
@@ -134,20 +158,46 @@ def _published() -> list[str]:
 
 
 def _fresh(name: str) -> bytes:
-    """Return the content of a learner's copy: that of the published file, outputs cleared."""
+    """Return the content of a learner's copy: the published file with outputs cleared.
+
+    It names the language as the kernel does, in every detail. JupyterLab writes that into each
+    notebook, and one that it has to change for it counts as changed by the learner.
+    """
     content = (LESSONS / name).read_bytes()
     if not name.endswith('.ipynb'):
         return content
+    notebook = json.loads(without_outputs(content))
+    notebook.setdefault('metadata', {})['language_info'] = _LANGUAGE
+    return _as_file(notebook)
+
+
+def without_outputs(content: bytes) -> bytes:
+    """Return a notebook with outputs cleared.
+
+    Raises:
+        ValueError, LookupError, TypeError: It is not a notebook.
+    """
     notebook = json.loads(content)
     for cell in notebook['cells']:
         if cell['cell_type'] == 'code':
-            cell['outputs'] = []
-            cell['execution_count'] = None
+            cell.update(outputs=[], execution_count=None)
+    return _as_file(notebook)
+
+
+def _as_file(notebook: Any) -> bytes:
     return (json.dumps(notebook, indent=1, ensure_ascii=False) + '\n').encode()
 
 
-def _place(name: str, fresh: bytes, record: dict[str, str]) -> bool:
-    """Write a file into the learner's folder, unless the learner has changed what is there.
+def is_untouched(name: str) -> bool:
+    """Return whether a file is in the learner's folder as the course has put it there."""
+    try:
+        return _digest((WORK / name).read_bytes()) == _read_record().get(name)
+    except OSError:
+        return False
+
+
+def _update(name: str, fresh: bytes, record: dict[str, str]) -> bool:
+    """Write a file into the learner's folder, unless the learner has changed it.
 
     Returns:
         Whether the fresh content is there now.
@@ -165,13 +215,13 @@ def _place(name: str, fresh: bytes, record: dict[str, str]) -> bool:
     return True
 
 
-def _back_up(path: Path, name: str, first: int = 1) -> Path:
-    """Rename what is there to the first free name for a backup of a lesson.
+def back_up(path: Path, name: str, first: int = 1) -> Path:
+    """Rename a file to the first free name of a backup.
 
     Args:
-        path: What is there.
+        path: The file to rename.
         name: File name of the lesson.
-        first: The number to begin with.
+        first: The first number to try.
     """
     folder = WORK / BACKUPS
     if folder.exists() and not folder.is_dir():
@@ -180,7 +230,7 @@ def _back_up(path: Path, name: str, first: int = 1) -> Path:
             todo='Move it away, and repeat the command.',
         )
     folder.mkdir(exist_ok=True)
-    stem, ending = os.path.splitext(name)
+    stem, ending = os.path.splitext(os.path.basename(name))
     for number in range(first, 10_000):
         backup = folder / f'{stem}.backup-{number}{ending}'
         try:
@@ -191,20 +241,20 @@ def _back_up(path: Path, name: str, first: int = 1) -> Path:
     raise LabError(f'{name} has 9999 backups.', todo='Delete some, and repeat the command.')
 
 
-def _gather_backups() -> None:
-    """Put the backups that lie among the lessons, as they once did, to the others."""
+def _collect_backups() -> None:
+    """Move old backups, which used to be among the lessons, to the backup folder."""
     for path in sorted(WORK.glob('*.backup-*')):
         stem, _, number = path.stem.rpartition('.backup-')
         name = f'{stem}{path.suffix}'
         if number.isdecimal() and (LESSONS / name).is_file():
             with contextlib.suppress(LabError):  # then they stay where they are
-                _back_up(path, name, int(number))
+                back_up(path, name, int(number))
 
 
 def _read_record() -> dict[str, str]:
-    """Return what was put where. Nothing, if the record is damaged: then all is the learner's."""
+    """Return the digests by file name. Empty if damaged: then everything counts as changed."""
     try:
-        record: Any = json.loads((WORK / RECORD).read_bytes())
+        record = read_json(WORK / RECORD)
     except (OSError, ValueError):
         return {}
     if not isinstance(record, dict):
@@ -220,9 +270,16 @@ def _number(name: str) -> str:
     return name.split('_')[0] if name[:1].isdigit() else name
 
 
-def _find(lesson: str) -> str:
-    """Return the file name of the lesson that a number or a name stands for."""
-    names = [name for name in _published() if name.endswith('.ipynb') and os.sep not in name]
+def choose(lesson: str, names: Sequence[str]) -> str:
+    """Return the file name of a lesson given by number or name.
+
+    Args:
+        lesson: See `reset`.
+        names: The lessons to choose from.
+
+    Raises:
+        LabError: There is no such lesson, or more than one.
+    """
     wanted = lesson[: -len('.ipynb')] if lesson.endswith('.ipynb') else lesson
     if wanted.isdigit():
         found = [name for name in names if _number(name).isdigit()]

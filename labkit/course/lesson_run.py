@@ -1,7 +1,7 @@
-"""Run a lesson without a person, for `labkit record` and for nbval.
+"""Run a lesson unattended, for `labkit record` and for nbval.
 
-Both use the same `LessonRun`, so what is stored and what is compared come from kernels that are
-set up in one place, and have passed through the same `normalised`.
+Both use the same `LessonRun`, so stored and compared outputs come from kernels with the same
+setup, and pass through the same `normalised`.
 """
 
 # nbformat has no annotations.
@@ -30,29 +30,29 @@ from labkit.errors import LabError
 
 __all__ = ['LessonError', 'LessonRun', 'normalised']
 
-# A cell of a lesson takes at most 5 s; the rest is for machines that are busy with other work.
-# One that builds says so in its metadata: "labkit": {"timeout_sec": 1200}.
+# A cell takes at most 5 s; the rest is for busy machines. A cell that builds sets a limit in its
+# metadata: "labkit": {"timeout_sec": 1200}.
 CELL_TIMEOUT_SEC = 60
 OUTPUT_TIMEOUT_SEC = 30
 STARTUP_TIMEOUT_SEC = 120
-# Variables of whoever starts the run that would show in the outputs, or let others be heard.
+# Variables of the caller that would show in the outputs, or let others be heard.
 _FOREIGN = (
     *('CLICOLOR', 'FASTDDS_', 'FASTRTPS_', 'FORCE_COLOR', 'JPY_', 'LABKIT_', 'MPLBACKEND'),
-    *('NO_COLOR', 'PYTEST_', 'PYTHONDONTWRITEBYTECODE', 'PYTHONWARNINGS', 'RCUTILS_', 'RMW_'),
-    *('ROS_', 'SETUPTOOLS_'),
+    *('NO_COLOR', 'PYTEST_', 'PYTHONDONTWRITEBYTECODE', 'PYTHONWARNINGS', 'PYTHON_COLORS'),
+    *('RCUTILS_', 'RMW_', 'ROS_', 'SETUPTOOLS_'),
 )
-# How long colcon took: 'Finished <<< my_package [1.23s]', '1 package finished [1min 2s]'.
+# Durations printed by colcon: 'Finished <<< my_package [1.23s]', '1 package finished [1min 2s]'.
 _COLCON_TIME = r'(<<< \S+ |packages? finished )\[(?:\d+(?:h|min) )*\d+(?:\.\d+)?s(?=[],])'
 _WIDGET_VIEW = 'application/vnd.jupyter.widget-view+json'
 
 
 class LessonError(LabError):
-    """Report that a cell of a lesson did not run as it should.
+    """Report that a cell of a lesson did not run as expected.
 
     Args:
         message: What happened.
-        cell_id: The cell, `''` if it was none.
-        traceback: What a learner would see, in colour, `''` if there is none.
+        cell_id: The cell, `''` if none.
+        traceback: The learner's view of it, in colour, `''` if there is none.
     """
 
     def __init__(self, message: str, *, cell_id: str = '', traceback: str = '') -> None:
@@ -62,15 +62,15 @@ class LessonError(LabError):
 
 
 class LessonRun:
-    """Run the cells of one lesson in a kernel of their own.
+    """Run the cells of one lesson in a new kernel.
 
-    The kernel starts in the lesson's folder, with a new state folder (`LABKIT_HOME`) and with
-    ROS discovery off. A lesson whose metadata says `"labkit": {"processes": true}` finds other
-    processes on this machine (LOCALHOST), in a domain that it claims for itself.
+    The kernel starts in the lesson's folder, with a new state folder (`LABKIT_HOME`) and with ROS
+    discovery off. A lesson with the metadata `"labkit": {"processes": true}` finds other processes
+    on this machine (LOCALHOST), in its own domain.
 
     Args:
         path: The notebook.
-        cell_timeout_sec: Seconds that one cell may take.
+        cell_timeout_sec: Seconds per cell.
 
     Raises:
         LessonError: The kernel did not start.
@@ -88,8 +88,8 @@ class LessonRun:
             temporary = tempfile.TemporaryDirectory(prefix='labkit-', ignore_cleanup_errors=True)
             self._home = Path(stack.enter_context(temporary)).resolve()
             log = stack.enter_context((self._home / 'kernel.log').open('wb'))
-            # No folders to search for kernels: 'python3' is then the Python that runs this.
-            # Sockets of its own instead of ports: those may be taken before the kernel has them.
+            # Without folders to search for kernels, 'python3' is this Python. Sockets instead of
+            # ports: those may be taken before the kernel has them.
             kernels = AsyncKernelManager(
                 kernel_name='python3',
                 kernel_spec_manager=KernelSpecManager(kernel_dirs=[]),
@@ -115,21 +115,23 @@ class LessonRun:
         return NotebookClient(
             self.notebook,
             km=kernels,
-            timeout_func=lambda cell: _limit_of(cell, cell_timeout_sec),
+            timeout_func=lambda cell: _time_limit(cell, cell_timeout_sec),
             iopub_timeout=OUTPUT_TIMEOUT_SEC,
             raise_on_iopub_timeout=True,
             startup_timeout=STARTUP_TIMEOUT_SEC,
-            # Errors are looked at here: with nbclient's way the kernel may drop the next cell.
+            # Errors are handled here: nbclient's way may make the kernel drop the next cell.
             allow_errors=True,
             record_timing=False,
             store_widget_state=False,
-            # What C code writes past Python arrives whenever it likes, so it goes to the log.
+            # Output of C code arrives at any time, so it goes to the log.
             extra_arguments=['--IPKernelApp.capture_fd_output=False'],
         )
 
     def _environment(self) -> dict[str, str]:
         processes = self.notebook.metadata.get('labkit', {}).get('processes', False)
-        env = {k: v for k, v in os.environ.items() if not k.startswith(_FOREIGN)}
+        # Another thread may take a variable away meanwhile, as pytest does after each test.
+        names = [name for name in list(os.environ) if not name.startswith(_FOREIGN)]
+        env = {name: os.environ.get(name, '') for name in names}
         return env | {
             'COLUMNS': '80',
             'IPYTHONDIR': str(self._home / 'ipython'),
@@ -143,12 +145,12 @@ class LessonRun:
         }
 
     def _log(self) -> str:
-        """Return the last words of the kernel's process, which say why it ended."""
+        """Return the last lines of the kernel's process, which say why it ended."""
         lines = (self._home / 'kernel.log').read_text(errors='replace').splitlines()
         return '\n'.join([line for line in lines if not line.startswith('[IPKernelApp]')][-20:])
 
     def execute(self, index: int) -> NotebookNode:
-        """Run one cell, and first those before it that have not run yet.
+        """Run one cell, after those before it that have not run yet.
 
         Args:
             index: Position of the cell in the notebook, 0 for the first.
@@ -157,9 +159,9 @@ class LessonRun:
             The cell with its execution count and normalised outputs.
 
         Raises:
-            LessonError: A cell raised and has no `raises-exception` tag, or has the tag and did
-                not raise. Or it took too long or ended the kernel: then the run is `broken`, and
-                every further cell fails at once.
+            LessonError: A cell raised without a `raises-exception` tag, or did not raise despite
+                it. Or it took too long or ended the kernel: then the run is `broken`, and every
+                further cell fails at once.
         """
         for position in range(min(self._next, index), index + 1):
             self._execute(position)
@@ -173,14 +175,14 @@ class LessonRun:
         if self.broken:
             raise LessonError('not run: an earlier cell lost the kernel', cell_id=cell_id)
         self._next = max(self._next, index + 1)
-        # As JupyterLab does it: labkit asks which cell has made a node.
+        # As in JupyterLab: labkit asks which cell has made a node.
         assert self._client.kc is not None
         self._client.kc.session.metadata = {'cellId': cell_id}
         try:
             self._client.execute_cell(cell, index, execution_count=count)
         except (RuntimeError, TimeoutError) as error:
             self.broken = True
-            # nbclient goes on to quote the cell, which whoever reports this shows anyway.
+            # nbclient goes on to quote the cell, which is shown anyway.
             message = str(error).partition('\nHere is a preview')[0]
             raise LessonError(f'{message}\n{self._log()}'.strip(), cell_id=cell_id) from error
         if cell.cell_type == 'code':
@@ -188,7 +190,7 @@ class LessonRun:
             _check_error(cell, cell_id)
 
     def folders(self) -> dict[str, str]:
-        """Return the folders that differ from machine to machine, and what stands for each."""
+        """Return the folders that differ between machines, and their placeholders."""
         known = {
             str(self._home): '$TMPDIR',
             sys.prefix: '$ENVIRONMENT',
@@ -198,20 +200,18 @@ class LessonRun:
         return {folder: name for folder, name in known.items() if folder not in ('/', '/usr')}
 
     def close(self) -> None:
-        """End the kernel and whatever it started, and remove its temporary files."""
+        """End the kernel and its children, and remove its temporary files."""
         self._stack.close()
 
     def __enter__(self) -> LessonRun:
-        """Return the run itself."""
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Close the run."""
         self.close()
 
 
 def _end_children(kernels: AsyncKernelManager) -> None:
-    """End what a kernel that has ended left running: its process group."""
+    """Kill the process group of a kernel that has ended."""
     group = getattr(kernels.provisioner, 'pgid', None)
     if group is not None:
         with contextlib.suppress(ProcessLookupError):
@@ -219,7 +219,7 @@ def _end_children(kernels: AsyncKernelManager) -> None:
 
 
 def _check_error(cell: NotebookNode, cell_id: str) -> None:
-    """Raise if a cell went wrong, unless its tag says that it must."""
+    """Raise if a cell failed, unless its tag says that it must."""
     error = next((out for out in cell.outputs if out.output_type == 'error'), None)
     meant = 'raises-exception' in cell.metadata.get('tags', ())
     if meant and error is None:
@@ -235,13 +235,12 @@ def _check_error(cell: NotebookNode, cell_id: str) -> None:
 def normalised(outputs: list[NotebookNode], folders: dict[str, str]) -> list[NotebookNode]:
     """Return outputs in the form in which they are stored and compared.
 
-    Pieces of a stream are put together, folders that differ between machines are replaced, and
-    so are the times that colcon prints; what is of no use later (the view of a live widget) is
-    left out.
+    Parts of a stream are joined; folders that differ between machines, and the times that colcon
+    prints, are replaced; the views of live widgets are dropped.
 
     Args:
         outputs: Outputs of one cell.
-        folders: Absolute folder -> the text that stands for it.
+        folders: Absolute folder -> its placeholder.
     """
     result: list[NotebookNode] = []
     for output in outputs:
@@ -249,7 +248,7 @@ def normalised(outputs: list[NotebookNode], folders: dict[str, str]) -> list[Not
         data = output.get('data', {})
         data.pop(_WIDGET_VIEW, None)
         if 'image/png' in data:
-            data['image/png'] = _bare_png(data['image/png'])
+            data['image/png'] = _without_metadata(data['image/png'])
         if output.output_type == 'stream':
             _add_stream(result, output)
         else:
@@ -258,10 +257,9 @@ def normalised(outputs: list[NotebookNode], folders: dict[str, str]) -> list[Not
 
 
 def _add_stream(result: list[NotebookNode], output: NotebookNode) -> None:
-    """Add to what the stream has written since the last picture, result or error.
+    """Append to the output of the same stream since the last picture, result or error.
 
-    The two streams come to a notebook on separate ways, so that their order among each other is
-    chance: standard output is put first.
+    The two streams reach a notebook separately, in random order: standard output is put first.
     """
     start = len(result)
     while start > 0 and result[start - 1].output_type == 'stream':
@@ -281,25 +279,25 @@ def _without_folders(value: Any, folders: dict[str, str]) -> Any:
         return [_without_folders(item, folders) for item in value]
     if not isinstance(value, str):
         return value
-    # A warning names the file that ipykernel makes up for a cell; it holds the process number.
-    # (Looked for first: the pattern is slow on long texts without spaces, such as pictures.)
+    # A warning names the temporary file of a cell, with the process id. Checked first: the pattern
+    # is slow on long texts without spaces, such as pictures.
     if '/ipykernel_' in value:
         value = re.sub(r'[^\s"\']*/ipykernel_\d+/\d+\.py', 'cell', value)
     if '<<< ' in value or ' finished [' in value:
         value = re.sub(_COLCON_TIME, r'\1[... s', value)
     home = str(Path.home())
     for folder in sorted(folders, key=len, reverse=True):
-        # IPython writes the home folder as `~` in tracebacks.
+        # IPython abbreviates the home folder as `~` in tracebacks.
         short = '~' + folder.removeprefix(home) if folder.startswith(f'{home}/') else folder
         for form in (folder, short):
-            # A whole path: it may follow a colour's code, but not another part of a path.
+            # A whole path: it may follow a colour code, but not another part of a path.
             pattern = rf'(^|\x1b\[[\d;]*m|[^\w/.-]){re.escape(form)}(?![\w-])'
             value = re.sub(pattern, rf'\g<1>{folders[folder]}', value, flags=re.MULTILINE)
     return value
 
 
-def _bare_png(text: str) -> str:
-    """Return a PNG, in base64, without the parts that name programs, versions and times."""
+def _without_metadata(text: str) -> str:
+    """Return a PNG, in base64, without metadata about programs, versions and times."""
     png = base64.b64decode(text)
     kept, start = [png[:8]], 8
     while start < len(png):
@@ -312,6 +310,6 @@ def _bare_png(text: str) -> str:
     return base64.b64encode(b''.join(kept)).decode()
 
 
-def _limit_of(cell: NotebookNode, usual_sec: int) -> int:
-    """Return how many seconds a cell may take."""
+def _time_limit(cell: NotebookNode, usual_sec: int) -> int:
+    """Return the time limit of a cell, s."""
     return int(cell.metadata.get('labkit', {}).get('timeout_sec', usual_sec))

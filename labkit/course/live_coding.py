@@ -1,4 +1,4 @@
-"""A lesson for live coding: with empty cells, and notes for whoever types; or with solutions.
+"""A lesson for live coding: with empty cells and notes for the presenter, or with solutions.
 
 Both are made from the published lesson each time, and written into the learner's folder.
 """
@@ -19,17 +19,17 @@ from labkit.exercises.lesson import load
 __all__ = ['blank', 'notes', 'solved', 'write_blank', 'write_solved']
 
 Notebook = dict[str, Any]
-# These are read together with the class, so their words stay.
+# These are read together with the class, so their text stays.
 _PLAN = ('title', 'done')
 _HEADING = re.compile(r'#{1,6} ')
 _HELPERS = re.compile(r'^from labkit\..*', flags=re.MULTILINE)
 _PICTURE = re.compile(r'!\[[^\]]*\]\([^)]*\)')
-# What means something in Markdown.
+# Characters with a meaning in Markdown.
 _MARKS = re.compile(r'([\\`*_{}\[\]<>#|])')
 
 
 def write_blank(lesson: str) -> str:
-    """Write a lesson with headings, tasks and empty cells, and notes with all that is left out.
+    """Write a lesson with headings, tasks and empty cells, and notes with everything left out.
 
     Args:
         lesson: Its number or name.
@@ -51,7 +51,7 @@ def write_blank(lesson: str) -> str:
 
 
 def write_solved(lesson: str) -> str:
-    """Write a lesson with a solution in the place of each starter.
+    """Write a lesson with solutions in place of the starters.
 
     Args:
         lesson: Its number or name.
@@ -67,11 +67,11 @@ def write_solved(lesson: str) -> str:
 
 
 def blank(notebook: Notebook) -> Notebook:
-    """Return a lesson as a teacher needs it who types it in front of a class.
+    """Return a lesson for a teacher who types it in front of a class.
 
-    What is read together stays: headings, pictures, the plan, the tasks. So does what nobody
-    wants to type: the setup, checks, hints and quizzes, and imports of the lesson's own helpers.
-    Else the cells of code are empty, and what is said about them is left to the teacher.
+    What the class reads together stays: headings, pictures, the plan, the tasks. So does what
+    nobody wants to type: the setup, checks, hints and quizzes, and imports of the lesson's own
+    helpers. The other code cells are empty, and their explanation is left to the teacher.
 
     Args:
         notebook: The lesson.
@@ -81,12 +81,12 @@ def blank(notebook: Notebook) -> Notebook:
     for cell in result['cells']:
         text = _text(cell)
         if cell['cell_type'] != 'markdown':
-            if not _stays(cell['id'], text):
-                # Its tags are about what it did: that it raises, or is not compared.
+            if not _is_kept(cell['id'], text):
+                # Its tags describe the removed code: that it raises, or is not compared.
                 cell.update(source='\n'.join(_HELPERS.findall(text)), metadata={})
             cells.append(cell)
             continue
-        kept = _words(cell['id'], text)
+        kept = _kept_text(cell['id'], text)
         if kept:
             cells.append(cell | {'source': kept})
     result['cells'] = cells
@@ -94,7 +94,7 @@ def blank(notebook: Notebook) -> Notebook:
 
 
 def notes(notebook: Notebook, lesson: Lesson) -> str:
-    """Return all of a lesson, solutions too, as a page beside the one that is typed.
+    """Return the whole lesson with solutions as a page to keep beside the typed one.
 
     Args:
         notebook: The lesson.
@@ -136,20 +136,20 @@ def _solution(starter: Mapping[str, Any], exercise: Exercise) -> Iterator[dict[s
     }
 
 
-def _stays(cell_id: str, code: str) -> bool:
-    """Tell whether a cell is the setup, or only asks the lesson: for a check, a hint, a quiz."""
+def _is_kept(cell_id: str, code: str) -> bool:
+    """Return whether a cell is the setup, or only calls the lesson: a check, a hint, a quiz."""
     lines = [line.lstrip('# ') for line in code.splitlines()]
     return cell_id == 'setup' or all(re.match(r'(await )?lesson\.', line) for line in lines)
 
 
-def _words(cell_id: str, text: str) -> str:
-    """Return what stays of a cell of text, `''` if nothing does."""
+def _kept_text(cell_id: str, text: str) -> str:
+    """Return the part of a text cell that stays, `''` if none does."""
     lines = text.split('\n')
     headings = [number for number, line in enumerate(lines) if _HEADING.match(line)]
     if cell_id in _PLAN:
         return text
     if cell_id.endswith('-task') and headings:
-        # Before its heading is what was to be said about the cell above.
+        # The text before its heading is about the cell above.
         before = '\n\n'.join(_PICTURE.findall('\n'.join(lines[: headings[-1]])))
         return f'{before}\n\n'.lstrip() + '\n'.join(lines[headings[-1] :])
     kept = [line for line in lines if _HEADING.match(line) or _PICTURE.match(line)]

@@ -1,6 +1,6 @@
 """Write docs/api.md: the public names of labkit, from their docstrings.
 
-The code is read, not run: that needs no environment and starts no ROS.
+The code is parsed, not run: that needs no environment and starts no ROS.
 """
 
 from __future__ import annotations
@@ -15,9 +15,10 @@ from pathlib import Path
 from labkit.files import write_atomically
 from labkit.setup.environment import ROOT
 
-__all__ = ['PAGE', 'PublicName', 'page', 'public_names', 'write_page']
+__all__ = ['FAULTS', 'PAGE', 'PublicName', 'page', 'public_names', 'write_page']
 
 PAGE = ROOT / 'docs' / 'api.md'
+FAULTS = ROOT / 'docs' / 'faults.md'
 _HEAD = """\
 <!-- Made by `python3 -m labkit docs` from the docstrings in the code. -->
 # Public names of labkit
@@ -32,14 +33,13 @@ _Definition = ast.FunctionDef | ast.ClassDef
 
 @dataclass(frozen=True)
 class PublicName:
-    """One public name, as its definition in the code describes it.
+    """A public name, as described by its definition in the code.
 
     Attributes:
-        name: The name.
         module: The module that defines it.
-        parameters: Each parameter as it is written, with `*` where only keywords follow.
-        returns: What it returns, as it is annotated; `''` for a class.
-        sections: What the docstring says: its prose under `''`, then by the title of a section.
+        parameters: Each parameter as written, with `*` where only keywords follow.
+        returns: The return annotation; `''` for a class.
+        sections: The docstring: its prose under `''`, then sections by title.
     """
 
     name: str
@@ -50,7 +50,7 @@ class PublicName:
 
     @property
     def signature(self) -> str:
-        """The call as it is written in the code, on several lines if it is long."""
+        """The call as written in the code, on several lines if it is long."""
         arrow = f' -> {self.returns}' if self.returns else ''
         line = f'lab.{self.name}({", ".join(self.parameters)}){arrow}'
         if len(line) <= _WIDTH:
@@ -59,7 +59,7 @@ class PublicName:
         return f'lab.{self.name}(\n{inner}){arrow}'
 
     def problems(self) -> list[str]:
-        """Return what its docstring lacks, or says of parameters that are not there."""
+        """Return what its docstring lacks, or says about parameters that do not exist."""
         if not self.sections['']:
             return [f'{self.name} has no docstring']
         written = {re.split('[:=]', parameter)[0].strip(' *') for parameter in self.parameters}
@@ -80,7 +80,7 @@ def public_names(root: Path = ROOT) -> list[PublicName]:
         root: The folder with the package.
 
     Raises:
-        LookupError: One of them is not imported in labkit/__init__.py, or not defined there.
+        LookupError: One of them is not imported in labkit/__init__.py, or not defined.
     """
     names = next(
         ast.literal_eval(node.value)
@@ -91,27 +91,37 @@ def public_names(root: Path = ROOT) -> list[PublicName]:
 
 
 def page(names: list[PublicName]) -> str:
-    """Return the page about some names.
+    """Return the page with some names.
 
     Args:
-        names: The names, as `public_names` returns them.
+        names: The result of `public_names`.
     """
-    rows = [f'| [`lab.{one.name}`](#{_anchor(one)}) | {_summary(one)} |' for one in names]
+    # The anchors are those that GitHub and JupyterLab's Markdown make of the headings.
+    rows = [
+        f'| [`lab.{one.name}`](#lab{one.name.lower()}) | {one.sections[""].splitlines()[0]} |'
+        for one in names
+    ]
     return '\n'.join([_HEAD, '| name | what it is |', '|---|---|', *rows, *map(_entry, names)])
 
 
 def write_page() -> str:
-    """Write docs/api.md anew.
+    """Update docs/api.md, and docs/faults.md from the silent faults.
 
     Returns:
-        A sentence that says what was done.
+        A sentence about each result.
     """
-    content = page(public_names()).encode()
-    if PAGE.is_file() and PAGE.read_bytes() == content:
-        return f'{PAGE} is up to date.'
-    PAGE.parent.mkdir(exist_ok=True)
-    write_atomically(PAGE, content)
-    return f'{PAGE} is written anew.'
+    from labkit.silent.catalogue import page as page_of_faults
+
+    pages = {PAGE: page(public_names()), FAULTS: page_of_faults()}
+    return '\n'.join(_write(path, text.encode()) for path, text in pages.items())
+
+
+def _write(path: Path, content: bytes) -> str:
+    if path.is_file() and path.read_bytes() == content:
+        return f'{path} is up to date.'
+    path.parent.mkdir(exist_ok=True)
+    write_atomically(path, content)
+    return f'{path} is written anew.'
 
 
 # --- Reading the code ----------------------------------------------------------------------------
@@ -124,7 +134,7 @@ def _parse(root: Path, module: str) -> ast.Module:
 
 
 def _read(root: Path, module: str, name: str) -> PublicName:
-    """Return a name that a module defines, or imports from another one."""
+    """Return a name that a module defines or imports."""
     tree = _parse(root, module)
     for node in tree.body:
         if isinstance(node, _Definition) and node.name == name:
@@ -145,7 +155,7 @@ def _described(node: _Definition, module: str, root: Path) -> PublicName:
             words = _parameters(inner.args)[1:]
             return PublicName(node.name, module, words, '', sections)
     for base in node.bases:
-        # It is made as its base is, and that one says how.
+        # It inherits the constructor of its base, with the docstring.
         with contextlib.suppress(LookupError):
             above = _read(root, module, ast.unparse(base))
             sections = {'Args': above.sections.get('Args', ''), **sections}
@@ -154,7 +164,7 @@ def _described(node: _Definition, module: str, root: Path) -> PublicName:
 
 
 def _parameters(arguments: ast.arguments) -> tuple[str, ...]:
-    """Return each parameter as it is written."""
+    """Return each parameter as written."""
     plain = [*arguments.posonlyargs, *arguments.args]
     defaults = [None] * (len(plain) - len(arguments.defaults)) + [*arguments.defaults]
     found = [_parameter(one, value) for one, value in zip(plain, defaults, strict=True)]
@@ -175,7 +185,7 @@ def _parameter(one: ast.arg, default: ast.expr | None = None) -> str:
 
 
 def _sections(docstring: str) -> dict[str, str]:
-    """Return the parts of a docstring in Google's style; what is before the first under `''`."""
+    """Return the parts of a Google docstring; the prose before the first section under `''`."""
     found = {'': ''}
     title = ''
     for line in docstring.splitlines():
@@ -191,18 +201,9 @@ def _sections(docstring: str) -> dict[str, str]:
 
 
 def _items(section: str) -> list[tuple[str, str]]:
-    """Return what a section such as Args lists: name and text of each."""
+    """Return name and text of each item in a section such as Args."""
     found = re.findall(r'^(\*{0,2}\w+(?: \(.*?\))?): *(.*(?:\n +.*)*)', section, re.MULTILINE)
     return [(name, ' '.join(text.split())) for name, text in found]
-
-
-def _summary(one: PublicName) -> str:
-    return one.sections[''].partition('\n')[0]
-
-
-def _anchor(one: PublicName) -> str:
-    """Return the anchor that GitHub and JupyterLab's Markdown make of the heading."""
-    return f'lab{one.name}'.lower()
 
 
 def _entry(one: PublicName) -> str:

@@ -1,4 +1,4 @@
-"""Run lessons and store their outputs: the only way in which stored outputs are made."""
+"""Run lessons and store their outputs: the only way stored outputs are made."""
 
 # nbformat has no annotations.
 # mypy: disable-error-code="no-untyped-call"
@@ -20,20 +20,21 @@ from labkit.course.lesson_run import LessonError, LessonRun
 from labkit.errors import LabError
 from labkit.files import write_atomically
 
-__all__ = ['as_stored', 'lesson_paths', 'record']
+__all__ = ['as_stored', 'lesson_paths', 'record', 'with_bullets', 'write_tasks']
 
 LESSONS_DIR = Path(__file__).resolve().parents[2] / 'notebooks'
 KERNELSPEC = {'display_name': 'Python 3 (ipykernel)', 'language': 'python', 'name': 'python3'}
-# Of the metadata only what the course itself gives is kept: editors add their own, with times.
+# Metadata of the course; editors add their own, with times.
 CELL_METADATA = ('jupyter', 'labkit', 'tags')
+_BULLET = re.compile(r'^- .*(?:\n  .*)*(?:\n|\Z)', re.MULTILINE)
 
 
 def lesson_paths(names: Sequence[str] = (), *, folder: Path = LESSONS_DIR) -> list[Path]:
-    """Return the notebooks of the lessons with these names, in their order; all if none is given.
+    """Return the notebooks of the lessons with these names, in order; all if none are given.
 
     Args:
         names: `'02'`, `'02_talker_listener'` or the file's name.
-        folder: Where the lessons are.
+        folder: Folder of the lessons.
 
     Raises:
         LabError: There is no such lesson.
@@ -53,11 +54,11 @@ def lesson_paths(names: Sequence[str] = (), *, folder: Path = LESSONS_DIR) -> li
 
 
 def record(names: Sequence[str] = (), *, folder: Path = LESSONS_DIR) -> int:
-    """Run lessons and store their outputs. The file of a lesson that fails stays as it was.
+    """Run lessons and store their outputs. If a lesson fails, its file is left unchanged.
 
     Args:
-        names: Lessons, as `lesson_paths` takes them; all of them if empty.
-        folder: Where the lessons are.
+        names: Lessons, as for `lesson_paths`; all if empty.
+        folder: Folder of the lessons.
 
     Returns:
         Exit code: 0, or 1 if a lesson failed.
@@ -86,12 +87,13 @@ def _report(error: LessonError) -> str:
 
 
 def _record_lesson(path: Path) -> str:
-    """Run one lesson, store it, and return what was done."""
+    """Run and store one lesson; return a summary."""
     before = path.read_bytes()
     with LessonRun(path) as run:
+        write_tasks(run.notebook, path.name)
         for index in range(len(run.notebook.cells)):
             run.execute(index)
-    _keep_unsteady(run.notebook, nbformat.reads(before.decode(), as_version=4))
+    _keep_measurements(run.notebook, nbformat.reads(before.decode(), as_version=4))
     after = as_stored(run.notebook)
     if path.read_bytes() != before:
         raise LessonError('The notebook was changed while it ran; record it again.')
@@ -102,10 +104,42 @@ def _record_lesson(path: Path) -> str:
     return f'{number} cells recorded'
 
 
-def _keep_unsteady(notebook: NotebookNode, before: NotebookNode) -> None:
-    """Keep the stored outputs of a cell that is not compared if only numbers in them are new.
+def write_tasks(notebook: NotebookNode, name: str) -> None:
+    """Write the bullets of each exercise's clauses into the cell with its task.
 
-    They are measured values, other ones each time: the file need not change for that.
+    The prose before and after the bullets stays. A notebook without a lesson is left unchanged.
+
+    Args:
+        notebook: The notebook.
+        name: Its file name.
+    """
+    from labkit.exercises.lesson import all_lessons
+
+    lesson = next((each for each in all_lessons() if each.notebook == name), None)
+    tasks = {exercise.task_id: exercise for exercise in lesson.exercises} if lesson else {}
+    for cell in notebook.cells:
+        if cell.id in tasks:
+            cell.source = with_bullets(cell.source, [c.text for c in tasks[cell.id].clauses])
+
+
+def with_bullets(source: str, texts: Sequence[str]) -> str:
+    """Return the source of a cell with its bullets replaced by these texts."""
+    bullets = list(_BULLET.finditer(source))
+    if not bullets:
+        return '\n\n'.join([source, '\n'.join(f'- {text}' for text in texts)])
+    parts, end = [], 0
+    for number, bullet in enumerate(bullets):
+        last = number == len(bullets) - 1
+        own = texts[number:] if last else texts[number : number + 1]
+        parts += [source[end : bullet.start()], *(f'- {text}\n' for text in own)]
+        end = bullet.end()
+    return ''.join([*parts, source[end:]]).rstrip()
+
+
+def _keep_measurements(notebook: NotebookNode, before: NotebookNode) -> None:
+    """Keep the stored outputs of a cell that is not compared, if only numbers in them differ.
+
+    These are measurements, different each time: the file need not change for that.
     """
     for cell, old in zip(notebook.cells, before.cells, strict=True):
         if 'nbval-ignore-output' in cell.metadata.get('tags', ()):

@@ -1,4 +1,4 @@
-"""Run the test suite, or a part of it: style, types, format, layers, every notebook and test."""
+"""Run the test suite, or a part of it: style, types, format, layers, notebooks and tests."""
 
 from __future__ import annotations
 
@@ -14,8 +14,11 @@ from labkit.setup.environment import ROOT, VENV, environment_variables, make_env
 
 __all__ = ['SHARDS', 'run_tests']
 
-REQUIREMENTS = ('environment.txt', 'labkit/hub/requirements.txt', 'tests/requirements.txt')
-# Quick, and about the code as it stands; they come first and are not repeated later.
+REQUIREMENTS = (
+    *('environment.txt', 'labkit/hub/requirements.txt'),
+    *('tests/requirements.txt', 'docs/requirements.txt'),
+)
+# Fast tests of the code as it stands; they come first and are not repeated later.
 _FAST_TESTS = (
     'tests/test_layers.py',
     'tests/test_notebook_format.py',
@@ -25,19 +28,24 @@ _FAST_TESTS = (
     'tests/course/test_public_names.py',
     'tests/lessons/test_answers_style.py',
 )
-# What continuous integration runs beside each other. The last one has what no other has, so that
-# a new test is in exactly one of them.
+# Parts that continuous integration runs in parallel. The last one has everything that no other
+# has, so that a new test is in exactly one of them.
 SHARDS = {
     'lessons': ('notebooks', 'tests/lessons'),
-    'ros': ('tests/background', 'tests/ros2', 'tests/exercises'),
+    'ros': (
+        *('tests/background', 'tests/asking', 'tests/programs', 'tests/sharing'),
+        *('tests/ros2', 'tests/exercises'),
+    ),
     'browser': ('tests/browser', 'tests/network', 'tests/views'),
     'rest': ('tests',),
 }
-_PYTEST = ('pytest', '--nbval', '--timeout=300')
-# Two workers for each processor: a test mostly waits, for messages, processes and pages. One
-# worker runs a notebook from top to bottom, so that its cells share a kernel.
+# The limit judges nothing. It ends a test that hangs.
+_PYTEST = ('pytest', '--nbval', '--timeout=900')
+# One worker per processor: that of the proofs alone keeps eight kernels busy. A notebook runs in
+# one worker from top to bottom, so that its cells share a kernel. tests/conftest.py decides which
+# files come first.
 _PROCESSORS = len(os.sched_getaffinity(0)) if hasattr(os, 'sched_getaffinity') else 2
-_PARALLEL = ('-n', str(2 * max(2, _PROCESSORS)), '--dist', 'loadscope')
+_PARALLEL = ('-n', str(max(2, _PROCESSORS)), '--dist', 'loadscope', '--no-loadscope-reorder')
 
 
 def run_tests(
@@ -51,16 +59,16 @@ def run_tests(
 
     Args:
         arguments: Options and paths for pytest. With any, only pytest runs. Numbers of lessons
-            come first, such as `04`: its cells, its format, and the proof of its exercises.
+            come first, such as `04`: its cells, its format, and the proofs of its exercises.
         fast: Whether to run only what takes seconds: style, types, layers, format of notebooks.
-        shard: Which part of the notebooks and tests to run, None for all; see `SHARDS`.
-        coverage: Whether to measure which lines and branches of labkit run, kernels included.
+        shard: The part of the notebooks and tests to run, None for all; see `SHARDS`.
+        coverage: Whether to measure the coverage of labkit, kernels included.
 
     Returns:
-        The exit code of the first step that failed, or 0. No test at all is a failure too.
+        The exit code of the first step that failed, or 0. Running no test is a failure too.
 
     Raises:
-        LabError: These options do not go together.
+        LabError: The options exclude each other.
     """
     steps = _steps(arguments, fast=fast, shard=shard)
     if coverage:
@@ -101,10 +109,7 @@ def _steps(
 
 
 def _of_lesson(number: str) -> list[str]:
-    """Return the words for pytest that choose what is about one lesson.
-
-    Args:
-        number: Its number, such as `04`.
+    """Return the pytest arguments that select the tests of a lesson, such as `04`.
 
     Raises:
         LabError: There is no such lesson.
@@ -115,7 +120,7 @@ def _of_lesson(number: str) -> list[str]:
         names = ', '.join(path.stem for path in sorted(folder.glob('*.ipynb')))
         raise LabError(f'There is no lesson {number}.', todo=f'The lessons are: {names}.')
     lesson, name = found[0], found[0].partition('_')[2]
-    # In the proof, each exercise is called after the lesson.
+    # The proofs of exercises have the lesson's name in their ids.
     chosen = ['-k', f'{lesson} or {name}-']
     return [f'notebooks/{lesson}.ipynb', 'tests/test_notebook_format.py', 'tests/lessons', *chosen]
 
@@ -124,18 +129,13 @@ def _fast_steps() -> list[tuple[str, list[str]]]:
     return [
         ('style', ['ruff', 'check', '.']),
         ('format', ['ruff', 'format', '--check', '.']),
-        ('types', ['mypy', '--strict', 'labkit']),
-        ('types of the tests', ['mypy', '--config-file', 'tests/mypy.ini']),
+        ('types', ['mypy']),
         ('layers and format', ['pytest', '-q', *_FAST_TESTS]),
     ]
 
 
 def shard_paths(name: str) -> list[str]:
-    """Return the words for pytest that choose a shard: folders, and what in them to ignore.
-
-    Args:
-        name: One of `SHARDS`.
-    """
+    """Return the pytest arguments that select a shard: folders, and what to ignore in them."""
     others = [path for other, paths in SHARDS.items() if other != name for path in paths]
     inner = [
         path
@@ -149,7 +149,7 @@ def shard_paths(name: str) -> list[str]:
 
 
 def _measured(steps: list[tuple[str, list[str]]]) -> list[tuple[str, list[str]]]:
-    """Let the tests among the steps be measured, and show the result after them."""
+    """Wrap the tests among the steps in coverage, and add its report."""
     if not any(command[:2] == list(_PYTEST[:2]) for _, command in steps):
         raise LabError('--coverage measures tests: there are none in --fast.')
     result = [('coverage of before', ['coverage', 'erase'])]
@@ -170,7 +170,7 @@ def _cache() -> Path:
 
 
 def _variables() -> dict[str, str]:
-    """Return the variables for the steps: what the tools remember goes into the environment."""
+    """Return the variables for the steps: caches of tools go into the environment's folder."""
     variables = environment_variables()
     cache = _cache()
     variables['COVERAGE_FILE'] = str(cache / 'coverage.data')

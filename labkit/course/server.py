@@ -1,11 +1,11 @@
-"""JupyterLab in this process, with a quiet log: its address, and what is wrong, each once.
+"""JupyterLab in this process, with a quiet log: the address, and each problem once.
 
-The kernel of a notebook starts as soon as its page is asked for, that of the notebook on which
-JupyterLab opens with the server: while the page is loaded, which takes longer, it gets ready, and
-loads what the first cells of a lesson need. The first page of all finds its notebook in the
-workspace, too: JupyterLab opens what lies there at once, what its address names a second later.
+The kernel of a notebook starts when its page is requested, that of the first notebook with the
+server: it gets ready while the page loads, which takes longer, and loads what the first cells of a
+    lesson need. The first page finds its notebook in the workspace, too: JupyterLab opens
+    notebooks of the workspace at once, those of its address a second later.
 
-It is run by its path and imports nothing of labkit: what labkit sets for ROS is for kernels, not
+It is run by its path and imports nothing of labkit: labkit's settings for ROS are for kernels, not
 for the terminals that JupyterLab starts.
 """
 
@@ -29,13 +29,13 @@ __all__ = ['Quiet', 'main']
 
 _ADDRESS = re.compile(r'\s*(https?://\S+)\s*')
 _TOKEN = re.compile(r'token=\w+')
-# What tornado puts right by itself at each connection, and what is so with each fresh lesson.
-_NO_MATTER = re.compile(r'The websocket_ping_timeout|Notebook .* is not trusted')
-# The page of a notebook.
+# Warnings that tornado fixes by itself, or that come with every fresh lesson.
+_IGNORED = re.compile(r'The websocket_ping_timeout|Notebook .* is not trusted')
+# The address of a notebook's page.
 _PAGE = re.compile(r'.*/lab/tree/(.+\.ipynb)')
 _WORKSPACE = 'default'
 _KERNEL = 'python3'
-# ROS, exercises and views: what the first cells of each lesson load. It leaves no name behind.
+# ROS, exercises and views, which every lesson needs. The code defines no names.
 _PRELOADED = ('labkit.background.runtime', 'labkit.exercises.lesson', 'labkit.views.live_page')
 _PRELOAD = f'if all(map(__import__, {_PRELOADED})): pass'
 _PRELOAD_SEC = 60.0
@@ -46,42 +46,42 @@ _LOGGERS = (
 
 
 class Quiet(logging.Filter):
-    """Let warnings and errors pass, each of them once, and print the address alone on a line."""
+    """Passes warnings and errors once each, and prints the address alone on a line."""
 
     def __init__(self) -> None:
         super().__init__()
         self._passed: set[str] = set()
-        self._told = False
+        self._printed = False
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Tell whether a line of the log is to be shown."""
+        """Return whether to show a line of the log."""
         text = record.getMessage()
         address = _ADDRESS.fullmatch(text)
-        if address and not self._told:
-            self._told = True
+        if address and not self._printed:
+            self._printed = True
             print(f'\n    {address[1]}\n', flush=True)
         if record.exc_info:
-            # What went wrong is shown, with the request, and without the token in its address.
+            # Show the error with the request, but without the token in its address.
             text = record.msg = _TOKEN.sub('token=...', text)
             record.args = ()
-        # The address comes once more, with what to do about it.
+        # The address is logged again, with instructions.
         known = _TOKEN.search(text) or text in self._passed
-        if known or _NO_MATTER.match(text) or record.levelno < logging.WARNING:
+        if known or _IGNORED.match(text) or record.levelno < logging.WARNING:
             return False
         self._passed.add(text)
         return True
 
 
 def main(arguments: Sequence[str]) -> None:
-    """Run JupyterLab to its end.
+    """Run JupyterLab until it ends.
 
     Args:
-        arguments: Its options. With `--debug`, or a level of the log, nothing is held back.
+        arguments: Its options. With `--debug`, or a log level, nothing is filtered.
     """
     from jupyterlab.labapp import LabApp
     from jupyterlab_server.workspaces_handler import WorkspacesManager
 
-    # Its options and its log are called by this name.
+    # JupyterLab's options and logger use this class name.
     class ServerApp(LabApp.serverapp_class):  # type: ignore[misc]
         def start_app(self) -> None:
             super().start_app()
@@ -96,7 +96,7 @@ def main(arguments: Sequence[str]) -> None:
                     self.io_loop.add_callback(self._start_kernel, path)
 
             self.web_app.settings['log_function'] = follow
-            # Nothing is built from source here, so that no page has to ask whether it should be.
+            # Nothing is built from source, so pages need not ask whether to rebuild.
             page = self.web_app.settings.setdefault('page_config_data', {})
             page.update(buildAvailable=False, buildCheck=False)
             self.io_loop.run_in_executor(None, _load_exporters)
@@ -107,13 +107,13 @@ def main(arguments: Sequence[str]) -> None:
         def _open_at_once(self, path: str) -> None:
             [lab] = self.extension_manager.extension_apps['jupyterlab']
             workspaces = WorkspacesManager(lab.workspaces_dir)
-            # What can't be read or written here, the page says, or does without.
+            # The page reports or ignores what can't be read or written here.
             with suppress(OSError, ValueError):
                 if Path(self.root_dir, path).is_file() and not workspaces.load(_WORKSPACE)['data']:
                     workspaces.save(_WORKSPACE, json.dumps(_workspace(path)))
 
         async def _start_kernel(self, path: str) -> None:
-            # The page takes the kernel that its notebook has. What fails here, it says.
+            # The page uses its notebook's kernel, and reports what fails here.
             if path in self._starting or _kernel_of(Path(self.root_dir, path)) != _KERNEL:
                 return
             self._starting[path] = asyncio.create_task(self._create_session(path))
@@ -136,12 +136,12 @@ def main(arguments: Sequence[str]) -> None:
             client = self.kernel_manager.get_kernel(kernel_id).client()
             client.start_channels(iopub=False, stdin=False, control=False, hb=False)
             client.execute(_PRELOAD, silent=True, store_history=False)
-            with suppress(Empty):  # it has ended meanwhile
+            with suppress(Empty):  # it has ended
                 await client.get_shell_msg(timeout=_PRELOAD_SEC)
             client.stop_channels()
 
         async def cleanup_kernels(self) -> None:
-            # A kernel that has not quite started can't be ended, and the server would stay.
+            # A kernel that is still starting can't be ended, and the server would hang.
             await asyncio.gather(*self._starting.values(), return_exceptions=True)
             await super().cleanup_kernels()
 
@@ -154,17 +154,17 @@ def main(arguments: Sequence[str]) -> None:
 
 
 def _load_exporters() -> None:
-    """Load what a page asks for while it opens: into which formats a notebook can be exported."""
-    with suppress(Exception):  # what is wrong with one, the menu says
+    """Load what a page requests while it opens: the export formats of notebooks."""
+    with suppress(Exception):  # the menu reports a broken one
         base: Any = import_module('nbconvert.exporters.base')
-        # It reads what all packages have installed, anew for each of the formats.
+        # It reads the metadata of all packages anew for each format.
         base.entry_points = functools.cache(base.entry_points)
         for name in base.get_export_names():
             base.get_exporter(name)
 
 
 def _workspace(path: str) -> dict[str, Any]:
-    """Return the workspace that JupyterLab saves itself when a notebook is all that is open."""
+    """Return the workspace that JupyterLab itself saves when only a notebook is open."""
     tab = f'notebook:{path}'
     dock = {'type': 'tab-area', 'currentIndex': 0, 'widgets': [tab]}
     files = {'collapsed': False, 'visible': True, 'current': 'filebrowser'}
@@ -178,11 +178,13 @@ def _workspace(path: str) -> dict[str, Any]:
 
 
 def _kernel_of(notebook: Path) -> str:
-    """Return the name of a notebook's kernel; '' if it is none, or can't be read."""
+    """Return the name of a notebook's kernel; '' if it has none, or can't be read."""
+    if not notebook.is_file():
+        return ''  # reading a pipe would block
     try:
         metadata = json.loads(notebook.read_text(encoding='utf-8'))['metadata']
         return str(metadata.get('kernelspec', {}).get('name', _KERNEL))
-    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
         return ''
 
 

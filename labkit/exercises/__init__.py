@@ -3,38 +3,16 @@
 How to write the exercises of a lesson
 ======================================
 
-The exercises of `notebooks/04_odds.ipynb` are in `labkit.lessons.odds`, a module or a package with
-one an exercise, that defines `LESSON`. That is all: lessons are found by name. Types of messages
-are given by name (`'std_msgs/msg/Int16'`), so it needs no ROS to be imported. A small one,
-complete::
+The exercises of `notebooks/04_odds.ipynb` are in the package `labkit.lessons.odds`, which defines
+`LESSON`. That is all: lessons are found by name. Types of messages are given by name
+(`'std_msgs/msg/Int16'`), so it needs no ROS to be imported. A small one, complete::
 
     """The exercises of lesson 04."""
 
-    from labkit.exercises import (
-        Choice, Exercise, Lesson, Quiz, Solution, Style, Wrong, changed, right, wrong,
-    )
+    from labkit.exercises import Choice, Exercise, Lesson, Quiz, Solution, right, wrong
     from labkit.exercises.clauses import Publishes, Says
-    from labkit.lessons._script import in_process
 
     INT16 = 'std_msgs/msg/Int16'
-
-    NODE = """
-    from rclpy.node import Node
-    from std_msgs.msg import Int16
-
-
-    class Ones(Node):
-        def __init__(self):
-            super().__init__('ones')
-            self.publisher = self.create_publisher(Int16, 'ones', 10)
-            self.create_timer(0.1, self.on_timer)
-
-        def on_timer(self):
-            self.publisher.publish(Int16(data=1))
-
-
-    lab.spin(Ones())
-    """
 
     LESSON = Lesson(
         'odds',
@@ -45,14 +23,9 @@ complete::
             Exercise(
                 name='ones',
                 task='Publish the Int16 1 on /ones, ten times a second.',
-                publishes={'/ones': INT16},
                 clauses=[Publishes('/ones', 10.0, INT16), Says('/ones', 1)],
                 hints=['What calls a function again and again?', 'create_timer(0.1, ...)'],
-                answer=Solution(NODE, 'A timer leaves the node free.'),
-                styles=[Style('own process', in_process(NODE), process=True)],
-                wrong=[
-                    Wrong('Hz for s', changed(NODE, ('0.1', '10')), '100 times too slow'),
-                ],
+                answer=Solution(__file__, 'ones.py', 'A timer leaves the node free.'),
             ),
         ],
         quizzes=[
@@ -67,10 +40,14 @@ complete::
         ],
     )
 
+The solution is the file `solutions/ones.py` beside that module, as a learner would write it in the
+cell, formatted and linted as all code is. It imports `labkit as lab` as a file must, and is shown
+without that line. One with magics is a file of IPython, `ones.ipy`.
+
 In the notebook are, with these cell ids (an underscore of the name becomes a dash):
 
-- `ones-task`: the task. Each of its bullets is the `text` of a clause, word for word; a test
-  compares them. The prose around them explains, and asks for nothing more;
+- `ones-task`: the task. Its bullets are the texts of the clauses: `labkit record` writes them. The
+  prose around them explains, and asks for nothing more;
 - `ones-starter`: the cell to edit, with `...` where the learner writes. It must run as it is,
   after a restart of the kernel, too: so it imports what it uses;
 - `ones-check`: `lesson.ones.check()`, its output stored as NOT ATTEMPTED;
@@ -86,18 +63,29 @@ service it offers and what it answers there (`Serves`, `Responds`), which parame
 whether it follows them, and what it refuses (`HasParameter`, `Follows`, `Refuses`), what becomes
 of the goals that are sent to its action (`Serves`, `Pursues`). A clause has
 its words, looks for what must be in the graph, says which tests are sent, and judges what was
-seen. A lesson says only what is special: its misconceptions. A clause of its own is a subclass of
-`Clause` in the lesson's package.
+seen. A lesson says only what is special: its mistakes. A clause of its own is a subclass of
+`GraphClause` in the lesson's package. A node that is to remember something, such as a sum or every
+third message, is an `Answers` whose `answer` is a generator function, as are its models.
+
+An exercise that does not take place in the graph has a `stage`: see `judging`. The one loop there
+lets each clause judge what the stage shows. What such an exercise asks for, and no other one, is
+an `Asked`: words of the task, and a function that raises `Fail` if what is shown is otherwise.
+
+The mistakes
+------------
+A `Mistake` has an id, the words for a misconception, a model of what a program with it sends, and
+the change of the solution that makes such a program. `Answers(mistakes=...)` names the first one
+whose model answers as the node did; another judge raises it: `Fail(expected, seen, MISTAKE)`, or
+`MISTAKE.of(name=value)` where its words have names in braces. Those that can be made in any
+exercise are in `words`. A cause is named only if it was seen.
 
 What was seen is half a minute of the lives of the learner's nodes, in virtual time (`life`): each
-message with the exact time at which it was published. A node that keeps a time of its own, such as
-a thread with `time.sleep()`, shows that by being silent then, and is judged in real time. Tests
-are drawn anew each time from all that the task allows (`draws`). Nodes of earlier exercises stand
-still meanwhile. Rules of thumb:
+message with the exact time at which it was published. Threads that sleep, and code that asks for
+the time, live in that time, too (`learner_time`). Tests are drawn anew each time from all that the
+task allows (`draws`). Nodes of earlier exercises stand still meanwhile. Rules of thumb:
 
-- The exercise says what it asks for: `publishes` and `subscribes` (topics, with their types),
-  `serves` (services and actions, with theirs) and `nodes` (full names). The matchers take
-  the types from there. Ask in any order.
+- Topics, services, actions and nodes that the exercise is about, with their types, are read off
+  its clauses (`Clause.roles`). `publishes=` and the like add what no clause says.
 - Whether something missing is a FAIL or NOT ATTEMPTED is read off the graph, see `Scope`: an
   attempt is a node of the learner's that does what this exercise asks for and no earlier one
   does, or what may mean that, under another name. Where there is none, `traces` names what else
@@ -111,35 +99,52 @@ still meanwhile. Rules of thumb:
 - For what is done once, before the check (`ros2 topic pub --once`), `records=['/odds']` records
   from the setup cell on: `probe.recorded['/odds']`. A recorder is a subscription, so it is counted
   by `ros2 topic info` and by publishers that wait.
-- What has no clause is looked at with a probe and the matchers of `expect`: `judge=` in the place
-  of `clauses=`. They return what they found or raise the outcome: `expect.publisher`, `messages`,
-  `node`, `spun`, `ends_with_node` (then `once=True`), `expect.that(condition, expected=...,
-  seen=..., why=..., todo=...)`, or `raise Fail(expected, seen, why=..., todo=...)`.
+- Clauses look at things with the matchers of `expect`, which return what they found or raise the
+  outcome: `expect.publisher`, `messages`, `node`, `spun`, `ends_with_node` (then `once=True`),
+  `expect.that(condition, expected=..., seen=..., mistake=...)`.
 - What another process makes comes into the graph piece by piece. Matchers wait for what they look
   for; before counting (`len(probe.publishers('/names'))`), use `probe.wait_to_appear(condition)`.
 - What the learner's code raises, in a cell or in a callback, becomes ERROR by itself, with the
-  misconception behind it; such wrong answers have `outcome=Outcome.ERROR`.
-- Nothing reads the learner's code or variables. Waits are for events and counts.
+  misconception behind it; such wrong answers have `outcome=ERROR`.
+- A verdict on what was attempted rests on the graph, never on the learner's code or variables.
+  Only where nothing is in the graph, `traces` looks there for the reason. Waits are for events
+  and counts.
 
 The proof
 ---------
 `tests/lessons/` runs every exercise in its notebook, in a real kernel: untouched, each wrong
 answer with its sentence, each style, the solution, and the check pressed again. The solution of
-one exercise keeps running while the next one is proved, as it does when a learner goes on. Have
-at least eight wrong answers and four other styles (`process=True`: a script in a process of its
-own); each clause must refuse a wrong one. `pytest tests/lessons -k odds-ones` proves one exercise,
-and `python tests/mutants -k odds-ones` asks the check about its solution with one change each.
+one exercise keeps running while the next one is proved, as it does when a learner goes on. The
+answers stand in `tests/lessons/cases/odds/ones.py`, as changes of the solution::
 
-Ruff looks at all of these answers as it does at other code, and a learner sees the solution as it
-is formatted. Where what it finds is the mistake itself, as a name that is not defined, the wrong
-answer says so: `refused='The name is not defined.'`.
+    from cases import right, wrong
+
+    ANSWERS = [
+        wrong('Hz for s', '100 times too slow', ('create_timer(0.1,', 'create_timer(10,')),
+        right('functions'),
+        wrong('not spun', 'nothing runs its callbacks'),
+    ]
+
+What is another program is a file beside the table, `ones/functions.py`. The answers that every
+exercise has are generated from its solution: a node that is not spun, another topic, a wrong type,
+a process of its own, and the others in `tests/lessons/cases/generic.py`. A row with such a name
+and no changes tells what becomes of it here, if that is not the usual. With these, have at least
+eight wrong answers and four other styles; each clause must refuse a wrong one. `pytest
+tests/lessons -k odds-ones` proves one exercise, and `python tests/mutants -k odds-ones` asks the
+check about its solution with one change each.
+
+Ruff looks at all of these answers as it does at other code. Where what it finds is the mistake
+itself, as a name that is not defined, the wrong answer says so: `refused='The name is not
+defined.'`.
 '''
 
 from __future__ import annotations
 
 from labkit.exercises import expect
-from labkit.exercises.exercise import Exercise, Solution, Style, Wrong, changed
+from labkit.exercises.exercise import Exercise, Solution
+from labkit.exercises.judging import Clause, Stage
 from labkit.exercises.lesson import Lesson
+from labkit.exercises.mistakes import Mistake, anything
 from labkit.exercises.probe import Probe
 from labkit.exercises.questions import Choice, Number, Several, Word, right, wrong
 from labkit.exercises.quiz import Quiz
@@ -148,9 +153,11 @@ from labkit.exercises.watch import Watch
 
 __all__ = [
     'Choice',
+    'Clause',
     'Exercise',
     'Fail',
     'Lesson',
+    'Mistake',
     'NotAttempted',
     'Number',
     'Outcome',
@@ -158,11 +165,10 @@ __all__ = [
     'Quiz',
     'Several',
     'Solution',
-    'Style',
+    'Stage',
     'Watch',
     'Word',
-    'Wrong',
-    'changed',
+    'anything',
     'expect',
     'right',
     'wrong',

@@ -1,4 +1,4 @@
-"""What the learner's callbacks do during a check: how often they run, and whether they raise."""
+"""Count the learner's callbacks during a check, and notice when they raise."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ from labkit.exercises.verdict import LearnerError
 
 __all__ = ['Callbacks', 'find_node', 'is_given']
 
-# In the place of the ids of cells: whoever makes a node of this name, it is not the learner's.
+# Stands for all cell ids: a node of this name is never the learner's.
 ANY_CELL = '*'
 
 
 class Callbacks:
-    """The callbacks of this notebook's nodes, from now on."""
+    """The callbacks of this notebook's nodes since it was made."""
 
     def __init__(self) -> None:
         from labkit.background.runtime import runtime
 
         self._runtime = runtime
-        # With the errors themselves: one that is forgotten may leave its id to another one.
+        # The errors and not their ids, which Python reuses.
         self._before = [(error, error.count) for error in runtime.console.errors]
 
     def count(self, node: Any, entity: Any) -> int | None:
-        """Return how often the callback of a timer or subscription has been run.
+        """Return the number of callbacks run for a timer or subscription.
 
-        None if somebody else than labkit runs it, such as an executor of the learner's.
+        None if labkit does not run them, but, for instance, the learner's own executor.
         """
         entry = self._runtime.entry_of(node)
         return None if entry is None else entry.counts.get(entity, 0)
@@ -46,7 +46,7 @@ class Callbacks:
 
 
 def find_node(name: str) -> Any:
-    """Return the node of that name as an object, None if it is not in this process."""
+    """Return the node object of a name, None if it is not in this process."""
     from labkit.background.runtime import runtime
 
     for entry in runtime.nodes():
@@ -59,12 +59,7 @@ def find_node(name: str) -> Any:
 
 
 def is_given(name: str, scope: Scope) -> bool:
-    """Tell whether a node is the lesson's own, and not one of the learner's of the same name.
-
-    Args:
-        name: Full name of the node.
-        scope: What the lesson has of its own.
-    """
+    """Return whether the node of a full name is the lesson's own, and not the learner's."""
     if name not in scope.given:
         return False
     from labkit.background.runtime import runtime
@@ -73,7 +68,7 @@ def is_given(name: str, scope: Scope) -> bool:
     if ANY_CELL in cells:
         return True
     if find_node(name) is None:
-        return not cells  # of another process, so no cell has made it
+        return not cells  # in another process, so no cell has made it
     made_in = next((e.cell.cell_id for e in runtime.nodes() if e.name == name), '')
     # Some front ends don't send the id of a cell.
     return not made_in or made_in in cells

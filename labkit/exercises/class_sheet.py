@@ -1,8 +1,8 @@
-"""What a learner shares with a class: one small document of a fixed form, its sheet.
+"""The sheet: a small document in a fixed format that a learner shares with a class.
 
-It says which lesson is open, and of each exercise and question what the progress file knows:
-tries, hints, times, and of the last check a sentence of the course. It has no name in it: the
-folder that it lies in says whose it is. Whoever reads one takes nothing for granted.
+It has the open lesson, and for each exercise and question an extract of the progress file: tries,
+hints, times, and a sentence of the course on the last check. It does not name the learner; its
+folder does. Readers validate all of it.
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ from dataclasses import dataclass, field
 from datetime import datetime, timezone
 from typing import Any
 
-from labkit.exercises.attempts import number_of
 from labkit.exercises.lesson import all_lessons
-from labkit.exercises.sentences import is_of_the_course, of_the_course
+from labkit.exercises.mistakes import known_mistakes, said_by_the_course
+from labkit.exercises.progress_store import number_of
 
 __all__ = ['FILE_NAME', 'MOST_BYTES', 'Entry', 'Sheet', 'catalogue', 'read_sheet', 'sheet_text']
 
 VERSION = 1
 FILE_NAME = 'labkit-progress.json'
-# All exercises and questions, each with long sentences, take half of it.
+# Twice as much as a full sheet with long sentences.
 MOST_BYTES = 100_000
 MOST_TRIES = 100_000
 LONGEST_SENTENCE = 600
@@ -37,17 +37,17 @@ Key = tuple[str, str, str]
 
 @dataclass(frozen=True)
 class Entry:
-    """What is known of an exercise or a question.
+    """The state of an exercise or a question.
 
     Attributes:
-        tries: How often it was checked or answered.
-        hints: How many hints were shown.
+        tries: Number of checks or answers.
+        hints: Number of hints shown.
         solution: Whether the solution was shown.
         last: Outcome of the last check: PASS, FAIL or ERROR; `''` if there was none.
-        sentence: What the course says about the last outcome.
-        first_try: When it was tried first.
-        last_try: When it was tried last.
-        passed_at: When it was passed first.
+        sentence: The course's sentence on the last outcome.
+        first_try: Time of the first try.
+        last_try: Time of the last try.
+        passed_at: Time of the first pass.
     """
 
     tries: int = 0
@@ -65,10 +65,10 @@ class Sheet:
     """All that a learner shares.
 
     Attributes:
-        written_at: When it was written.
-        lesson: The lesson whose notebook was open; `''` if none was.
-        since: Since when.
-        entries: What is known of each exercise and question that was begun.
+        written_at: Time of writing.
+        lesson: The open lesson; `''` if none was.
+        since: The time at which it was opened.
+        entries: The exercises and questions that were begun.
     """
 
     written_at: datetime
@@ -78,7 +78,7 @@ class Sheet:
 
 
 def catalogue() -> dict[Key, frozenset[str]]:
-    """Return all that a sheet may speak of, with the clauses of its task."""
+    """Return all exercises and questions, with the clauses of their tasks."""
     found: dict[Key, frozenset[str]] = {}
     for lesson in all_lessons():
         for exercise in lesson.exercises:
@@ -94,20 +94,20 @@ def catalogue() -> dict[Key, frozenset[str]]:
 
 
 def sheet_text(data: Mapping[str, Any], lesson: str, since: datetime | None) -> str:
-    """Return the sheet as it is sent, one line an exercise or question.
+    """Return the text of a sheet, with one line per exercise or question.
 
     Args:
-        data: What the progress file holds.
-        lesson: The lesson whose notebook is open; `''` if none is.
-        since: Since when.
+        data: Data of the progress file.
+        lesson: The open lesson; `''` if none is.
+        since: The time at which it was opened.
     """
     known = catalogue()
     entries = []
     for (of_lesson, kind, name), clauses in known.items():
         group = data['lessons'].get(of_lesson, {}).get(f'{kind}s', {})
-        told = _told(group.get(name, {}), clauses)
-        if told:
-            entries.append({'lesson': of_lesson, 'kind': kind, 'name': name, **told})
+        shared = _shared(group.get(name, {}), clauses)
+        if shared:
+            entries.append({'lesson': of_lesson, 'kind': kind, 'name': name, **shared})
     head = {
         'version': VERSION,
         'written_at': _now().isoformat(),
@@ -119,10 +119,10 @@ def sheet_text(data: Mapping[str, Any], lesson: str, since: datetime | None) -> 
     return '\n'.join([*lines, ']}', ''])
 
 
-def _told(entry: Mapping[str, Any], clauses: frozenset[str]) -> dict[str, Any]:
-    """Return that part of an entry of the progress file which is shared."""
+def _shared(entry: Mapping[str, Any], clauses: frozenset[str]) -> dict[str, Any]:
+    """Return the shared part of an entry of the progress file."""
     last = entry.get('last')
-    told = {
+    shared = {
         'tries': min(max(number_of(entry.get('tries')), 0), MOST_TRIES),
         'hints': min(max(number_of(entry.get('hints')), 0), MOST_TRIES),
         'solution': entry.get('solution') is True,
@@ -130,14 +130,15 @@ def _told(entry: Mapping[str, Any], clauses: frozenset[str]) -> dict[str, Any]:
         'sentence': _sentence(entry, clauses),
         **{name: entry.get(name) for name in _TIMES if _is_time(entry.get(name))},
     }
-    return {name: value for name, value in told.items() if value}
+    return {name: value for name, value in shared.items() if value}
 
 
 def _sentence(entry: Mapping[str, Any], clauses: frozenset[str]) -> str:
-    why, clause = entry.get('why'), entry.get('clause')
-    said = of_the_course(why) if isinstance(why, str) else ''
-    if 0 < len(said) <= LONGEST_SENTENCE:
-        return said
+    # The course's own sentence: that of the verdict may contain names from the learner's code.
+    found = known_mistakes().get(str(entry.get('mistake')))
+    if found is not None and 0 < len(found.sentence) <= LONGEST_SENTENCE:
+        return found.sentence
+    clause = entry.get('clause')
     return clause if isinstance(clause, str) and clause in clauses else ''
 
 
@@ -149,14 +150,14 @@ def _now() -> datetime:
 
 
 def read_sheet(content: bytes, known: Mapping[Key, frozenset[str]]) -> Sheet:
-    """Return a sheet that somebody has sent.
+    """Parse and validate a sheet.
 
     Args:
-        content: What was sent, of at most `MOST_BYTES`.
-        known: See `catalogue`. What is not in there, as of a newer course, is left out.
+        content: At most `MOST_BYTES`.
+        known: See `catalogue`. Other entries, as of a newer course, are left out.
 
     Raises:
-        ValueError: It is not of the form that the course writes. The words have nothing of it.
+        ValueError: It is invalid. The message quotes nothing of it.
     """
     try:
         data = json.loads(content)
@@ -189,9 +190,8 @@ def _entry(item: dict[str, Any], clauses: frozenset[str]) -> Entry:
     sentence = _of_type(item, 'sentence', str, '')
     if len(sentence) > LONGEST_SENTENCE:
         raise ValueError('sentence is too long')
-    if sentence and sentence not in clauses and not is_of_the_course(sentence):
-        # Of another version of the course, or of somebody who wants to be read.
-        sentence = ''
+    if sentence and sentence not in clauses and not said_by_the_course(sentence):
+        sentence = ''  # of another version of the course, or made up by the sender
     return Entry(
         tries=_count(item, 'tries'),
         hints=_count(item, 'hints'),

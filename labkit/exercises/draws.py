@@ -1,44 +1,83 @@
-"""Test values, drawn anew for each check from all that a task allows.
+"""Test values, drawn anew for each check from all that a task allows: the traps are in here.
 
-So an answer that is right for small letters only, for short texts or for the numbers of the last
-check is found out.
+So an answer that is right for small letters only, for short texts, for other values than the one
+before or for the numbers of the last check is found out. How close together the values are sent,
+`clauses/base.py` draws.
 """
 
 from __future__ import annotations
 
 import random
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import count
+from typing import Any, TypeVar
 
-__all__ = ['draw_float', 'draw_int16s', 'draw_texts']
+__all__ = [
+    'INT16',
+    'draw_float',
+    'draw_for',
+    'draw_int16s',
+    'draw_names',
+    'draw_texts',
+    'filled',
+    'in_a_row',
+]
+
+T = TypeVar('T')
 
 _WORDS = ('boat', 'harbour', 'Wind', 'NORTH', 'grün', 'Öl', 'señor', 'çay', 'λάμδα', 'Żuk', '日本')
+_NAMES = ('Bo', 'Eva María', 'Çağla', '李娜', 'Dr. O', 'van  der Berg', 'Ödön', "O'Neill", 'JO')
 INT16 = (-32768, 32767)
-# With so many more there are more than ten: a node may stop after that many.
-MORE = 4
+# Each name gets a number of its own: who is known from the last check is nobody new.
+_numbers = count(random.randint(100, 999), random.choice((3, 7, 11)))
+# So many are sent at least: a node may stop after twenty.
+MANY = 24
+# A plain value is first: what is wrong with any value is not to look like a matter of a trap.
+PLAIN = 2
 
 
 def draw_texts(*, empty: bool = True) -> list[str]:
     """Return texts: small and capital letters, digits, letters of many languages, a long one.
 
     Args:
-        empty: Whether one of them is empty.
+        empty: Whether some of them say nothing: the empty text, and one of blanks.
     """
     word = random.choice
-    texts = [
-        f'{word(_WORDS)} {random.randint(2, 99)}',
+    number = random.randint
+    plain = [f'{word(_WORDS)} {n}' for n in random.sample(range(2, 100), PLAIN)]
+    traps = [
         f'{word(_WORDS)}{word(_WORDS).upper()} {word("!?.,;:")}',
-        f'{random.randint(1000, 9999)}',
-        f'{word(_WORDS).title()} "{word(_WORDS)}" {{{word("abcXYZ")}}} \\{word("nt")} %s',
-        ' '.join(word(_WORDS) for _ in range(random.randint(60, 90))),
+        f'{number(1000, 9999)}',
+        f'-{number(1, 9)}.0',
+        '0',
+        word('aZ9é'),
+        f'{word(_WORDS).title()} "{word(_WORDS)}" {{{word("abcXYZ")}}} \\{word("nt")} %s <b>',
+        ' '.join(word(_WORDS) for _ in range(number(60, 90))),
         f'  {word(_WORDS)} ',
+        f'{word(_WORDS)}  {word(_WORDS)}   {number(2, 99)}',
+        f'{word(_WORDS)}: {word(_WORDS)}: {number(2, 99)}',
+        f'{number(1, 9)}:{number(10, 59)}',
+        f'{word(_WORDS)},{word(_WORDS)};{word(_WORDS)}',
+        f'{word(_WORDS).swapcase()} {word("🤖🚲")}',
     ]
-    random.shuffle(texts)
-    more = [f'{word(_WORDS)} {number}' for number in range(1, MORE + 1)]
-    return [*texts, *[''] * empty, texts[0], *more]
+    nothing = ['', ' ' * number(1, 3)] if empty else []
+    more = [f'{word(_WORDS)} {i}' for i in range(100, 100 + MANY)]
+    return in_a_row(plain, [*traps, *nothing], more)
+
+
+def draw_names(how_many: int = len(_NAMES)) -> list[str]:
+    """Return names that nobody has heard: of one word and of several, two of them nearly alike.
+
+    Args:
+        how_many: How many.
+    """
+    names = [f'{_NAMES[i % len(_NAMES)]}{next(_numbers)}' for i in range(how_many - 1)]
+    random.shuffle(names)
+    return [*names, next(name.swapcase() for name in names if name.swapcase() != name)]
 
 
 def draw_int16s(low: int = INT16[0], high: int = INT16[1], step: int = 1) -> list[int]:
-    """Return numbers: the limits, zero or what is next to it, and some in between.
+    """Return numbers: the limits and those next to them, around zero, and some in between.
 
     Args:
         low: The smallest number.
@@ -46,13 +85,82 @@ def draw_int16s(low: int = INT16[0], high: int = INT16[1], step: int = 1) -> lis
         step: From one to the next: 2 for every other number from `low` on.
     """
     allowed = range(low, high + 1, step)
-    near_zero: Sequence[int] = [number for number in (-step, 0, 1, step) if number in allowed]
+    near_zero = [n for n in (-2 * step, -step, -1, 0, 1, step, 2 * step) if n in allowed]
     middle = range(len(allowed) // 4, 3 * len(allowed) // 4)
-    drawn = [allowed[i] for i in random.sample(middle, 4 + MORE)]
-    # The limits come last: what is wrong with any number is not to look like a matter of limits.
-    return [*drawn, *near_zero[:1], drawn[0], allowed[0], allowed[-1]]
+    drawn = [allowed[i] for i in random.sample(middle, min(len(middle), MANY))]
+    edges = [allowed[i] for i in (0, 1, -2, -1)]
+    return in_a_row(drawn[:PLAIN], [*near_zero, *edges], drawn[PLAIN:])
 
 
 def draw_float(low: float, high: float) -> float:
     """Return a number between two others, with three decimals, so that it is read easily."""
     return round(random.uniform(low, high), 3)
+
+
+def in_a_row(plain: Sequence[T], traps: Iterable[T], more: Iterable[T] = ()) -> list[T]:
+    """Return values in an order that is drawn, some of them twice in a row, and one again later.
+
+    Args:
+        plain: The first ones: at least two, which are different.
+        traps: What is sent in any case.
+        more: What is sent until there are many.
+    """
+    rest = list(traps)
+    rest += list(more)[: max(0, MANY - len(plain) - len(rest))]
+    random.shuffle(rest)
+    # The first one comes again when it may be forgotten.
+    twice = random.randrange(len(rest))
+    rest.insert(twice, rest[twice])
+    return [plain[0], *plain, *rest, plain[0], plain[0]]
+
+
+def filled(msg_type: str, fields: Mapping[str, Any]) -> dict[str, Any]:
+    """Return fields of a message with all others of its type that are no arrays, drawn.
+
+    So nobody can count on it that what a task does not name is zero.
+
+    Args:
+        msg_type: Name of the type.
+        fields: Those that are given; dots lead to inner ones.
+    """
+    from labkit.rosgraph.interfaces import message_class
+
+    return {**_drawn_fields(message_class(msg_type)), **fields}
+
+
+def _drawn_fields(msg_class: Any, before: str = '') -> dict[str, Any]:
+    from labkit.rosgraph.interfaces import message_class
+
+    found: dict[str, Any] = {}
+    for name, kind in msg_class.get_fields_and_field_types().items():
+        if kind in _FIELDS:
+            found[before + name] = _FIELDS[kind]()
+        elif '/' in kind and not kind.endswith(']') and not kind.startswith('sequence'):
+            inner = message_class(kind.replace('/', '/msg/'))
+            found.update(_drawn_fields(inner, f'{before}{name}.'))
+    return found
+
+
+def draw_for(msg_type: str) -> Sequence[Any]:
+    """Return values for the field `data` of a type, where a task allows all of them.
+
+    Raises:
+        LookupError: There are none for this type.
+    """
+    return _BY_TYPE[msg_type]()
+
+
+_BY_TYPE: dict[str, Callable[[], Sequence[Any]]] = {
+    'std_msgs/msg/Int16': draw_int16s,
+    'std_msgs/msg/String': draw_texts,
+}
+_FIELDS: dict[str, Callable[[], Any]] = {
+    'boolean': lambda: random.random() < 0.5,
+    'string': lambda: random.choice(_WORDS),
+    # Numbers that all sizes can hold, and exactly.
+    **dict.fromkeys(('float', 'double'), lambda: random.randint(1, 99) / 8),
+    **dict.fromkeys(
+        (f'{sign}int{bits}' for sign in ('', 'u') for bits in (8, 16, 32, 64)),
+        lambda: random.randint(1, 99),
+    ),
+}

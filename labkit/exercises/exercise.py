@@ -1,21 +1,29 @@
-"""An exercise: task, check on the live graph, hints in steps, a solution with its reason."""
+"""An exercise: task, check on the live graph, hints, and an explained solution."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import re
+import sys
+import time
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from labkit.errors import LabError
-from labkit.exercises.attempts import progress_store
-from labkit.exercises.clauses.base import Clause
+from labkit.exercises.clauses.base import Graph
 from labkit.exercises.expect.endpoints import alone
+from labkit.exercises.history import history
+from labkit.exercises.judging import Clause, Stage, judge
 from labkit.exercises.learner_errors import explain_error, last_cell
+from labkit.exercises.lesson_progress import next_steps
+from labkit.exercises.mistakes import Mistake
+from labkit.exercises.other_time import other_times
 from labkit.exercises.pending import Pending, learner_task_runs
 from labkit.exercises.probe import Probe
+from labkit.exercises.progress_store import progress_store
 from labkit.exercises.recorder import Recorder
-from labkit.exercises.scope import Scope
-from labkit.exercises.standing import after
+from labkit.exercises.scope import NODE, PUBLISHER, SERVICE, SUBSCRIPTION, Role, Scope
 from labkit.exercises.traces import refuse_nameless, refuse_traces
 from labkit.exercises.verdict import Fail, LearnerError, NotAttempted, Outcome, Verdict
 from labkit.exercises.watch import Watch
@@ -26,7 +34,9 @@ if TYPE_CHECKING:
     from labkit.exercises.lesson import Lesson
     from labkit.exercises.variants import Variants
 
-__all__ = ['Exercise', 'Solution', 'Style', 'Wrong', 'changed']
+__all__ = ['Exercise', 'Solution', 'read_answer']
+
+_IMPORT_LAB = re.compile(r'^import labkit as lab\n\n?', re.MULTILINE)
 
 NOTHING_YET = (
     'Not attempted yet. Write your code in the cell above, run that cell, then run this one again.'
@@ -40,68 +50,38 @@ STARTING = (
 
 @dataclass(frozen=True)
 class Solution:
-    """One right answer, to be shown.
+    """A solution to show.
 
     Attributes:
-        code: What the learner would write in the starter cell.
-        reason: Why it is done so.
+        module: `__file__` of the exercise's module.
+        name: Name of a file in the folder `solutions` beside it: a Python script, or an IPython
+            script (`.ipy`) if it has magics.
+        reason: Explanation of the solution.
+        changes: Replacements for a variant, as pairs of old and new text.
     """
 
-    code: str
+    module: str
+    name: str
     reason: str
+    changes: Sequence[tuple[str, str]] = ()
+
+    @property
+    def code(self) -> str:
+        """The code for the starter cell."""
+        code = read_answer(Path(self.module).parent / 'solutions' / self.name)
+        for old, new in self.changes:
+            code = code.replace(old, new)
+        return code
+
+    def changed(self, *changes: tuple[str, str]) -> Solution:
+        """Return the solution with further replacements."""
+        return replace(self, changes=(*self.changes, *changes))
 
 
-@dataclass(frozen=True)
-class Style:
-    """The same solution in another style, for the tests.
-
-    Attributes:
-        name: Such as `'functions'` or `'own process'`.
-        code: The code.
-        process: Whether it is a script for a process of its own.
-    """
-
-    name: str
-    code: str
-    process: bool = False
-
-
-@dataclass(frozen=True)
-class Wrong:
-    """A typical wrong answer, for the tests.
-
-    Attributes:
-        name: Such as `'starts at 0'`.
-        code: The code.
-        says: A sentence, or a part of one, that the verdict must contain.
-        outcome: The outcome that it must get: FAIL, or ERROR if the code raises.
-        process: Whether it is a script for a process of its own.
-        refused: What a linter finds in it, where that is the mistake; `''` if it finds nothing.
-    """
-
-    name: str
-    code: str
-    says: str
-    outcome: Outcome = Outcome.FAIL
-    process: bool = False
-    refused: str = ''
-
-
-def changed(code: str, *changes: tuple[str, str]) -> str:
-    """Return code with some parts of it replaced, as a wrong answer or another style has them.
-
-    Args:
-        code: The code.
-        changes: Pairs of what is there, exactly, and what stands there instead.
-
-    Raises:
-        ValueError: One of them is not there.
-    """
-    for old, new in changes:
-        if old not in code:
-            raise ValueError(f'{old!r} is not in the code:\n{code}')
-        code = code.replace(old, new)
-    return code
+def read_answer(path: Path) -> str:
+    """Return a file's code for a cell: without importing `lab`, which the setup cell does."""
+    text = path.read_text(encoding='utf-8')
+    return _IMPORT_LAB.sub('', text, count=1).lstrip('\n')
 
 
 @dataclass(eq=False, kw_only=True)
@@ -111,28 +91,26 @@ class Exercise:
     Attributes:
         name: Its name as a Python name: `lesson.count_up`.
         task: The task in a sentence or two.
-        clauses: What the task asks for, clause by clause; the check looks at each of them.
-        judge: Looks at what no clause has words for, with a probe and the matchers of `expect`.
-            It raises what is wrong, and returns a sentence on what was seen, or None.
+        clauses: The requirements of the task, which the check judges one by one.
+        stage: The source of the evidence, by default the graph.
         publishes: Topics on which the learner's nodes publish, by full name, with their types.
         subscribes: Topics to which they subscribe, with their types.
         serves: Services that they offer, with their types.
         nodes: Full names of nodes that the task asks for.
         shared: Topics on which others may publish too. On all others in `publishes` a second
-            publisher is a fault, whenever it comes.
-        reliable: Topics on which those who listen ask for reliable delivery, as the robot does:
-            they hear nothing of a publisher with best effort.
-        hints: From a nudge to nearly the answer.
-        answer: The solution that is shown.
-        styles: The solution in other styles, for the tests.
-        wrong: Typical wrong answers, for the tests.
+            publisher fails the check at any time.
+        reliable: Topics whose subscribers request reliable delivery, as the robot does: they
+            receive nothing from a best effort publisher.
+        mistakes: Typical mistakes, in addition to those that the clauses recognise.
+        hints: Hints from a nudge to nearly the answer.
+        answer: The solution to show.
         given: Full names of nodes that the lesson itself leaves running for this exercise, with
-            the ids of the cells that make them, with spaces in between; `'*'` for any cell,
-            `''` for none, as for a node of another process.
-        records: Those topics in `publishes` that are recorded from the setup cell on: for what
-            happens once, and before the check. The judge finds them in `probe.recorded`.
-        once: Whether the check uses up what it checks, as a node that is removed. The same
-            nodes then get the same verdict again.
+            the ids of the cells that make them, separated by spaces; `'*'` for any cell, `''` for
+            none, as for a node of another process.
+        records: Topics in `publishes` to record from the setup cell on, for messages that are sent
+            once, before the check. The judge finds them in `probe.recorded`.
+        once: Whether a check uses up its evidence, as a node that is removed. The same nodes then
+            get the same verdict again.
         starter_id: Id of the notebook cell to edit; `'count-up-starter'` if empty.
         check_id: Id of the cell with the check; `'count-up-check'` if empty.
     """
@@ -141,16 +119,15 @@ class Exercise:
     task: str
     hints: Sequence[str]
     answer: Solution
-    clauses: Sequence[Clause] = ()
-    judge: Callable[[Probe], str | None] | None = None
+    clauses: Sequence[Clause[Any]] = ()
+    stage: Stage[Any] = field(default_factory=Graph)
+    mistakes: Sequence[Mistake] = ()
     publishes: Mapping[str, str] = field(default_factory=dict)
     subscribes: Mapping[str, str] = field(default_factory=dict)
     serves: Mapping[str, str] = field(default_factory=dict)
     nodes: Sequence[str] = ()
     shared: Sequence[str] = ()
     reliable: Sequence[str] = ()
-    styles: Sequence[Style] = ()
-    wrong: Sequence[Wrong] = ()
     given: Mapping[str, str] = field(default_factory=dict)
     records: Sequence[str] = ()
     once: bool = False
@@ -160,14 +137,26 @@ class Exercise:
     def __post_init__(self) -> None:
         self.lesson = ''
         self.belongs_to: Lesson | None = None
-        # What it may be for others, and whose it is; '' if it is what the notebook tells.
+        # The other variants, and the learner's seed; '' for the notebook's exercise.
         self.variants: Variants | None = None
         self.seed = ''
+        roles: dict[Role, str] = {}
+        for clause in self.clauses:
+            roles.update(clause.roles)
+            self.mistakes = (*self.mistakes, *clause.recognises)
+
+        def asked(kind: str, more: Mapping[str, str]) -> dict[str, str]:
+            return {name: roles[what, name] for what, name in roles if what == kind} | {**more}
+
+        self.publishes = asked(PUBLISHER, self.publishes)
+        self.subscribes = asked(SUBSCRIPTION, self.subscribes)
+        self.serves = asked(SERVICE, self.serves)
+        self.nodes = tuple(asked(NODE, dict.fromkeys(self.nodes, '')))
         self.scope = Scope(
             publishes=self.publishes,
             subscribes=self.subscribes,
             serves=self.serves,
-            nodes=tuple(self.nodes),
+            nodes=self.nodes,
             shared=frozenset(self.shared),
             reliable=frozenset(self.reliable),
             given=self.given,
@@ -186,9 +175,10 @@ class Exercise:
         return f'{self.starter_id.removesuffix("-starter")}-task'
 
     def begin(self) -> None:
-        """Get ready: called in the setup cell of the notebook."""
+        """Start recording, for the setup cell."""
+        history.follow(topic for clause in self.clauses for topic in clause.listens)
         if self._recorder is not None:
-            from labkit.background.spinning import start
+            from labkit.background.runtime import start
 
             start()
             self._recorder.keep()
@@ -201,22 +191,27 @@ class Exercise:
             self._recorder.forget()
 
     def keep(self, verdict: Verdict) -> None:
-        """Say the same again, as long as nothing new is there."""
+        """Repeat a verdict until there is something new."""
         with Probe(self.name, self.scope) as probe:
             self._before = (probe.fingerprint(), verdict)
 
     def check(self) -> Verdict | Pending:
-        """Look at what your nodes do, and say whether it is what the task asks for.
+        """Check whether your nodes do what the task asks for.
 
         Returns:
-            The verdict. Where an asyncio task of the notebook is at work, one that is about to
-            come: see `Pending`.
+            The verdict, or a `Pending` one while an asyncio task of the notebook is running.
         """
         last_cell.asked()
-        return Pending(self.name, self._check) if learner_task_runs() else self._check()
+        if learner_task_runs():
+            return Pending(self.name, self._check)
+        Pending.wait_for_all()
+        return self._check()
 
     def _check(self) -> Verdict:
-        verdict = self.examine()
+        from labkit.silent.watch import watch
+
+        with watch.resting():
+            verdict = self.examine()
         if self.variants is not None and self.seed:
             verdict = self.variants.recognise(self, verdict)
         note = progress_store.note_check(
@@ -225,16 +220,17 @@ class Exercise:
             verdict.outcome.value,
             clause=verdict.clause,
             why=verdict.why,
+            mistake=verdict.mistake.id if verdict.mistake is not None else '',
         )
         if verdict.passed and self.belongs_to is not None:
-            verdict = replace(verdict, standing=after(self, progress_store.store.read()[0]))
+            verdict = replace(verdict, standing=next_steps(self, progress_store.store.read()[0]))
         return verdict if not note else verdict.with_note(note)
 
     def hint(self, number: int | None = None) -> Card:
         """Show the next hint, or the one with this number.
 
         Args:
-            number: From 1; the next one that was not shown yet if None.
+            number: From 1; the next hint if None.
         """
         last_cell.asked()
         count = len(self.hints)
@@ -249,7 +245,7 @@ class Exercise:
         return Card('info', f'HINT {shown} of {count}', self.name, text=self.hints[shown - 1])
 
     def solution(self) -> Card:
-        """Show one solution, and why it is done so."""
+        """Show a solution with an explanation."""
         last_cell.asked()
         progress_store.note_solution(self.lesson, self.name)
         text = f'{self.answer.reason}\nYours may look different: what counts is what it does.'
@@ -257,7 +253,7 @@ class Exercise:
         return SolutionCard('info', 'SOLUTION', self.name, text=text, code=code)
 
     def __dir__(self) -> list[str]:
-        # What the tab key offers: the rest is for those who write lessons.
+        # For tab completion: the rest is for authors of lessons.
         return ['check', 'hint', 'solution']
 
     def _card(self) -> Card:
@@ -274,12 +270,14 @@ class Exercise:
     # -- the check ------------------------------------------------------------------------------
 
     def examine(self) -> Verdict:
-        """Look at what the learner's nodes do; nothing is noted."""
+        """Check without recording progress."""
         recorded = self._recorder.watches() if self._recorder is not None else {}
+        began = time.monotonic()
         try:
             with Probe(self.name, self.scope, recorded=recorded) as probe:
-                return self._with_note(self._verdict(probe, recorded), probe)
-        except LabError as error:  # ROS can't be started here, for one
+                verdict = self._verdict(probe, recorded)
+                return self._with_note(verdict, probe, time.monotonic() - began)
+        except LabError as error:  # e.g. ROS can't be started here
             return Verdict(
                 Outcome.ERROR,
                 self.name,
@@ -287,25 +285,39 @@ class Exercise:
                 seen=str(error.message),
                 todo=error.todo,
             )
-        except Exception as error:  # a check never raises, whatever is wrong with it
-            return self._own_fault(error)
+        except Exception as error:  # a check never raises
+            return self._internal_error(error)
 
-    def _with_note(self, verdict: Verdict, probe: Probe) -> Verdict:
-        if not probe.held_lines:
-            return verdict
-        lines = f'{probe.held_lines} line{"s" * (probe.held_lines != 1)}'
-        return verdict.with_note(
-            f'The check let {probe.lived_sec:.0f} s of the time of your nodes pass. They wrote '
-            f'{lines} meanwhile, not shown here.'
-        )
+    def _with_note(self, verdict: Verdict, probe: Probe, seconds: float) -> Verdict:
+        notes = []
+        if probe.held_lines:
+            lines = f'{probe.held_lines} line{"s" * (probe.held_lines != 1)}'
+            notes.append(
+                f'The check let {probe.lived_sec:.0f} s of the time of your nodes pass. They '
+                f'wrote {lines} meanwhile, not shown here.'
+            )
+        if probe.moved_clocks:
+            notes.append(
+                f'The ROS clock of {", ".join(sorted(probe.moved_clocks))}, in a process of its '
+                f'own, was up to {probe.lived_sec:.0f} s ahead meanwhile, and is back now. What '
+                'that program does by another clock, or by time.sleep(), was seen for as long as '
+                f'the check took: {seconds:.0f} s.'
+            )
+        others = other_times(vars(sys.modules['__main__']))
+        if others and probe.lived_sec:
+            notes.append(
+                f'A check cannot move the time of datetime, select or a loop of asyncio. What '
+                f'{", ".join(others)} does by it was seen for as long as the check took: '
+                f'{seconds:.0f} s.'
+            )
+        return verdict.with_note(' '.join(notes)) if notes else verdict
 
     def _verdict(self, probe: Probe, recorded: Mapping[str, Watch]) -> Verdict:
         new = any(map(len, recorded.values()))
         if self._before is not None and not new:
-            # If the same nodes run, it is the same attempt.
             nodes, earlier = self._before
-            if nodes == probe.fingerprint():
-                # Without nodes there may be other evidence, as of a refused command.
+            if nodes == probe.fingerprint():  # the same attempt
+                # Without nodes there may be other evidence, such as a refused command.
                 if nodes or earlier.passed:
                     return earlier
                 verdict = self._judge(probe)
@@ -320,27 +332,28 @@ class Exercise:
     def _judge(self, probe: Probe) -> Verdict:
         try:
             try:
-                text = self._apply(probe)
+                text = judge(probe, self.stage, self.clauses)
                 _look_again(probe)
             except (Fail, NotAttempted) as outcome:
                 if isinstance(outcome, Fail) and outcome.came_first:
                     raise
-                # Consequences look like another mistake, so their cause is the better answer.
-                _look_again(probe)
-                probe.callbacks.raise_old_error(probe.scope)
+                if not (isinstance(outcome, Fail) and outcome.made_so):
+                    # The cause explains more than its consequences.
+                    _look_again(probe)
+                    probe.callbacks.raise_old_error(probe.scope)
                 error = last_cell.learner_error()
                 if error is not None:
                     raise error from None
                 refuse_nameless(probe, self._asked())
                 unexplained = isinstance(outcome, NotAttempted) and not str(outcome)
                 if unexplained and not probe.something_is_starting():
-                    refuse_traces(probe, self._asked())
+                    refuse_traces(probe, self._asked(), self.starter_id)
                 raise
         except LearnerError as error:
             return self._learner_error(error)
         except NotAttempted as nothing:
             text = str(nothing) or (STARTING if probe.something_is_starting() else NOTHING_YET)
-            # Of a variant the notebook does not tell the task.
+            # The notebook does not have the task of a variant.
             clause = self._asked() if self.seed else ''
             return Verdict(Outcome.NOT_ATTEMPTED, self.name, text, clause=clause)
         except Fail as fail:
@@ -352,33 +365,31 @@ class Exercise:
                 why=fail.why,
                 todo=fail.todo,
                 clause=fail.clause,
+                mistake=fail.mistake,
+                time_line=probe.life.time_line(fail.at) if probe.life is not None else None,
             )
         text = text or 'It does what the task asks for.'
         asked = tuple(clause.text for clause in self.clauses)
-        return Verdict(Outcome.PASS, self.name, text, asked=asked)
+        time_line = probe.life.time_line(None) if probe.life is not None else None
+        return Verdict(Outcome.PASS, self.name, text, asked=asked, time_line=time_line)
 
     def _asked(self) -> str:
         return '; '.join(clause.text for clause in self.clauses) or self.task
 
-    def _apply(self, probe: Probe) -> str | None:
-        if self.judge is not None:
-            return self.judge(probe)
-        from labkit.exercises.clauses import judge
-
-        return judge(probe, self.clauses)
-
     def _learner_error(self, error: LearnerError) -> Verdict:
-        why, todo = explain_error(error.error)
+        mistake, kind = explain_error(error.error), type(error.error).__name__
         return Verdict(
             Outcome.ERROR,
             self.name,
-            f'{error.where} raised {type(error.error).__name__}.',
-            why=why,
-            todo=todo or 'Read the last line first: it says what is wrong; the line above, where.',
+            f'{error.where} raised {kind}.',
+            why=mistake.reason if mistake is not None else '',
+            todo=(mistake.step if mistake is not None else '')
+            or f'Read the line with {kind} first: it says what is wrong; the line above, where.',
+            mistake=mistake,
             trace=error.trace,
         )
 
-    def _own_fault(self, error: Exception) -> Verdict:
+    def _internal_error(self, error: Exception) -> Verdict:
         import traceback
 
         return Verdict(
@@ -391,6 +402,6 @@ class Exercise:
 
 
 def _look_again(probe: Probe) -> None:
-    """Raise Fail if a second publisher has come meanwhile."""
+    """Raise Fail if a second publisher has appeared meanwhile."""
     for topic in sorted(probe.scope.sole):
         alone(probe, topic)

@@ -23,11 +23,12 @@ class FairClock:
     """Seconds since it was made, without those in which nobody could work. Look at it often.
 
     Args:
-        thread: The thread that is waited for. While it is ready to run, only what it runs counts,
-            where the operating system tells (Linux).
+        thread: The thread that is waited for, or the id of a process. While it, or a thread of the
+            process, is ready to run, only what it runs counts, where the operating system tells
+            (Linux).
     """
 
-    def __init__(self, thread: threading.Thread | None = None) -> None:
+    def __init__(self, thread: threading.Thread | int | None = None) -> None:
         self._thread = thread
         self._seen = time.monotonic()
         self._used = _at_work(thread)[1]
@@ -48,16 +49,22 @@ class FairClock:
         return self._seconds
 
 
-def _at_work(thread: threading.Thread | None) -> tuple[bool, float]:
+def _at_work(thread: threading.Thread | int | None) -> tuple[bool, float]:
     """Tell whether a thread is ready to run, and how long it has run, s; else False and 0."""
     if thread is None:
         return False, 0.0
+    place = thread if isinstance(thread, int) else f'self/task/{thread.native_id}'
     try:
-        with open(f'/proc/self/task/{thread.native_id}/stat', 'rb', buffering=0) as file:
+        with open(f'/proc/{place}/stat', 'rb', buffering=0) as file:
             # The fields are in proc_pid_stat(5). The second one is a name, in parentheses.
             fields = file.read().rpartition(b')')[2].split()
     except OSError:
         # Not Linux, or it has just ended.
         return False, 0.0
     ticks = int(fields[11]) + int(fields[12])
-    return fields[0] == b'R', ticks / os.sysconf('SC_CLK_TCK')
+    is_ready = fields[0] == b'R'
+    if isinstance(thread, int):
+        from labkit.programs.children import is_at_work
+
+        is_ready = is_at_work(thread)
+    return is_ready, ticks / os.sysconf('SC_CLK_TCK')

@@ -1,4 +1,4 @@
-"""The exercises and quizzes of one notebook, under one name: `lesson = lab.lesson('odds')`."""
+"""The exercises and quizzes of one notebook: `lesson = lab.lesson('odds')`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
+from labkit import settings
 from labkit.errors import LabError, nearest
+from labkit.exercises import learner_time
 from labkit.exercises.exercise import Exercise
 from labkit.exercises.learner_errors import last_cell
 from labkit.exercises.quiz import Quiz
@@ -19,27 +21,30 @@ from labkit.views.card import Card
 
 __all__ = ['Lesson', 'NoSuchNameError', 'all_lessons', 'lesson', 'lesson_names']
 
-# Lessons are found by name, so that a new one is a new file and nothing else.
+# Lessons are found by name, so that a new one needs no registration.
 PACKAGE = 'labkit.lessons'
 
 
 class NoSuchNameError(LabError, AttributeError):
-    """Report that a lesson has no exercise of a name."""
+    """A lesson has no exercise of a name."""
 
 
 class Lesson:
     """The exercises and quizzes of one notebook. Exercises are its attributes.
 
     Args:
-        name: Its name, such as `'odds'`; the module in `labkit.lessons` is called the same.
+        name: Name of its module in `labkit.lessons`, such as `'odds'`.
         notebook: File name of the notebook, such as `'04_odds.ipynb'`.
         title: The heading of the notebook.
-        teaches: What one learns in it, in a few words, as in the README.
-        exercises: In the order of the notebook.
-        quizzes: In the order of the notebook.
+        teaches: Its subject in a few words, as in the README.
+        exercises: The exercises in the order of the notebook.
+        quizzes: The quizzes in the order of the notebook.
         topics: Further topics that the lesson's own cells use.
-        given: Full names of nodes that the lesson's own cells leave running, see
-            `Exercise`.
+        given: Full names of nodes that the lesson's own cells leave running, see `Exercise`.
+
+    Raises:
+        LabError: Two exercises or two quizzes have the same name, or an exercise's name can't be
+            an attribute.
     """
 
     def __init__(
@@ -58,6 +63,8 @@ class Lesson:
         self.notebook = notebook
         self.title = title
         self.teaches = teaches
+        self._refuse_names('exercises', exercises)
+        self._refuse_names('quizzes', quizzes)
         self._exercises = {exercise.name: exercise for exercise in exercises}
         self._quizzes = {quiz.name: quiz for quiz in quizzes}
         known = frozenset(topics).union(*(exercise.scope.topics for exercise in exercises))
@@ -78,10 +85,27 @@ class Lesson:
         for quiz in quizzes:
             quiz.lesson = name
 
+    def _refuse_names(self, kind: str, named: Sequence[Exercise] | Sequence[Quiz]) -> None:
+        seen: set[str] = set()
+        for name in (each.name for each in named):
+            if name in seen:
+                raise LabError(
+                    f'Lesson {self.name!r} has two {kind} called {name!r}.',
+                    todo='Give each a name of its own.',
+                )
+            seen.add(name)
+            taken = name.startswith('_') or name in vars(self) or hasattr(Lesson, name)
+            if kind == 'exercises' and (taken or not name.isidentifier()):
+                raise LabError(
+                    f'An exercise of lesson {self.name!r} can not be called {name!r}: '
+                    f'lesson.{name} would not be the exercise.',
+                    todo='Give it another name.',
+                )
+
     def begin(self) -> Lesson:
-        """Get ready: called by `lab.lesson` in the setup cell."""
-        from labkit.exercises.home import follow_progress
+        """Prepare all exercises, for the setup cell."""
         from labkit.exercises.membership import follow_class
+        from labkit.exercises.progress_page import follow_progress
 
         last_cell.follow()
         for exercise in self.exercises:
@@ -97,7 +121,7 @@ class Lesson:
 
     @property
     def heading(self) -> str:
-        """Its number and its title: `'04 Odd numbers'`."""
+        """Its number and title: `'04 Odd numbers'`."""
         number, _, rest = self.notebook.removesuffix('.ipynb').partition('_')
         return f'{number} {self.title or rest.replace("_", " ")}'
 
@@ -115,13 +139,14 @@ class Lesson:
         """Return a quiz, to be shown by the notebook.
 
         Args:
-            name: Its name; it may be left out if the lesson has one quiz only.
+            name: Its name; without one, it is the quiz that the cell `quiz` shows.
 
         Raises:
             LabError: There is no such quiz.
         """
-        if not name and len(self._quizzes) == 1:
-            return self.quizzes[0]
+        own = [quiz for quiz in self.quizzes if quiz.cell_id == 'quiz']
+        if not name and len(own) == 1:
+            return own[0]
         if name not in self._quizzes:
             names = [repr(other) for other in self._quizzes]
             raise LabError(
@@ -170,11 +195,14 @@ def lesson(name: str) -> Lesson:
     Raises:
         LabError: There is no such lesson.
     """
-    return load(name).begin()
+    found = load(name)
+    if settings.in_kernel():
+        learner_time.install()
+    return found.begin()
 
 
 def load(name: str) -> Lesson:
-    """Return a lesson without getting ready for it.
+    """Return a lesson without preparing its exercises.
 
     Raises:
         LabError: There is no such lesson.
@@ -191,10 +219,7 @@ def load(name: str) -> Lesson:
 
 
 def lesson_names() -> list[str]:
-    """Return the names of all lessons that have exercises or quizzes.
-
-    A module whose name starts with `_` is a part of others.
-    """
+    """Return the names of all lessons. A module whose name starts with `_` is none."""
     package = importlib.import_module(PACKAGE)
     names = (module.name for module in pkgutil.iter_modules(package.__path__))
     return sorted(name for name in names if not name.startswith('_'))

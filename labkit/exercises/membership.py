@@ -1,9 +1,9 @@
-"""A learner shares progress with a class: asked for once, shown, and ended at any time.
+"""Share a learner's progress with a class, until the learner ends it.
 
-A class has a folder, and in it a folder for each learner, with one file: the learner's sheet (see
-`class_sheet`). On a hub the hub makes these folders, each for one account; elsewhere a folder that
-all computers reach will do, such as one of a network drive. Whenever something is noted in the
-progress file, a thread writes the sheet anew: a drive that does not answer holds up no check.
+A class has a folder, and in it a folder for each learner with one file: the learner's sheet (see
+`class_sheet`). On a hub the hub makes these folders, each for one account; elsewhere any folder
+that all computers reach will do, such as one on a network drive. After each change of the progress
+file a thread rewrites the sheet, so a drive that does not answer delays no check.
 """
 
 from __future__ import annotations
@@ -19,21 +19,20 @@ from pathlib import Path
 
 from labkit import settings
 from labkit.errors import LabError
-from labkit.exercises.attempts import progress_store
 from labkit.exercises.class_sheet import FILE_NAME, sheet_text
-from labkit.files import locked, write_atomically
+from labkit.exercises.progress_store import progress_store
+from labkit.files import locked, read_json, write_atomically
 from labkit.views.card import Card
 
 __all__ = ['follow_class', 'join_class', 'leave_class', 'wait_until_sent']
 
 FOLDER_VARIABLE = 'LABKIT_CLASS_FOLDER'
-# JupyterHub tells each server whose it is.
+# Set by JupyterHub.
 _HUB_USER = 'JUPYTERHUB_USER'
 LONGEST_NAME = 40
-# Teachers read it; on a hub, the folder around it keeps everybody else out.
+# Readable for teachers; on a hub, the folder around it keeps everybody else out.
 _FILE_MODE, _FOLDER_MODE = 0o644, 0o755
-# So long a notebook waits for another one that writes, and at its end for what is still to be
-# written, s.
+# How long a notebook waits for another one to write, and at its end for its last sheet, s.
 _LOCK_SEC, _LAST_SEC = 5.0, 2.0
 _WHAT = (
     'Shared are the lesson that is open, and of each exercise and question: how often you tried, '
@@ -45,11 +44,11 @@ _WHAT = (
 
 @dataclass(frozen=True)
 class _Membership:
-    """Where a learner's sheet goes.
+    """The location of a learner's sheet.
 
     Attributes:
-        folder: That of the class.
-        name: That of the learner's folder in it.
+        folder: The class's folder.
+        name: Name of the learner's folder in it.
     """
 
     folder: Path
@@ -57,26 +56,26 @@ class _Membership:
 
     @property
     def sheet(self) -> Path:
-        """The learner's file."""
+        """Path of the sheet."""
         return self.folder / self.name / FILE_NAME
 
 
 def join_class(name: str | None = None, *, folder: str | os.PathLike[str] | None = None) -> Card:
     """Share your progress with your class from now on, in all notebooks, until `leave_class()`.
 
-    Without anything given it shows what is shared, if you have joined already.
+    Without arguments it shows what is shared, if you have joined already.
 
     Args:
-        name: What you are called there; on a hub, the name that you log in with.
-        folder: The folder of the class; on a hub, or where the teacher has set
-            `LABKIT_CLASS_FOLDER`, it is known.
+        name: Your name in the class; on a hub, by default your login name.
+        folder: The folder of the class; by default `LABKIT_CLASS_FOLDER`, which a hub or your
+            teacher sets.
 
     Returns:
-        A card with what is shared, where, and how to end it.
+        A card that shows what is shared, where, and how to end it.
 
     Raises:
-        LabError: There is no such folder, the name is taken or can't be one, or nothing can be
-            written there. Then nothing is shared.
+        LabError: There is no such folder, it can't be written to, or the name is taken or invalid.
+            Then nothing is shared.
     """
     if settings.audience().same_each_time:
         text = 'Nothing is shared while a program runs the notebook.'
@@ -87,10 +86,10 @@ def join_class(name: str | None = None, *, folder: str | os.PathLike[str] | None
         settings.state_dir().mkdir(parents=True, exist_ok=True)
         with _lock():
             if wanted != old:
-                _make_place(wanted)
+                _make_folder(wanted)
             text = _send(wanted)
             if wanted != old:
-                _note(wanted)
+                _save_or_undo(wanted)
                 _remove_sheet(old)
     except OSError as error:
         raise LabError(
@@ -101,13 +100,13 @@ def join_class(name: str | None = None, *, folder: str | os.PathLike[str] | None
 
 
 def leave_class() -> Card:
-    """Share your progress no more, and delete what was shared.
+    """Stop sharing your progress, and delete what was shared.
 
     Returns:
-        A card that says so.
+        A card that confirms it.
 
     Raises:
-        LabError: What was shared can't be deleted. No more is shared all the same.
+        LabError: The shared file can't be deleted. Sharing stops all the same.
     """
     old = _read()
     if old is None:
@@ -125,17 +124,17 @@ def leave_class() -> Card:
 
 
 class _Sender:
-    """Writes the sheet whenever it is asked to, in a thread of its own.
+    """Writes the sheet on request, in its own thread.
 
     Attributes:
-        at: The lesson of this notebook, and since when it is open.
+        at: The lesson of this notebook, and when it was opened.
     """
 
     def __init__(self) -> None:
         self.at: tuple[str, datetime | None] = ('', None)
         self._changed = threading.Condition()
-        # How often it was asked, and what of that is done.
-        self._asked = self._done = 0
+        # Number of requests, in all and done.
+        self._requested = self._done = 0
         self._thread: threading.Thread | None = None
 
     def ask(self) -> None:
@@ -143,7 +142,7 @@ class _Sender:
         if not _path().exists():
             return
         with self._changed:
-            self._asked += 1
+            self._requested += 1
             self._changed.notify_all()
             if self._thread is None or not self._thread.is_alive():
                 self._thread = threading.Thread(
@@ -152,22 +151,21 @@ class _Sender:
                 self._thread.start()
 
     def wait(self, timeout_sec: float) -> bool:
-        """Wait until all that was asked is done; return whether it is."""
+        """Wait until all requests are done; return whether they are."""
         with self._changed:
-            return self._changed.wait_for(lambda: self._done == self._asked, timeout_sec)
+            return self._changed.wait_for(lambda: self._done == self._requested, timeout_sec)
 
     def _work(self) -> None:
         while True:
             with self._changed:
-                self._changed.wait_for(lambda: self._done != self._asked)
-                asked = self._asked
-            # What could not be written now is in the next one.
-            with contextlib.suppress(OSError), _lock():
+                self._changed.wait_for(lambda: self._done != self._requested)
+                requested = self._requested
+            with contextlib.suppress(OSError), _lock():  # the next sheet has it all
                 membership = _read()
                 if membership is not None:
                     _send(membership)
             with self._changed:
-                self._done = asked
+                self._done = requested
                 self._changed.notify_all()
 
 
@@ -175,11 +173,7 @@ _sender = _Sender()
 
 
 def follow_class(lesson: str) -> None:
-    """Share from now on what is noted in this notebook, if the learner has joined a class.
-
-    Args:
-        lesson: The lesson that was opened.
-    """
+    """Share progress from the notebook of a lesson, if the learner has joined a class."""
     if settings.audience().same_each_time:
         return
     if _sender.at[0] != lesson:
@@ -191,46 +185,46 @@ def follow_class(lesson: str) -> None:
 
 
 def wait_until_sent(timeout_sec: float) -> bool:
-    """Wait until all that has happened is written; return whether it is."""
+    """Wait until the sheet is up to date; return whether it is."""
     return _sender.wait(timeout_sec)
 
 
-# --- What is written -----------------------------------------------------------------------------
+# --- The class's folder --------------------------------------------------------------------------
 
 
 def _send(membership: _Membership) -> str:
-    """Write the sheet; return it."""
+    """Write the sheet, and return its text."""
     text = sheet_text(progress_store.store.read()[0], *_sender.at)
-    # Not through a link that somebody else in a shared folder has laid.
+    # Not through a link that another user of the shared folder may have made.
     write_atomically(membership.sheet, text.encode(), follow_links=False, mode=_FILE_MODE)
     return text
 
 
-def _make_place(wanted: _Membership) -> None:
-    """Make the learner's folder, or find the one that the hub has made."""
-    place = wanted.sheet.parent
+def _make_folder(wanted: _Membership) -> None:
+    """Make the learner's folder, unless the hub has made it."""
+    own = wanted.sheet.parent
     if not wanted.folder.is_dir():
         raise LabError(
             f'The folder of the class, {str(wanted.folder)!r}, is not there.',
             todo='Ask your teacher for the right one.',
         )
-    if _made_by_hub(wanted) and place.is_dir():
+    if _made_by_hub(wanted) and own.is_dir():
         return
     try:
-        place.mkdir()
+        own.mkdir()
     except FileExistsError:
         raise LabError(
             f'There is a {wanted.name!r} in {str(wanted.folder)!r} already.',
             todo='Choose another name. If it is yours, from another computer, delete it first.',
         ) from None
-    place.chmod(_FOLDER_MODE)
+    own.chmod(_FOLDER_MODE)
 
 
 def _remove_sheet(membership: _Membership | None) -> None:
     if membership is not None:
         membership.sheet.unlink(missing_ok=True)
         if not _made_by_hub(membership):
-            with contextlib.suppress(OSError):  # something else is in it
+            with contextlib.suppress(OSError):  # not empty
                 membership.sheet.parent.rmdir()
 
 
@@ -258,7 +252,7 @@ def _wanted(name: str | None, folder: str | os.PathLike[str] | None) -> _Members
     return _Membership(Path(place).expanduser().absolute(), called)
 
 
-# --- What is remembered --------------------------------------------------------------------------
+# --- The learner's own file ----------------------------------------------------------------------
 
 
 def _path() -> Path:
@@ -269,15 +263,27 @@ def _lock() -> contextlib.AbstractContextManager[None]:
     return locked(_path().with_suffix('.lock'), _LOCK_SEC)
 
 
-def _note(membership: _Membership) -> None:
+def _save(membership: _Membership) -> None:
     data = {'folder': str(membership.folder), 'name': membership.name}
     write_atomically(_path(), json.dumps(data).encode())
 
 
-def _read() -> _Membership | None:
-    """Return what was joined, None if nothing was."""
+def _save_or_undo(membership: _Membership) -> None:
+    """Save a membership; where the home has no room, take back what was sent."""
     try:
-        data = json.loads(_path().read_text(encoding='utf-8'))
+        _save(membership)
+    except OSError as error:
+        _remove_sheet(membership)
+        raise LabError(
+            f'Nothing is shared, because {str(_path())!r} can not be written: {error}.',
+            todo='Is the disk full? Delete what you do not need, and join again.',
+        ) from error
+
+
+def _read() -> _Membership | None:
+    """Return the saved membership, None if there is none."""
+    try:
+        data = read_json(_path())
         return _Membership(Path(data['folder']), str(data['name']))
     except (OSError, ValueError, KeyError, TypeError):
         return None

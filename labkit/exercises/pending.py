@@ -1,7 +1,8 @@
 """A check of what runs in the notebook's own event loop, such as an asyncio task.
 
 That loop stands still while a cell runs, and with it the task. So the check goes on in a thread
-after its cell has ended, and its verdict takes the place of the word 'checking'.
+after its cell has ended, and its verdict takes the place of the word 'checking'. Two checks at
+once would take each other's clocks and probes, so each waits for those begun before it.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections.abc import Callable, Generator
-from typing import Any
+from typing import Any, ClassVar
 
 from labkit.errors import cell_name
 from labkit.exercises.verdict import Verdict
@@ -47,14 +48,31 @@ class Pending:
         check: Returns the verdict. It is called in a thread.
     """
 
+    _last_begun: ClassVar[threading.Thread | None] = None
+
     def __init__(self, name: str, check: Callable[[], Verdict]) -> None:
         self._name = name
         self._check = check
         self._verdict: Verdict | None = None
         self._handle: Any = None
+        self._before: threading.Thread | None = None
         self._thread = threading.Thread(target=self._work, name='labkit check', daemon=True)
 
+    @classmethod
+    def wait_for_all(cls) -> None:
+        """Wait until every check that goes on in a thread has ended."""
+        if cls._last_begun is not None:
+            cls._last_begun.join()
+
+    def _begin(self) -> None:
+        """Check after those that were begun before. Called in the thread that runs cells."""
+        if self._thread.ident is None:
+            self._before, Pending._last_begun = Pending._last_begun, self._thread
+            self._thread.start()
+
     def _work(self) -> None:
+        if self._before is not None:
+            self._before.join()
         self._verdict = self._check()
         if self._handle is not None:
             self._handle.update(self._verdict)
@@ -69,14 +87,13 @@ class Pending:
         from IPython.display import display
 
         self._handle = display(self._card(), display_id=True)  # type: ignore[no-untyped-call]
-        self._thread.start()
+        self._begin()
 
     def __await__(self) -> Generator[Any, None, Verdict]:
+        self._begin()
         return asyncio.to_thread(self._result).__await__()
 
     def _result(self) -> Verdict:
-        if self._thread.ident is None:
-            self._thread.start()
         self._thread.join()
         assert self._verdict is not None
         return self._verdict

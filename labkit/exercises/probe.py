@@ -13,15 +13,17 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any
 
-from labkit.background.progress_bar import ProgressBar
+from labkit import stop_button
+from labkit.background.wait import wait_for
 from labkit.exercises.callbacks import Callbacks, find_node, is_given
-from labkit.exercises.fair_clock import FairClock
 from labkit.exercises.scope import Scope
 from labkit.exercises.verdict import Fail, LearnerError
 from labkit.exercises.watch import Watch, build
+from labkit.progress_bar import ProgressBar
 from labkit.rosgraph.names import EVERY_NODE_HAS, is_hidden
 
 if TYPE_CHECKING:
+    from labkit.exercises.life import Life
     from labkit.rosgraph.endpoints import Endpoint
     from labkit.rosgraph.servers import Server
 
@@ -29,13 +31,18 @@ __all__ = ['Probe']
 
 # Waits are for events, and end long before this.
 TIMEOUT_SEC = 20.0
-# How often messages and graph are looked at; it bounds how long an answer waits to be seen.
-POLL_SEC = 0.004
 # How long something that is not there may still be on its way: from a thread of this process,
-# from a process that was started a moment ago, or because ROS itself was.
+# because ROS itself was started by this check, or from a process that has come into the graph.
 THREAD_GRACE_SEC = 0.15
-PROCESS_GRACE_SEC = 3.0
+DISCOVERY_SEC = 3.0
 ENDPOINT_GRACE_SEC = 1.0
+# How often it is looked whether a process is on its way: it costs some milliseconds.
+LOOK_SEC = 0.25
+# So long the learner's code may work for one check, s of real time: what it does in half a minute
+# of its time has to be seen in a moment.
+WORK_SEC = 4.0
+# A node's name that was lost on the way is told again when Fast DDS asks, each 3 s.
+NAMED_SEC = 10.0
 
 
 class Probe:
@@ -51,9 +58,13 @@ class Probe:
         node: The hidden node.
         callbacks: What the learner's callbacks do meanwhile.
         logs: The log messages of all nodes, from the start of the check.
+        life: What was seen while time passed, the last time that it did; None before.
         lived_sec: How much virtual time has passed for nodes of the learner's, s.
         held_lines: How many lines they wrote meanwhile. They are not shown.
         lives_sec: How much of it is to pass just now, s.
+        work_sec: How long the learner's code may still work for this check, s of real time.
+        began: When the cell of the check began, ns since 1970.
+        moved_clocks: Full names of the nodes of other processes whose clocks were ahead meanwhile.
     """
 
     def __init__(
@@ -72,27 +83,66 @@ class Probe:
         self._end = time.monotonic() + timeout_sec
         self._stopped: float | None = None
         self._begun = time.monotonic()
+        self.began = time.time_ns()
         self._bar = ProgressBar('Checking')
+        self.life: Life | None = None
         self.lived_sec = 0.0
         self.lives_sec = 1.0
+        self.work_sec = WORK_SEC
         self.held_lines = 0
+        self.moved_clocks: set[str] = set()
+        # See `starting_children`.
+        self._used: dict[int, float] = {}
+        # Nodes of other processes that have answered.
+        self._met: set[str] = set()
 
     def __enter__(self) -> Probe:
+        with contextlib.ExitStack() as undo:
+            undo.enter_context(stop_button.held())
+            undo.callback(self._finish)
+            self._begin()
+            self._undo = undo.pop_all()
+        return self
+
+    def _begin(self) -> None:
         from labkit.background.nodes import helper_node
         from labkit.background.runtime import runtime
 
         self._fresh = not runtime.started
         runtime.start()
+        self.began = runtime.console.cell_began or self.began
         self.callbacks = Callbacks()
         self.node = helper_node(f'_check_{self.name}')
+        self._meet_others()
         self.logs = self.watch('/rosout', 'rcl_interfaces/msg/Log')
-        return self
+
+    def _meet_others(self) -> None:
+        """Wait until the nodes of other processes answer: then all of their ends are known.
+
+        A process tells its nodes' names later than what they publish.
+        """
+        from labkit.rosgraph.whose import all_are_named, foreign_nodes
+
+        wait_for(lambda: all_are_named(self.node), NAMED_SEC)
+        self._meet(foreign_nodes(self.node))
+
+    def _meet(self, names: Iterable[str]) -> None:
+        from labkit.asking.service_calls import wait_until_spun
+
+        for name in sorted(names):
+            ours = is_hidden(name) or is_given(name, self.scope)
+            if not ours and wait_until_spun(self.spun_node, name):
+                self._met.add(name)
 
     def __exit__(self, *_: object) -> None:
+        self._undo.close()
+
+    def _finish(self) -> None:
         self._bar.close()
         from rclpy.exceptions import InvalidHandle
 
-        with contextlib.suppress(InvalidHandle):  # a learner's thread has shut ROS down
+        # A learner's thread may have shut ROS down.
+        with contextlib.suppress(InvalidHandle):
             self.node.destroy_node()  # type: ignore[no-untyped-call]
 
     # -- time -----------------------------------------------------------------------------------
@@ -128,63 +178,85 @@ class Probe:
         Raises:
             LearnerError: A callback of a node under test raised meanwhile.
         """
-        clock, left = FairClock(), self.time_left
-        longest = left if timeout_sec is None else min(timeout_sec, left)
-        while True:
+
+        def look() -> bool:
             for watch in self._watches:
                 watch.pump()
             if condition():
                 return True
             self.callbacks.raise_new_error(self.scope)
-            if clock.seconds >= longest or not self.time_left:
-                return False
             seconds = time.monotonic() - self._begun
             self._bar.show(None, f'watching in real time, {seconds:.0f} s')
-            time.sleep(POLL_SEC)
+            return False
+
+        left = self.time_left
+        return wait_for(look, left if timeout_sec is None else min(timeout_sec, left))
 
     def wait_to_appear(self, condition: Callable[[], object]) -> bool:
         """Wait for something that is not there, as long as it may be on its way."""
-        return self.wait(condition, THREAD_GRACE_SEC) or self.wait(condition, self._grace())
+        if self.wait(condition, THREAD_GRACE_SEC):
+            return True
+        if self._fresh and self.wait(condition, DISCOVERY_SEC):
+            return True
+        known = any(self._starting())
+        with self.uncounted():
+            end = time.monotonic() + self.time_left
+            while (self._starting()[0] or self._unmet()) and time.monotonic() < end:
+                if self.wait(condition, LOOK_SEC):
+                    return True
+                known = True
+                self._meet(self._unmet())
+        return self.wait(condition, ENDPOINT_GRACE_SEC if known else 0.0)
 
-    def _grace(self) -> float:
-        """Return how long what is not there may still be on its way, in seconds."""
-        from labkit.background.patience import busyness
+    def _unmet(self) -> set[str]:
+        """Return the nodes of child processes that may answer, and have not done so yet.
 
-        new, known = self._starting()
-        return busyness() * (PROCESS_GRACE_SEC if new else ENDPOINT_GRACE_SEC if known else 0.0)
+        They may be on the way to what they publish and subscribe to. One that has the last
+        service which rclpy makes, and not the parameter services before it, can't answer.
+        """
+        from labkit.programs.children import child_ids
+        from labkit.rosgraph.whose import nodes_of
+
+        nodes = nodes_of(child_ids().difference(self._settled()), self.node)
+        services = dict(self.spun_node.get_service_names_and_types()) if nodes else {}
+
+        def may_answer(name: str) -> bool:
+            last, asked = f'{name}/get_type_description', f'{name}/list_parameters'
+            return last not in services or asked in services
+
+        return {
+            name
+            for name in nodes - self._met
+            if may_answer(name) and not is_given(name, self.scope)
+        }
+
+    def _settled(self) -> set[int]:
+        """Return the ids of the lesson's processes that say which nodes they have."""
+        from labkit.programs.child_processes import processes
+
+        return set().union(*(p.pids for p in processes() if p.announced is not None))
 
     def _starting(self) -> tuple[bool, bool]:
         """Tell whether something was started lately that is not, or is, in the graph yet."""
         if os.environ.get('ROS_AUTOMATIC_DISCOVERY_RANGE') == 'OFF':
             return False, False
-        from labkit.background.child_processes import processes
-        from labkit.background.children import starting_children
+        from labkit.background.runtime import runtime
+        from labkit.domain_ids import ports
+        from labkit.programs.children import starting_children
 
         # Every node publishes there.
         infos = self.node.get_publishers_info_by_topic('/parameter_events')
-        # Those of the lesson say which nodes they have.
-        settled = [process.pids for process in processes() if process.announced is not None]
         gids = {bytes(info.endpoint_gid) for info in infos}
-        new, known = starting_children(gids, set().union(*settled))
-        return self._fresh or new or self._is_half_seen(), known
-
-    def _is_half_seen(self) -> bool:
-        """Tell whether a node of another process is in the graph, and nothing yet that it does.
-
-        On a busy machine that may be so long after its process was started.
-        """
-        from labkit.rosgraph.whose import foreign_nodes
-
-        active = {end.node for end in (*self.all_publishers(), *self.all_subscriptions())}
-        active |= {server.node for server in self.all_servers()}
-        return bool(foreign_nodes(self.node).intersection(self.node_names()) - active)
+        assert runtime.domain_id is not None
+        domain = ports(runtime.domain_id)
+        return starting_children(gids, self._settled(), domain, self._used)
 
     def process_is_starting(self) -> bool:
         """Tell whether a process was started that is not, or not all, in the graph yet."""
         return self._starting()[0]
 
     def something_is_starting(self) -> bool:
-        """Tell whether a process, or ROS itself, was started a moment ago."""
+        """Tell whether a process was started a moment ago."""
         return any(self._starting())
 
     # -- virtual time ---------------------------------------------------------------------------
@@ -216,6 +288,7 @@ class Probe:
         Raises:
             LearnerError: A callback of a node under test has raised.
         """
+        stop_button.look()
         self.callbacks.raise_new_error(self.scope)
         self._bar.show(seconds / self.lives_sec, f'{seconds:.0f} s of the time of your nodes')
 
@@ -281,7 +354,7 @@ class Probe:
         """Tell whether a node is of this process, or of one that this process has started."""
         if self.node_object(name) is not None:
             return True
-        from labkit.background.children import is_of_child
+        from labkit.programs.children import is_of_child
 
         ends = [*self.all_publishers(), *self.all_subscriptions()]
         return any(end.node == name and is_of_child(end.gid) for end in ends)
@@ -348,12 +421,12 @@ class Probe:
             A function of the fields (see `watch.build`) that publishes one message and returns
             when that was, in seconds of the clock that message stamps use.
         """
+        from labkit.asking.delivery import wait_until_found
         from labkit.rosgraph.interfaces import message_class
 
         publisher = self.node.create_publisher(message_class(msg_type), topic, 10)
         self._publishers.append(publisher)
-        count = len(self.node.get_subscriptions_info_by_topic(topic))
-        self.wait(lambda: publisher.get_subscription_count() >= count, 2.0)
+        wait_until_found(self.spun_node, [publisher])
 
         def send(fields: Mapping[str, Any]) -> float:
             now = time.time()
@@ -374,7 +447,8 @@ class Probe:
             from labkit.background.runtime import runtime
             from labkit.background.tracebacks import short_traceback
 
-            error = runtime.destroy(node)
+            with stop_button.heard_at_once():
+                error = runtime.destroy(node)
             if error is not None:
                 where = f'destroy_node of {endpoint.node}'
                 raise LearnerError(where, error, short_traceback(error))
@@ -387,6 +461,6 @@ class Probe:
 
 
 def _interrupt(gid: bytes) -> bool:
-    from labkit.background.children import interrupt_child
+    from labkit.programs.children import interrupt_child
 
     return interrupt_child(gid)

@@ -1,4 +1,4 @@
-"""How far a learner has come: as a picture, as text, as a table for a teacher."""
+"""A learner's progress as a picture, as text, and as CSV."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from labkit.exercises.attempts import progress_store
 from labkit.exercises.lesson import all_lessons
-from labkit.exercises.standing import entries, onward, row_of
+from labkit.exercises.lesson_progress import entries, onward, row_of
+from labkit.exercises.progress_store import progress_store
 from labkit.views.progress_picture import Row, picture, text_form
 
 __all__ = ['ProgressView', 'main', 'progress']
@@ -27,9 +27,9 @@ class ProgressView:
     """Progress as a picture in a notebook, and as text elsewhere.
 
     Attributes:
-        rows: One a lesson.
-        note: Something about the file.
-        onward: Where to go on: pairs of a text and where it is.
+        rows: One row per lesson.
+        note: A note on the progress file.
+        onward: Places to continue, as pairs of a text and a link.
     """
 
     rows: Sequence[Row]
@@ -54,14 +54,7 @@ def progress() -> ProgressView:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Show progress on the command line, or write it as CSV.
-
-    Args:
-        argv: Arguments after `labkit progress`.
-
-    Returns:
-        Exit code.
-    """
+    """Show progress on the command line, or write it as CSV; return the exit code."""
     parser = argparse.ArgumentParser(
         prog='labkit progress', description='Show which exercises and quiz questions are done.'
     )
@@ -80,6 +73,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     writer.writeheader()
     for lesson in all_lessons():
         writer.writerows(entries(lesson, data))
-    # At once, so that a reader that has seen enough (`| head`) does no harm.
+    # In one piece, so that a reader that stops early (`| head`) does no harm.
     print(table.getvalue(), end='')
     return 0

@@ -1,8 +1,7 @@
-"""The file that remembers a learner's progress, and survives what happens to files.
+"""The progress file.
 
-It is replaced as a whole, so a process that is killed at any moment leaves the old file or the
-new one. Two kernels that write at once wait for each other at a lock. A damaged file is kept
-aside, and said so.
+It is replaced atomically, so a process killed at any moment leaves the old file or the new one. A
+lock serializes kernels that write at once. A damaged file is kept aside and reported.
 """
 
 from __future__ import annotations
@@ -16,12 +15,14 @@ from pathlib import Path
 from typing import Any
 
 from labkit import settings
-from labkit.files import locked, rename_to_free, write_atomically
+from labkit.files import locked, read_json, rename_to_free, write_atomically
 
 __all__ = ['Store']
 
 VERSION = 1
 LOCK_TIMEOUT_SEC = 2.0
+# A valid file has five levels. Python can read many more levels than it can write.
+MAX_LEVELS = 50
 
 Data = dict[str, Any]
 
@@ -29,17 +30,17 @@ Data = dict[str, Any]
 class Store:
     """Read and change the progress file.
 
-    Where a program runs the notebook, nothing is read from the learner's file or written to it:
-    what happens is remembered for as long as the kernel runs.
+    Where a program runs the notebook, the learner's file is not used, and progress is kept in
+    memory.
 
     Args:
-        folder: Where the file is; labkit's state folder if None.
+        folder: Folder of the file; labkit's state folder if None.
     """
 
     def __init__(self, folder: Path | None = None) -> None:
         self._folder = folder
-        unkept = folder is None and settings.audience().same_each_time
-        self._memory: Data | None = _empty() if unkept else None
+        in_memory = folder is None and settings.audience().same_each_time
+        self._memory: Data | None = _empty() if in_memory else None
 
     @property
     def path(self) -> Path:
@@ -47,7 +48,7 @@ class Store:
         return (self._folder or settings.state_dir()) / 'progress.json'
 
     def read(self) -> tuple[Data, str]:
-        """Return what is known, and a note if something is wrong with the file."""
+        """Return the data, and a note if something is wrong with the file."""
         if self._memory is not None:
             return copy.deepcopy(self._memory), ''
         try:
@@ -58,13 +59,10 @@ class Store:
             return self._update(lambda data: None)
 
     def update(self, change: Callable[[Data], None]) -> str:
-        """Change what is known.
+        """Change the data, and return a note if something is wrong with the file.
 
         Args:
-            change: Changes the data it is called with.
-
-        Returns:
-            A note if something is wrong with the file, else `''`. It never raises.
+            change: Changes its argument.
         """
         if self._memory is not None:
             change(self._memory)
@@ -93,18 +91,17 @@ class Store:
         return data, note
 
     def _load(self) -> Data:
-        """Return what the file holds.
+        """Return the data of the file.
 
         Raises:
             ValueError: It is damaged.
             OSError: It can't be read.
         """
         try:
-            text = self.path.read_text(encoding='utf-8')
+            data = read_json(self.path)
         except FileNotFoundError:
             return _empty()
-        data = json.loads(text)
-        if not _is_sound(data):
+        if not _is_valid(data) or _levels(data) > MAX_LEVELS:
             raise ValueError('not a progress file')
         return data  # type: ignore[no-any-return]
 
@@ -124,8 +121,7 @@ def _empty() -> Data:
     return {'version': VERSION, 'lessons': {}}
 
 
-def _is_sound(data: object) -> bool:
-    """Tell whether data has the form that the rest of labkit relies on."""
+def _is_valid(data: object) -> bool:
     if not isinstance(data, dict) or not isinstance(data.get('lessons'), dict):
         return False
     return all(
@@ -137,6 +133,20 @@ def _is_sound(data: object) -> bool:
         )
         for lesson in data['lessons'].values()
     )
+
+
+def _levels(data: object) -> int:
+    """Return the depth of nesting; not recursive, as it may be very deep."""
+    count, level = 0, [data]
+    while level:
+        count += 1
+        level = [
+            inner
+            for outer in level
+            if isinstance(outer, (dict, list))
+            for inner in (outer.values() if isinstance(outer, dict) else outer)
+        ]
+    return count
 
 
 def _values(group: object) -> list[object]:

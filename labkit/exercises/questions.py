@@ -1,4 +1,4 @@
-"""The kinds of quiz questions, and how an answer to each is judged and explained."""
+"""Kinds of quiz questions, which judge and explain answers."""
 
 from __future__ import annotations
 
@@ -32,13 +32,7 @@ LETTERS = 'abcdefghijklmnopqrstuvwxyz'
 
 @dataclass(frozen=True)
 class Option:
-    """An answer that can be chosen; see `right` and `wrong`.
-
-    Attributes:
-        text: The answer.
-        why: Why it is right, or wrong.
-        is_right: Which of the two it is.
-    """
+    """An answer to choose, made by `right` or `wrong`, with an explanation `why`."""
 
     text: str
     why: str
@@ -46,18 +40,18 @@ class Option:
 
 
 def right(text: str, why: str) -> Option:
-    """Return a right answer with the reason why it is."""
+    """Return a right answer with its explanation."""
     return Option(text, why, True)
 
 
 def wrong(text: str, why: str) -> Option:
-    """Return a wrong answer with the reason why it is."""
+    """Return a wrong answer with its explanation."""
     return Option(text, why, False)
 
 
 @dataclass(frozen=True)
 class Feedback:
-    """What is said to an answer.
+    """The verdict on an answer.
 
     Attributes:
         is_right: Whether it is right.
@@ -73,8 +67,8 @@ class Question:
 
     Attributes:
         text: The question.
-        kind: How it is shown: `'radio'`, `'checkbox'` or `'text'`.
-        how: How to answer it, in words.
+        kind: Type of the form's field: `'radio'`, `'checkbox'` or `'text'`.
+        how: The expected kind of answer, in words.
     """
 
     text: str
@@ -82,32 +76,37 @@ class Question:
     how = ''
 
     def labels(self) -> list[str]:
-        """Return the answers to choose from, in the order in which they are shown."""
+        """Return the answers to choose from, in the order shown."""
         return []
 
     def example(self) -> str:
-        """Return an answer as code."""
+        """Return an example of an answer as code."""
         return "'b'"
 
     def judge(self, given: Any) -> Feedback:
-        """Say whether an answer is right, and why.
+        """Judge and explain an answer.
 
         Raises:
-            LabError: It is no answer to this question.
+            LabError: The answer is invalid.
         """
         raise NotImplementedError
 
 
 class _Options(Question):
-    """What `Choice` and `Several` share."""
+    """A question with answers to choose from.
+
+    Args:
+        text: The question.
+        options: The answers, made by `right` and `wrong`.
+    """
 
     def __init__(self, text: str, *options: Option) -> None:
         self.text = text
-        # The right one is mostly written first. Shown is another order, the same each time.
+        # Authors usually write the right one first, so another order is shown, always the same.
         self.options = sorted(options, key=lambda option: zlib.crc32(option.text.encode()))
 
     def labels(self) -> list[str]:
-        """Return the answers to choose from, in the order in which they are shown."""
+        """Return the answers to choose from, in the order shown."""
         return [option.text for option in self.options]
 
     def _chosen(self, given: Any) -> list[int]:
@@ -132,18 +131,13 @@ class _Options(Question):
 
 
 class Choice(_Options):
-    """A question with one right answer.
-
-    Args:
-        text: The question.
-        options: The answers, made by `right` and `wrong`.
-    """
+    """A question with one right answer."""
 
     kind = 'radio'
     how = 'one answer'
 
     def judge(self, given: Any) -> Feedback:
-        """Say whether an answer is right, and why."""
+        """Judge and explain an answer."""
         chosen = self._chosen(given)
         if len(chosen) != 1:
             raise LabError(f'This question has one answer, but {given!r} names {len(chosen)}.')
@@ -154,22 +148,17 @@ class Choice(_Options):
 
 
 class Several(_Options):
-    """A question with any number of right answers, all of which must be chosen, and no others.
-
-    Args:
-        text: The question.
-        options: The answers, made by `right` and `wrong`.
-    """
+    """A question with any number of right answers, all of which must be chosen, and no others."""
 
     kind = 'checkbox'
     how = 'all that are right'
 
     def example(self) -> str:
-        """Return an answer as code."""
+        """Return an example of an answer as code."""
         return "'ac'"
 
     def judge(self, given: Any) -> Feedback:
-        """Say whether an answer is right, and why."""
+        """Judge and explain an answer."""
         chosen = self._chosen(given)
         wanted = [number for number, option in enumerate(self.options) if option.is_right]
         if chosen == wanted:
@@ -188,12 +177,12 @@ class Number(Question):
 
     Attributes:
         text: The question.
-        answer: The number, or a function that reads it off the live graph.
-        why: Why it is that number.
-        otherwise: What to think of when it is another one.
-        wrong: Typical wrong numbers, with what is wrong about each.
-        explain: Says what is wrong about a number by the live graph, '' if it can't tell.
-        tolerance: How far the answer may be off, as a part of it.
+        answer: The number, or a function that determines it from the live graph.
+        why: Explanation of the right answer.
+        otherwise: Advice for any other answer.
+        wrong: Typical wrong numbers, with explanations.
+        explain: Explains a wrong number from the live graph, '' if it can't.
+        tolerance: Relative tolerance.
         unit: The unit, such as `'Hz'`.
     """
 
@@ -208,15 +197,15 @@ class Number(Question):
 
     @property
     def how(self) -> str:  # type: ignore[override]
-        """Return how to answer it, in words."""
+        """The expected kind of answer, in words."""
         return f'a number, in {self.unit}' if self.unit else 'a number'
 
     def example(self) -> str:
-        """Return an answer as code."""
+        """Return an example of an answer as code."""
         return '2.5'
 
     def judge(self, given: Any) -> Feedback:
-        """Say whether an answer is right, and why."""
+        """Judge and explain an answer."""
         numbers = self._numbers(given)
         if not numbers:  # it has another unit
             return Feedback(False, [('why', self._mistake(spelling.numbers(str(given))))])
@@ -228,16 +217,16 @@ class Number(Question):
         return Feedback(False, [('why', why)])
 
     def _mistake(self, numbers: Sequence[float]) -> str:
-        """Return what is wrong about a typical wrong number, '' if it is none."""
+        """Return the explanation of a typical wrong number, '' if it is none."""
         for number, (value, why) in product(numbers, self.wrong.items()):
-            # Nobody types all decimals of a number that has many.
+            # Nobody types all decimals.
             off = 1e-9 if float(value).is_integer() else 0.005
             if math.isclose(number, value, rel_tol=max(off, self.tolerance / 2)):
                 return why
         return ''
 
     def _numbers(self, given: Any) -> list[float]:
-        """Return what an answer may mean; nothing if it is a typical wrong one in another unit.
+        """Return the possible values; none if it is a typical wrong number in another unit.
 
         Raises:
             LabError: It is no number, or has another unit.
@@ -262,14 +251,13 @@ class Word(Question):
 
     Attributes:
         text: The question.
-        answer: The word, several that are right, or a function that reads them off the graph.
-        why: Why it is that word.
-        otherwise: What to think of when it is another one.
-        wrong: Typical wrong words, with what is wrong about each.
-        explain: Says what is wrong about a word by the live graph, '' if it can't tell.
-        form: Returns the same text for spellings that mean the same, see `spelling`. `explain`
-            gets the word in this form.
-        how: How to answer it, in words.
+        answer: The word, several right ones, or a function that determines them from the graph.
+        why: Explanation of the right answer.
+        otherwise: Advice for any other answer.
+        wrong: Typical wrong words, with explanations.
+        explain: Explains a wrong word from the live graph, '' if it can't.
+        form: Normalizes the spelling, see `spelling`. `explain` gets the normalized word.
+        how: The expected kind of answer, in words.
     """
 
     text: str
@@ -282,11 +270,11 @@ class Word(Question):
     how: str = 'a word'
 
     def example(self) -> str:
-        """Return an answer as code."""
+        """Return an example of an answer as code."""
         return "'/talker'"
 
     def judge(self, given: Any) -> Feedback:
-        """Say whether an answer is right, and why."""
+        """Judge and explain an answer."""
         word = self.form(given) if isinstance(given, str) else ''
         if not word:
             raise LabError(
@@ -303,7 +291,7 @@ class Word(Question):
 
 
 def _nearly(word: str, rights: Collection[str]) -> str:
-    """Say what is wrong about a word that is nearly right, '' if it is not."""
+    """Explain a word that is nearly right, '' if it is not."""
     for one in rights:
         if word.casefold() == one.casefold():
             return 'Capital and small letters differ in names.'
@@ -316,5 +304,4 @@ def _nearly(word: str, rights: Collection[str]) -> str:
 
 
 def _value(answer: Any) -> Any:
-    """Return an answer, read off the graph if that is how it is given."""
     return answer() if callable(answer) else answer

@@ -1,7 +1,7 @@
-"""Quizzes: questions whose every answer is explained, the wrong ones too.
+"""Quizzes: questions with an explanation for each answer, right or wrong.
 
-In a notebook a quiz is a form; anywhere else, and where a program runs the notebook, it is text,
-and `quiz.answer(1, 'b')` answers it. Answers may be read off the live graph at that moment.
+In a notebook a quiz is a form; elsewhere, and where a program runs the notebook, it is text, and
+`quiz.answer(1, 'b')` answers it. The right answer may depend on the live graph.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from typing import Any
 
 from labkit import settings
 from labkit.errors import LabError
-from labkit.exercises.attempts import progress_store
 from labkit.exercises.learner_errors import last_cell
+from labkit.exercises.progress_store import progress_store
 from labkit.exercises.questions import LETTERS, Question
 from labkit.views.card import Card
 
@@ -20,11 +20,11 @@ __all__ = ['Quiz']
 
 
 class Quiz:
-    """Some questions. Displayed, it is a form; `answer()` answers it in code.
+    """A list of questions. Displayed, it is a form; `answer()` answers one in code.
 
     Args:
-        name: Its name, for `lesson.quiz('name')` and for the progress.
-        questions: The questions, in their order.
+        name: Its name, for `lesson.quiz('name')` and in the progress file.
+        questions: The questions.
         cell_id: Id of the notebook cell that shows it.
     """
 
@@ -42,14 +42,14 @@ class Quiz:
         """Answer a question.
 
         Args:
-            number: Which one, from 1.
+            number: The question's number, from 1.
             given: A letter, several letters, a number or a word.
 
         Returns:
-            What is right or wrong about it, and why.
+            A card that explains what is right or wrong.
 
         Raises:
-            LabError: There is no such question, or this is no answer to it.
+            LabError: There is no such question, or the answer is invalid.
         """
         last_cell.asked()
         if not isinstance(number, int) or not 1 <= number <= len(self):
@@ -76,8 +76,7 @@ class Quiz:
         return {'text/plain': repr(self)}
 
     def _ipython_display_(self) -> None:
-        # Without ipywidgets and anywidget the text is shown.
-        with contextlib.suppress(ImportError):
+        with contextlib.suppress(ImportError):  # no ipywidgets or anywidget: show text
             if settings.audience().live:
                 from labkit.views.quiz import quiz_form
 
@@ -91,7 +90,7 @@ class Quiz:
         raise NotImplementedError  # then IPython asks for the bundle
 
     def form_data(self) -> list[dict[str, Any]]:
-        """Return the questions as a form needs them, without what is right."""
+        """Return the questions for the form, without the right answers."""
         return [
             {
                 'text': question.text,

@@ -1,4 +1,4 @@
-"""Remember what happens once: messages that are sent before a check is there to hear them."""
+"""Record messages that are sent once, before a check can receive them."""
 
 from __future__ import annotations
 
@@ -9,26 +9,23 @@ import time
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from labkit import settings
 from labkit.errors import LabError
 from labkit.exercises.watch import Sample, Watch
 
 __all__ = ['Recorder', 'Recording']
 
 _numbers = itertools.count()
-# How many messages of an earlier check are kept, at most.
+# Most messages to keep from an earlier check.
 MAX_KEPT = 100
 
 
 class Recording(Watch):
-    """What has come on a topic. It outlives a stop of ROS.
-
-    Args:
-        topic: Full name of the topic.
-        msg_type: Name of its type.
+    """The messages on a topic, which survive a stop of ROS.
 
     Attributes:
-        samples: What has come since the last verdict.
-        earlier: What the check before has kept of what came before it, see `keep`.
+        samples: Messages since the last verdict.
+        earlier: Messages that the previous check has kept, see `keep`.
     """
 
     def __init__(self, topic: str, msg_type: str) -> None:
@@ -42,17 +39,17 @@ class Recording(Watch):
         self._watch: Watch | None = None
 
     def listen(self, node: Any) -> None:
-        """Hear what comes from now on; without effect if this node listens already.
+        """Subscribe, unless this node has already.
 
         Raises:
-            RuntimeError: In this process the topic has another type. LabError, likewise.
+            RuntimeError, LabError: The topic has another type in this process.
         """
         if self._node is not node:
             self._watch = Watch(node, self.topic, self.msg_type, reliable=False)
             self._node = node
 
     def pump(self) -> None:
-        """Take what has arrived."""
+        """Take the messages that have arrived."""
         from rclpy.exceptions import InvalidHandle
 
         if self._watch is None:
@@ -65,24 +62,24 @@ class Recording(Watch):
             self.last_arrival = self._watch.last_arrival
 
     def keep(self, samples: Iterable[Sample]) -> None:
-        """Let the next check find these in `earlier`: they are no whole attempt yet."""
+        """Keep messages of an incomplete attempt for the next check, in `earlier`."""
         self._kept = list(samples)[-MAX_KEPT:]
 
     def forget(self) -> None:
-        """Forget what has come, but for what is to be kept."""
+        """Forget all messages except those to keep."""
         self.samples.clear()
         self.earlier, self._kept = self._kept, []
 
     def close(self) -> None:
-        """Stop listening. What has come stays."""
+        """Unsubscribe. The messages stay."""
         if self._watch is not None:
             self._watch.close()
 
 
 class Recorder:
-    """A hidden node that listens to some topics for as long as the lesson is used.
+    """A hidden node that listens to some topics while the lesson is used.
 
-    It is seen by publishers, as any subscription is. So only exercises that need it have it.
+    Publishers see its subscriptions, so only exercises that need it have one.
 
     Args:
         topics: Names of the topics, with their types.
@@ -93,7 +90,7 @@ class Recorder:
         self._node: Any = None
 
     def keep(self) -> None:
-        """Take what has come; start, or start again after `lab.stop()`, if ROS is up."""
+        """Take the messages; subscribe first, also after a `lab.stop()`, if ROS is up."""
         from labkit.background.runtime import runtime
 
         if not runtime.started:
@@ -101,24 +98,24 @@ class Recorder:
         from labkit.background.nodes import helper_node, node_exists
 
         if self._node is None or not node_exists(self._node):
-            # Each has a name of its own: in a kernel a second node of a name replaces the first.
+            # With a unique name: in a kernel a second node of a name replaces the first.
             self._node = helper_node(f'_recorder_{os.getpid()}_{next(_numbers)}')
-        if self.keep not in runtime.after_start:
-            # Whoever publishes when ROS is back may wait for a subscription.
-            runtime.after_start.append(self.keep)
+        if self.keep not in settings.after_start:
+            # The learner's publisher may wait for a subscription.
+            settings.after_start.append(self.keep)
         for recording in self._recordings.values():
-            # As long as a topic has another type in this process, ROS refuses this one.
+            # ROS refuses while the topic has another type in this process.
             with contextlib.suppress(RuntimeError, LabError):  # RCLError has no public name
                 recording.listen(self._node)
             recording.pump()
 
     def watches(self) -> dict[str, Recording]:
-        """Return what has come on each topic so far."""
+        """Return the recording of each topic."""
         self.keep()
         return self._recordings
 
     def forget(self) -> None:
-        """Forget what has come, but for what is to be kept."""
+        """Forget all messages except those to keep."""
         self.keep()
         for recording in self._recordings.values():
             recording.forget()

@@ -1,4 +1,4 @@
-"""What an exercise asks for on the graph, as data, and what of it shows an attempt."""
+"""The nodes, topics and services that an exercise asks for, and which nodes are an attempt."""
 
 from __future__ import annotations
 
@@ -12,16 +12,17 @@ if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
     from labkit.rosgraph.servers import Server
 
-__all__ = ['PUBLISHER', 'SERVICE', 'SUBSCRIPTION', 'Role', 'Scope']
+__all__ = ['NODE', 'PUBLISHER', 'SERVICE', 'SUBSCRIPTION', 'Role', 'Scope']
 
 PUBLISHER, SUBSCRIPTION, SERVICE = 'publisher', 'subscription', 'service'
-# What a node does: one of the three words above, and the name of the topic or service.
+NODE = 'node'
 Role = tuple[str, str]
+"""One of the words above, and the name of the topic, service or node."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Scope:
-    """What an exercise asks for, and what its lesson has besides.
+    """The roles that an exercise asks for, and the rest of its lesson.
 
     Attributes:
         publishes: Topics on which the learner's nodes publish, with their types.
@@ -29,12 +30,12 @@ class Scope:
         serves: Services that they offer, with their types.
         nodes: Full names of nodes that the task asks for.
         shared: Topics on which others may publish too.
-        reliable: Topics on which those who listen ask for reliable delivery, as the robot does.
-        given: Full names of nodes that the lesson itself leaves running, and the ids of the cells
+        reliable: Topics whose subscribers request reliable delivery, as the robot does.
+        given: Full names of nodes that the lesson itself leaves running, with the ids of the cells
             that make them. A node of such a name that another cell has made is the learner's.
-        known: All topics of the lesson. What the learner does on others has a wrong name.
+        known: All topics of the lesson. The learner's use of other topics is a wrong name.
         earlier: Roles that earlier exercises of the lesson ask for: their nodes may still run.
-        of_lesson: Roles that all exercises of the lesson ask for.
+        of_lesson: Roles of all exercises of the lesson.
     """
 
     publishes: Mapping[str, str] = field(default_factory=dict)
@@ -50,7 +51,7 @@ class Scope:
 
     @property
     def roles(self) -> dict[Role, str]:
-        """What the learner's nodes do, with the type of the topic or service."""
+        """The roles of the learner's nodes, with the types of topics and services."""
         kinds = (
             (PUBLISHER, self.publishes),
             (SUBSCRIPTION, self.subscribes),
@@ -66,16 +67,16 @@ class Scope:
 
     @property
     def topics(self) -> tuple[str, ...]:
-        """The topics that the learner's nodes work with, and the services that they offer."""
+        """The topics and services of the roles."""
         return tuple(dict.fromkeys(topic for _, topic in self.roles))
 
     @property
     def sole(self) -> frozenset[str]:
-        """The topics that have one publisher at most."""
+        """The topics with at most one publisher."""
         return frozenset(self.publishes) - self.shared
 
     def msg_type(self, role: Role) -> str:
-        """Return the type that a role is about.
+        """Return the type of a role's topic or service.
 
         Raises:
             LookupError: The exercise does not ask for this role.
@@ -91,17 +92,17 @@ class Scope:
         nodes: Sequence[str],
         servers: Sequence[Server] = (),
     ) -> frozenset[str]:
-        """Return which nodes show an attempt at the exercise.
+        """Return the names of the learner's nodes that are an attempt at the exercise.
+
+        They have one of this exercise's own roles or, if there are none, a similar one under
+        another name. Without roles the names of nodes count. Where earlier exercises ask for all
+        of its roles, those nodes are none that have another role of these.
 
         Args:
-            publishers: All publishers of the learner's.
-            subscriptions: All subscriptions of the learner's.
-            nodes: Full names of all nodes of the learner's.
-            servers: All services of the learner's.
-
-        Returns:
-            The nodes with a role that is this exercise's own. If there are none, those that may
-            mean one, under another name. Names of nodes count where no role is asked for.
+            publishers: The learner's publishers.
+            subscriptions: The learner's subscriptions.
+            nodes: Full names of the learner's nodes.
+            servers: The learner's services.
         """
         ends = [(PUBLISHER, end.node, end.topic, end.msg_type) for end in publishers]
         ends += [(SUBSCRIPTION, end.node, end.topic, end.msg_type) for end in subscriptions]
@@ -110,11 +111,15 @@ class Scope:
             return frozenset(
                 name for wanted in self.nodes for name in nodes if nearest(wanted, [name])
             )
+        if self.roles.keys() <= self.earlier:
+            others = self.earlier - self.roles.keys()
+            done = {node for kind, node, name, _ in ends if (kind, name) in others}
+            ends = [end for end in ends if end[1] not in done]
         exact = frozenset(node for kind, node, name, _ in ends if (kind, name) in self.own)
         return exact or frozenset(node for kind, node, *end in ends if self._may_mean(kind, *end))
 
     def _may_mean(self, kind: str, name: str, type_name: str) -> bool:
-        """Tell whether an endpoint looks like one that is asked for, under another name."""
+        """Return whether an endpoint is similar to one of the exercise's, under another name."""
         if name in self.known:
             return False
         wanted = {other: asked for (what, other), asked in self.own.items() if what == kind}

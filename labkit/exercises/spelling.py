@@ -1,7 +1,7 @@
-"""What an answer means, however it is typed: blanks, quotation marks, labels, units.
+"""Normalize typed answers: blanks, quotation marks, labels, units.
 
-A form is a function that returns two spellings of the same thing as the same text. Capital and
-small letters stay apart where ROS keeps them apart.
+A form is a function that maps all spellings of an answer to the same text. It keeps upper and
+lower case apart where ROS does.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ __all__ = ['constant', 'field_name', 'name', 'numbers', 'ros2_command', 'tidy', 
 
 _QUOTES = '\'"`[]\u2018\u2019\u201a\u201c\u201d\u201e\u00ab\u00bb\u00b4'
 _WHAT = r'(?:node|topic|service|type|field|message)'
-# A line of output, copied with what stands before it: 'Node name: talker'.
+# A line of output that was copied with its label: 'Node name: talker'.
 _LABEL = re.compile(r'^[A-Za-z][A-Za-z ]*:\s+')
 _DIGITS = (
     *('zero', 'one', 'two', 'three', 'four', 'five', 'six', 'seven', 'eight', 'nine', 'ten'),
@@ -34,55 +34,51 @@ _UNITS = {
 
 
 def tidy(text: str) -> str:
-    """Return a text without quotation marks, full stop and extra blanks around it."""
+    """Return a text without surrounding quotation marks, punctuation and blanks."""
     text = ' '.join(unicodedata.normalize('NFKC', text).replace('\u200b', '').split())
     return text.strip(f'{_QUOTES} ').rstrip('.,;:!?').strip(f'{_QUOTES} ')
 
 
 def name(text: str) -> str:
-    """Return the name of a node, topic or service; its slash at the beginning may be left out."""
+    """Return the name of a node, topic or service, without its leading slash."""
     text = _without_words(text)
     return re.sub(r'\s*/\s*', '/', text).strip('/')
 
 
 def type_name(kind: str) -> Callable[[str], str]:
-    """Return the form of names of types: `std_msgs/String` is `std_msgs/msg/String`.
-
-    Args:
-        kind: `'msg'` or `'srv'`.
-    """
+    """Return the form for types of a kind, `'msg'` or `'srv'`, which the name may omit."""
     return lambda text: name(text).replace(f'/{kind}/', '/')
 
 
 def field_name(text: str) -> str:
-    """Return the name of a field, also of one that was copied with its value or its type."""
+    """Return the name of a field, without its value or type."""
     text = re.split(r'\s*[:=]', tidy(text))[0]
     text = re.sub(r'^(?:u?int\d+|float\d+|double|string|bool)\s+', '', text)
     return re.sub(r'^(?:msg|message)?\.', '', _without_words(text))
 
 
 def constant(text: str) -> str:
-    """Return a word in capitals, such as `BEST_EFFORT`, in whatever way it is written."""
+    """Return a constant such as `BEST_EFFORT` in lower case, without blanks and underscores."""
     word = re.split(r'[:.]', tidy(text))[-1].casefold()
     return re.sub(r'^rmwqospolicyreliability|[\s_-]', '', re.sub(r'[\s_-]', '', word))
 
 
 def ros2_command(text: str) -> str:
-    """Return the first two words of a command, without what stands before them."""
+    """Return the first two words of a command, without a prompt and `ros2`."""
     text = re.sub(rf'[{re.escape(_QUOTES)},+]|\band\b', ' ', tidy(text).casefold())
     words = re.sub(r'^\s*[$%!>]?\s*(?:ros2\s+)?', '', text).split()
     return ' '.join(words[:2])
 
 
 def numbers(text: str, unit: str = '') -> list[float]:
-    """Return what a number may mean: `4,5` is 4.5, and `1,500` is 1.5 or 1500.
+    """Return the possible values of a number: `4,5` is 4.5, and `1,500` is 1.5 or 1500.
 
     Args:
         text: The number, in digits or as a word, perhaps with its unit.
-        unit: The unit that it is to have, `''` if any word may follow.
+        unit: The expected unit, `''` for any.
 
     Raises:
-        ValueError: It is no number, or has another unit; its text says which of the two.
+        ValueError: `'no number'`, or the text is the other unit.
     """
     plain = tidy(text).casefold().replace('\u2212', '-').replace('\u2013', '-')
     plain = re.sub(r'^minus ', '-', plain)
@@ -103,7 +99,7 @@ def numbers(text: str, unit: str = '') -> list[float]:
 
 
 def _readings(digits: str) -> list[float]:
-    """Return the numbers that digits with points and commas may stand for."""
+    """Return the possible values of digits with points and commas."""
     if ',' in digits and '.' in digits:
         thousands = min(',.', key=digits.rfind)
         digits = digits.replace(thousands, '')
@@ -114,7 +110,7 @@ def _readings(digits: str) -> list[float]:
 
 
 def _without_words(text: str) -> str:
-    """Return a name without a label, and without the word for what it is."""
+    """Return a name without a label, and without a word such as `node`."""
     text = tidy(_LABEL.sub('', tidy(text)))
     text = re.sub(rf'^(?:the )?(?:{_WHAT} )?', '', text, flags=re.IGNORECASE)
     return tidy(re.sub(rf' {_WHAT}$', '', text, flags=re.IGNORECASE))

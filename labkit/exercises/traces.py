@@ -1,13 +1,14 @@
 """What the learner has made, where nothing of it is what the exercise asks for.
 
-Whoever has written something and is told 'write your code' looks for the fault in the wrong place.
-So a check that finds no attempt names what is new: a node of another name or topic, a class that
-is defined and never used, a process that has ended.
+A learner who has written something and is told 'write your code' looks for the fault in the wrong
+place. So a check that finds no attempt names what is new: a node of another name or topic, a class
+that is defined and never used, a process that has ended.
 """
 
 from __future__ import annotations
 
 import ast
+import contextlib
 import linecache
 import re
 import sys
@@ -17,9 +18,11 @@ from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
 from labkit import settings
+from labkit.exercises import words
 from labkit.exercises.callbacks import is_given
 from labkit.exercises.scope import PUBLISHER, SERVICE, SUBSCRIPTION
 from labkit.exercises.verdict import Fail
+from labkit.files import read_limited
 
 if TYPE_CHECKING:
     from labkit.exercises.probe import Probe
@@ -30,15 +33,16 @@ __all__ = ['refuse_nameless', 'refuse_traces']
 MAX_PROGRAM = 100_000
 
 
-def refuse_traces(probe: Probe, task: str) -> None:
+def refuse_traces(probe: Probe, task: str, starter_id: str) -> None:
     """Raise Fail if the learner has made something that may be meant as an attempt.
 
     Args:
         probe: The probe of the check.
         task: What the exercise asks for, in a few words.
+        starter_id: Id of the cell to edit. What it has made is meant, whatever it does.
     """
     _refuse_ended_nodes(task)
-    _refuse_nodes(probe, task)
+    _refuse_nodes(probe, task, starter_id)
     if settings.in_kernel():
         _refuse_class(task)
     _refuse_process(probe, task)
@@ -64,13 +68,14 @@ def refuse_nameless(probe: Probe, task: str) -> None:
         raise Fail(
             task,
             f'the node {entry.name}, which runs here, and of which the graph has lost the name',
-            why='A node of the same name ended while this one was made, and took its name along.',
-            todo='Run the cell of the node again.',
+            words.NAME_LOST,
         )
 
 
-def _refuse_nodes(probe: Probe, task: str) -> None:
-    """Raise Fail if there is a node that does nothing this lesson knows."""
+def _refuse_nodes(probe: Probe, task: str, starter_id: str) -> None:
+    """Raise Fail if there is a node that does nothing this lesson knows, or of that cell."""
+    from labkit.background.runtime import runtime
+
     asked = {topic for _, topic in probe.scope.of_lesson}
     ends: dict[str, list[str]] = {name: [] for name in _own_nodes(probe)}
     known: set[str] = set()
@@ -91,6 +96,7 @@ def _refuse_nodes(probe: Probe, task: str) -> None:
             ends[server.node].append(f'serves {server.service} ({server.srv_type})')
             if (SERVICE, server.service) in probe.scope.of_lesson:
                 known.add(server.node)
+    known.difference_update(e.name for e in runtime.nodes() if e.cell.cell_id == starter_id)
     new = {name: what for name, what in ends.items() if name not in known}
     if not new:
         return
@@ -99,10 +105,7 @@ def _refuse_nodes(probe: Probe, task: str) -> None:
     raise Fail(
         task,
         f'the node {name}, which {", ".join(what) or "neither publishes nor subscribes"}{other}',
-        why='There is a node of yours, but nothing of it is what this task asks for: compare the '
-        'names of node and topics, and the type, letter by letter.',
-        todo='Change the cell of the node and run it again. A node that belongs elsewhere ends '
-        f'with lab.remove({name!r}).',
+        words.SOMETHING_ELSE.of(node=name),
     )
 
 
@@ -114,9 +117,7 @@ def _refuse_ended_nodes(task: str) -> None:
         raise Fail(
             task,
             f'no node: {name} has ended, because its callback {callback} called rclpy.shutdown()',
-            why='rclpy.shutdown() ends ROS for a whole program. In a notebook it ends the node '
-            'that calls it.',
-            todo='Leave it out, and run the cell of the node again. lab.remove(...) ends a node.',
+            words.SHUT_DOWN,
         )
 
 
@@ -134,8 +135,7 @@ def _refuse_class(task: str) -> None:
     raise Fail(
         task,
         f'the class {name}, and no node of it',
-        why='A class is a plan. Nothing runs before a node is made of it.',
-        todo=f'Make one, and hand it over: lab.spin({name}(...)), with what its __init__ takes.',
+        words.ONLY_A_CLASS.of(name=name),
     )
 
 
@@ -181,7 +181,7 @@ def _is_written(kind: type) -> bool:
 
 def _refuse_process(probe: Probe, task: str) -> None:
     """Raise Fail if a process that this notebook has started for this exercise is over."""
-    from labkit.background.children import ended_children
+    from labkit.programs.children import ended_children
 
     for child in ended_children():
         # The lesson and other exercises have processes that have ended, too.
@@ -191,21 +191,25 @@ def _refuse_process(probe: Probe, task: str) -> None:
         raise Fail(
             task,
             f'a process that this notebook has started, and that has ended{code}',
-            why='A program ends when its last line is done or when an error comes up. '
-            'rclpy.spin(node) in the last line keeps it going.',
-            todo='See what it says: print(subprocess.run([sys.executable, "-c", program], '
-            'capture_output=True, text=True).stderr)',
+            words.PROCESS_ENDED,
         )
 
 
 def _may_mean(probe: Probe, program: str) -> bool:
-    """Tell whether a program works with a topic of this exercise, and in its way."""
-    earlier = {topic for _, topic in probe.scope.earlier}
-    new = any(topic not in earlier for topic in probe.scope.topics)
+    """Tell whether a program works with a topic of this exercise, and in its way.
+
+    Where earlier exercises ask for all of its roles, it is none that has another role of these.
+    """
+    scope = probe.scope
+    earlier = {topic for _, topic in scope.earlier}
+    new = any(topic not in earlier for topic in scope.topics)
+    others = scope.earlier - scope.roles.keys() if scope.roles.keys() <= scope.earlier else ()
+    if any(_makes(program, kind, topic) for kind, topic in others):
+        return False
     return any(
         topic.lstrip('/') in program
         and (topic not in earlier if new else _makes(program, kind, topic))
-        for kind, topic in probe.scope.own
+        for kind, topic in scope.own
     )
 
 
@@ -221,5 +225,6 @@ def _program(command: Sequence[str]) -> str:
     for word in command:
         path = Path(word) if word.endswith('.py') else None
         if path is not None and path.is_file():
-            texts.append(path.read_text(errors='replace')[:MAX_PROGRAM])
+            with contextlib.suppress(OSError):
+                texts.append(read_limited(path).decode(errors='replace')[:MAX_PROGRAM])
     return '\n'.join(texts)

@@ -1,8 +1,8 @@
-"""Exercises that ask each learner of a class for numbers and names of their own.
+"""Exercises with different numbers and names for each learner of a class.
 
-Beside the exercise that the notebook tells stands a function that makes another one of it, with
-other numbers and names in task, check, hints and solution. A seed, such as the learner's name,
-chooses them. Without a seed there is only the first one.
+A function makes variants of the notebook's exercise, with other numbers and names in task, check,
+hints and solution. A seed, such as the learner's name, chooses them. Without a seed there is only
+the notebook's exercise.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ ANOTHER = 'This answers a variant other than yours'
 
 @dataclass(frozen=True, eq=False)
 class Variants:
-    """What an exercise may be instead.
+    """The variants of an exercise.
 
     Attributes:
-        usual: The exercise that the notebook tells.
-        make: Makes another one, and the same one from its numbers and names.
-        guess: Looks at what the learner's nodes do, and returns what `make` would have to be
-            called with, or None. Whether that is so, the check of what is made then says.
-        choices: What there is to choose from. It is so far apart that no usual slip leads from
-            one to another.
+        usual: The notebook's exercise.
+        make: Makes a variant from numbers and names.
+        guess: Looks at the learner's nodes, and returns likely arguments of `make`, or None. The
+            check of that variant then decides.
+        choices: Possible arguments of `make`, so far apart that no usual slip leads from one to
+            another.
     """
 
     usual: Exercise
@@ -46,7 +46,7 @@ class Variants:
     _made: dict[str, Exercise] = field(default_factory=dict)
 
     def values(self, seed: str) -> dict[str, Any]:
-        """Return what a seed chooses: the same in each kernel, on each machine."""
+        """Return the arguments of `make` for a seed: the same on each machine."""
         name = self.usual.name
         return {
             key: among[_number(f'{name} {key} {seed}') % len(among)]
@@ -54,20 +54,17 @@ class Variants:
         }
 
     def of(self, seed: str) -> Exercise:
-        """Return the exercise for a seed; for `''` the one that the notebook tells."""
+        """Return the exercise for a seed; for `''` the notebook's."""
         exercise = self.make(**self.values(seed)) if seed else self.usual
         exercise.variants, exercise.seed = self, seed
         return exercise
 
     def recognise(self, mine: Exercise, verdict: Verdict) -> Verdict:
-        """Return what to say of an answer that another variant may ask for.
+        """Return a FAIL that says so if the answer passes another variant, else `verdict`.
 
         Args:
-            mine: The exercise.
-            verdict: What its own check says.
-
-        Returns:
-            A FAIL that tells, if the check of that other variant passes; else the same verdict.
+            mine: The learner's variant.
+            verdict: The verdict of its own check.
         """
         if verdict.outcome not in (Outcome.FAIL, Outcome.NOT_ATTEMPTED):
             return verdict
@@ -84,12 +81,12 @@ class Variants:
             todo=f'Do it with your own numbers and names: `lesson.{mine.name}` tells them.',
         )
         if mine.once:
-            # The check of the other one has used up what it has looked at.
+            # The check of the other variant has used up the evidence.
             mine.keep(told)
         return told
 
     def _other(self, mine: Exercise) -> Exercise | None:
-        """Return the exercise that the answer seems to be for, None if it is not another one."""
+        """Return the other variant that the answer seems to be for, if any."""
         try:
             with Probe(mine.name, mine.scope) as probe:
                 values = self.guess(probe)
@@ -97,7 +94,7 @@ class Variants:
             return None
         if values is None or not self._is_possible(values):
             return None
-        # Kept: a check may use up what it looks at.
+        # Kept, because a check may use up the evidence.
         other = self._made.setdefault(repr(sorted(values.items())), self.make(**values))
         if other.task == mine.task:
             return None
@@ -122,12 +119,12 @@ def varied(
     guess: Callable[[Probe], Values | None],
     **choices: Sequence[Any],
 ) -> Exercise:
-    """Return an exercise as this learner has it; see `Variants` for what goes in."""
+    """Return this learner's variant of an exercise; arguments as those of `Variants`."""
     return Variants(usual, make, guess, choices).of(settings.variant_seed())
 
 
 def variants_card(exercises: Sequence[Exercise]) -> Card | None:
-    """Return what the tasks of a lesson are for this learner, None if they are the usual ones."""
+    """Return a card with this learner's variants of a lesson's tasks, None if there are none."""
     rows = [
         (exercise.name, '\n'.join(clause.text for clause in exercise.clauses))
         for exercise in exercises

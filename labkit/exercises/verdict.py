@@ -11,9 +11,11 @@ import enum
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from labkit.exercises.mistakes import Mistake
 from labkit.views.card import Card
-from labkit.views.passed import PassedCard
+from labkit.views.passed_card import PassedCard
 from labkit.views.progress_picture import Row
+from labkit.views.time_line import TimeLine
 
 __all__ = ['Fail', 'LearnerError', 'NotAttempted', 'Outcome', 'Verdict']
 
@@ -54,8 +56,10 @@ class Verdict:
         trace: The learner's lines of a traceback, and the message of the error.
         note: Something beside the point, such as a progress file that can't be written.
         clause: What of the task is not fulfilled, in its words; `''` if no clause says so.
+        mistake: The misconception, where it has a name.
         asked: What the task asks for, clause by clause, where all of it is fulfilled.
         standing: The lesson, and what comes next, where that is known.
+        time_line: What came while the check let time pass; None if it let none pass.
     """
 
     outcome: Outcome
@@ -68,8 +72,10 @@ class Verdict:
     trace: str = ''
     note: str = ''
     clause: str = ''
+    mistake: Mistake | None = None
     asked: Sequence[str] = ()
     standing: tuple[Row, Sequence[tuple[str, str]]] | None = None
+    time_line: TimeLine | None = None
 
     @property
     def passed(self) -> bool:
@@ -103,7 +109,14 @@ class Verdict:
         return repr(self._card())
 
     def _repr_html_(self) -> str:
-        return self._card()._repr_html_()
+        page = self._card()._repr_html_()
+        if self.time_line is None:
+            return page
+        start, _, _ = page.rpartition('</div>')
+        shown = self.time_line._repr_html_()
+        if self.passed:
+            shown = f'<details><summary>What came, and when</summary>{shown}</details>'
+        return f'{start}{shown}</div>'
 
 
 def _bounded(text: str, longest: int = LONGEST) -> str:
@@ -119,22 +132,38 @@ class Fail(Exception):
     Args:
         expected: What should have been observed.
         seen: What was observed; values with `!r`.
-        why: The misconception that leads there, in a sentence a beginner understands.
+        mistake: The misconception that leads there, with its next step, where it is known.
+        why: The same in a sentence of its own.
         todo: The next step.
 
     Attributes:
+        mistake: The mistake, None if it has no name.
         clause: What of the task is not fulfilled, in its words; `''` if no clause says so.
         came_first: Whether it was so before a callback raised, and is no consequence of that.
+        made_so: Whether it was so as it was made, whatever callbacks have done since.
+        at: When it was seen, in s of the check's time; None if at no single moment.
     """
 
-    def __init__(self, expected: str, seen: str, *, why: str = '', todo: str = '') -> None:
+    def __init__(
+        self,
+        expected: str,
+        seen: str,
+        mistake: Mistake | None = None,
+        *,
+        why: str = '',
+        todo: str = '',
+    ) -> None:
+        why = why or (mistake.reason if mistake is not None else '')
+        todo = todo or (mistake.step if mistake is not None else '')
         super().__init__(f'{expected} / {seen} / {why} / {todo}')
         self.expected = expected
         self.seen = seen
+        self.mistake = mistake
         self.why = why
         self.todo = todo
         self.clause = ''
-        self.came_first = False
+        self.came_first = self.made_so = False
+        self.at: float | None = None
 
 
 class NotAttempted(Exception):

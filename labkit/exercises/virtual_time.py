@@ -6,23 +6,31 @@ and waits each time until everything that came of it is done. So nothing depends
 machine is, and nothing is rounded. What does not follow ROS time, such as a thread that calls
 `time.sleep()`, goes on in real time meanwhile.
 
-The clock is switched directly and not by the parameter `use_sim_time`: nobody in the graph, and no
-callback of the node's, takes notice of it.
+A callback that sleeps takes virtual time. One that computes, or waits for something else, takes
+none: how long that is depends on the machine. But it can't take more than there is. So code that
+needs more time than passes is found, and time stops early where callbacks need long.
+
+The clocks are switched directly and not by the parameter `use_sim_time`: nobody in the graph, and
+no callback of the node's, takes notice of it.
 """
 
 from __future__ import annotations
 
-import sys
-import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
-from weakref import WeakKeyDictionary, WeakSet
+import contextlib
+import math
+import threading
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, cast
 
+from labkit import stop_button
 from labkit.exercises.fair_clock import FairClock
-from labkit.exercises.hanging import Hanging, Standstill
-from labkit.exercises.threads import OtherThreads, waits
+from labkit.exercises.hanging import Hanging, Standstill, thread_at_work
+from labkit.exercises.learner_time import clock_of, install, is_asleep, learner_time
+from labkit.exercises.threads import OtherThreads
 
 if TYPE_CHECKING:
+    from rclpy.clock import ROSClock
     from rclpy.executors import Executor
     from rclpy.node import Node
     from rclpy.timer import Timer
@@ -33,34 +41,17 @@ __all__ = ['VirtualTime']
 
 NANOSECONDS = 1_000_000_000
 # How often it is looked at what callbacks do, s of real time.
-LOOK_SEC = 0.02
+LOOK_SEC = 0.002
 # How long one may run, and how long none may although some are ready, s of what they could have
 # had: see `fair_clock`.
 HANG_SEC, STILL_SEC = 1.0, 3.0
+# An executor of the learner's own that has not gone round for so long is not waited for again, s.
+ROUND_SEC = 2.0
 # So many callbacks in one moment are a flood: a timer without a period, nodes that answer each
 # other for ever.
 FLOOD = 2000
 # So few are one if they are slow, and have taken so long, s of real time.
-SLOW_FLOOD, SLOW_FLOOD_SEC = 200, 2.0
-# How long a thread that sleeps in a rate may take for its work, s of real time on a calm machine;
-# and how long one that has ended, or waits for something else. So often in a row it has to be seen
-# so: a busy machine may give this thread time, and the other one none.
-RATE_SEC = 3.0
-IDLE_SEC = 0.1
-IDLE_LOOKS = 50
-# How long an executor of the learner's own may take to go round, s of real time.
-ROUND_SEC = 2.0
-POLL_SEC = 0.0002
-
-
-# Where the last stretch of virtual time of a node ended, ns.
-_latest: WeakKeyDictionary[Node, int] = WeakKeyDictionary()
-
-
-# Timers of rates that are not waited for, across checks: the thread works for too long, or none
-# sleeps there any more. The latter are waited for again as soon as one is seen to sleep there.
-_slow: WeakSet[Timer] = WeakSet()
-_left: WeakSet[Timer] = WeakSet()
+SLOW_FLOOD, SLOW_FLOOD_SEC = 40, 2.0
 
 
 class VirtualTime:
@@ -70,12 +61,14 @@ class VirtualTime:
         moving: Nodes for which time passes when `advance` is called.
         standing: Nodes for which it does not.
         remote: Nodes of other processes, for which it passes too.
-        tick: How often they are told the time, s: their timers are not known here.
+        step: How often they are told the time, s: their timers are not known here.
+        work_sec: How long the learner's code may work in all, s of real time. Then time stops.
 
     Attributes:
         flooded: Whether more callbacks came in one moment than could be run.
         hanging: The callback that has not returned, if one has not.
-        tick: As above; it may be changed on the way.
+        overloaded: The callback or thread that has worked for longer than time has passed.
+        overrun: The callback of a timer that has slept for longer than its period.
     """
 
     def __init__(
@@ -84,7 +77,8 @@ class VirtualTime:
         standing: Sequence[Node] = (),
         *,
         remote: RemoteTime | None = None,
-        tick: float = 0.05,
+        step: float = 0.05,
+        work_sec: float = math.inf,
     ) -> None:
         from labkit.background.runtime import runtime
 
@@ -92,13 +86,32 @@ class VirtualTime:
         self._moving = list(moving)
         self._all = [*moving, *(node for node in standing if node not in moving)]
         self._remote = remote
-        self.tick = tick
-        self._start = self._now = self._told = 0
-        self._was_active: list[Node] = []
+        self._step = round(step * NANOSECONDS)
+        self._origin = self._start = self._now = self._told = 0
+        self._clocks: dict[ROSClock, Node] = {}
+        # Executors of the learner's own, and the thread that spins each.
+        self._spinners: dict[Executor, threading.Thread] = {}
         self._stuck: set[Executor] = set()
+        self._work_sec = work_sec
         self._threads = OtherThreads()
+        self._asleep_at: object = None
+        self._asleep_since = 0
         self.flooded = False
         self.hanging: Hanging | None = None
+        self.overloaded: Hanging | None = None
+        self.overrun: Hanging | None = None
+        self._worked = 0.0
+
+    @property
+    def stopped(self) -> bool:
+        """Whether there is no use in going on."""
+        found = self.flooded or self.hanging or self.overloaded
+        return bool(found) or self.worked > self._work_sec
+
+    @property
+    def worked(self) -> float:
+        """How long the learner's code has worked, s of real time."""
+        return self._worked + self._threads.busiest[1]
 
     @property
     def seconds(self) -> float:
@@ -106,41 +119,41 @@ class VirtualTime:
         return (self._now - self._start) / NANOSECONDS
 
     def __enter__(self) -> VirtualTime:
-        from labkit.background import compat
+        with contextlib.ExitStack() as undo:
+            undo.push(self)
+            self._begin()
+            undo.pop_all()
+        return self
 
-        # Timers are due at this time by the computer's clock, so none is late or early. But time
-        # does not go back from one stretch of a node to its next: it may have noted when to act
-        # again. A node that has had none may have noted the time, too, and is not to be late.
-        latest = (_latest[node] for node in self._moving if node in _latest)
-        self._start = self._now = max([time.time_ns(), *latest])
-        for node in self._all:
-            clock: Any = node.get_clock()
-            if clock.ros_time_is_active:
-                self._was_active.append(node)
-            self._set(node)
-            compat.set_ros_time_is_active(clock, True)
+    def _begin(self) -> None:
+        install()
+        with learner_time.changed:
+            # Timers are due at this time by the computer's clock, so none is late or early.
+            self._origin = self._now = learner_time.begin()
+            self._take_clocks(self._all)
         # A timer that was called last in an earlier stretch of virtual time, ahead of this one,
         # begins its period anew when the clock is set for the first time (rcl/src/rcl/timer.c,
         # _rcl_timer_time_jump). So that happens before anything is seen.
-        self._now = self._start = self._start + 1
-        for node in self._all:
-            self._set(node)
+        self._now += 1
+        self._set_all(self._all)
+        self._start = self._now
         self._told = self._now
         if self._remote is not None:
-            self._remote.set(self._now)
+            self._remote.set(self._now + learner_time.ahead)
         self._threads.__enter__()
         self.settle()
-        return self
 
     def __exit__(self, *_: object) -> None:
         from labkit.background import compat
         from labkit.background.nodes import node_exists
 
         self._threads.__exit__()
-        _latest.update(dict.fromkeys(self._moving, self._now))
-        for node in self._all:
-            if node not in self._was_active and node_exists(node):
-                compat.set_ros_time_is_active(node.get_clock(), False)  # type: ignore[arg-type]
+        with learner_time.changed:
+            learner_time.end()
+            for clock, node in self._clocks.items():
+                if node_exists(node):
+                    compat.set_ros_time_is_active(clock, False)
+                learner_time.clocks.discard(clock)
         # They wait for timers as if time stood still.
         for executor in {node.executor for node in self._all if node.executor is not None}:
             executor.wake()
@@ -166,18 +179,18 @@ class VirtualTime:
             Whether all of the time has passed.
         """
         end = self._now + round(seconds * NANOSECONDS)
-        while not (self.flooded or self.hanging):
+        while not self.stopped:
+            stop_button.look()
             ticked = self._next(end)
-            self._now = min([end, self._next_tick(), *ticked.values()])
+            due = (due for due in self._sleepers_due() if due <= end)
+            self._now = min([end, self._next_tick(), *ticked.values(), *due])
             begin()
-            sleepers = _sleepers(timer for timer, due in ticked.items() if due <= self._now)
-            for node in self._moving:
-                self._set(node)
-            self._settle_all(sleepers)
+            self._set_all(self._moving)
+            self._settle_all()
             if self._remote is not None and self._now >= self._next_tick():
                 # Not at each event: to ask another process takes several times as long.
                 self._told = self._now
-                self._remote.set(self._now)
+                self._remote.set(self._now + learner_time.ahead)
                 self._settle()
             if not look():
                 return False
@@ -187,25 +200,15 @@ class VirtualTime:
 
     def settle(self) -> None:
         """Wait until everything that has become ready is done."""
-        self._settle_all(_sleepers(self._timers()))
+        self._settle_all()
         if self._remote is not None:
             self._remote.settle()
             self._settle()
 
-    @property
-    def rates(self) -> bool:
-        """Tell whether there are threads that sleep in a `Rate`, or have done so."""
-        return bool(_sleepers(self._timers()))
-
-    def settle_rates(self) -> None:
-        """Wait until threads sleep in their rates that have left them, and may have come back."""
-        _left.difference_update(self._timers())
-        self.settle()
-
     def _next_tick(self) -> int:
         if self._remote is None or not self._remote.names:
             return self._now + NANOSECONDS * 3600
-        return self._told + round(self.tick * NANOSECONDS)
+        return self._told + self._step
 
     def _next(self, end: int) -> dict[Timer, int]:
         """Return the timers that are due before `end`, and when."""
@@ -217,33 +220,60 @@ class VirtualTime:
                 found[timer] = self._now + left
         return found
 
+    def _sleepers_due(self) -> Iterable[int]:
+        """Return when code of the learner's is due that waits for a moment."""
+        return (max(self._origin + passed, self._now + 1) for passed in learner_time.next())
+
     def _timers(self) -> Iterable[Timer]:
         from labkit.background.nodes import node_exists
 
         for node in self._moving:
             if node_exists(node):
-                clock = node.get_clock()
-                yield from (timer for timer in node.timers if timer.clock is clock)
+                yield from (timer for timer in node.timers if clock_of(timer) in self._clocks)
 
-    def _set(self, node: Node) -> None:
-        from rclpy.time import Time
-
+    def _take_clocks(self, nodes: Iterable[Node]) -> None:
+        """Take the clocks of nodes and of their timers, but those that have another time."""
+        from labkit.background import compat
         from labkit.background.nodes import node_exists
 
-        if node_exists(node):
-            clock: Any = node.get_clock()
-            clock.set_ros_time_override(Time(nanoseconds=self._now, clock_type=clock.clock_type))
+        for node in nodes:
+            if not node_exists(node):
+                continue
+            for clock in {cast('ROSClock', node.get_clock()), *map(clock_of, node.timers)}:
+                # Somebody else may tell it the time, or nobody does: then it stands still.
+                if clock in self._clocks or clock.ros_time_is_active:
+                    continue
+                self._clocks[clock] = node
+                learner_time.clocks.add(clock)
+                self._set(clock)
+                compat.set_ros_time_is_active(clock, True)
 
-    def _settle_all(self, sleepers: Mapping[Timer, set[int]]) -> None:
+    def _set_all(self, nodes: Sequence[Node]) -> None:
+        from labkit.background.nodes import node_exists
+
+        with learner_time.changed:
+            self._take_clocks(nodes)
+            for clock, node in self._clocks.items():
+                if node in nodes and node_exists(node):
+                    self._set(clock)
+            learner_time.move(self._now - self._origin)
+
+    def _set(self, clock: ROSClock) -> None:
+        from rclpy.time import Time
+
+        clock.set_ros_time_override(Time(nanoseconds=self._now, clock_type=clock.clock_type))
+
+    def _settle_all(self) -> None:
         self._settle()
-        for timer, threads in sleepers.items():
-            _wait_for_rate(timer, threads)
-        if sleepers:
-            self._settle()
         # A callback may have handed its work to a thread, and the thread may set off callbacks. An
         # executor of the learner's own spins in such a thread.
         for _ in range(FLOOD):
-            if not self._threads.settle():
+            stop_button.look()
+            ran = self._threads.settle()
+            thread, worked = self._threads.busiest
+            if worked > self.seconds + HANG_SEC:
+                self.overloaded = self.overloaded or thread_at_work(thread, worked)
+            if not ran or self.stopped:
                 return
             self._settle_background()
         self.flooded = True
@@ -252,82 +282,78 @@ class VirtualTime:
         for executor in {node.executor for node in self._all}:
             if executor is self._runtime.executor:
                 self._settle_background()
-            elif executor is None or executor in self._stuck:
-                continue
-            elif not _settle_other(executor):
-                self._stuck.add(executor)
+            elif executor is not None and executor not in self._stuck:
+                self._settle_other(executor)
+
+    def _settle_other(self, executor: Executor) -> None:
+        """Wait until an executor of the learner's own has gone round twice, or sleeps."""
+        for _ in range(2):
+            done = threading.Event()
+
+            def go_round(done: threading.Event = done) -> None:
+                self._spinners[executor] = threading.current_thread()
+                done.set()
+
+            thread = self._spinners.get(executor)
+            if thread is not None and is_asleep(thread):
+                return
+            executor.create_task(go_round)
+            clock, worked = FairClock(thread), self._worked
+            while not done.wait(LOOK_SEC):
+                stop_button.look()
+                self._worked = worked + clock.seconds
+                if self._worked > self.seconds + HANG_SEC and thread is not None:
+                    self.overloaded = thread_at_work(thread, self._worked)
+                if clock.seconds > ROUND_SEC:
+                    self._stuck.add(executor)
+                if self.stopped or executor in self._stuck or self._sleeps(thread):
+                    return
+
+    def _sleeps(self, thread: threading.Thread | None) -> bool:
+        """Tell whether a thread sleeps, or any but this one if it is not known."""
+        if thread is not None:
+            return is_asleep(thread)
+        return any(map(is_asleep, threading.enumerate()))
 
     def _settle_background(self) -> None:
         executor = self._runtime.executor
-        if executor.settle(LOOK_SEC):
+        if self._callback_sleeps() or executor.settle(LOOK_SEC):
             return
-        clock, standstill = FairClock(executor.thread), Standstill()
+        standstill, worked = Standstill(), self._worked
         _, before = standstill.at
         while not executor.settle(LOOK_SEC):
+            stop_button.look()
+            if self._callback_sleeps():
+                return
             stands = standstill.seconds
             running, count = standstill.at
-            slow = clock.seconds > SLOW_FLOOD_SEC
+            self._worked = worked + standstill.clock.seconds
+            late = running is not None and self._worked > self.seconds + HANG_SEC
+            # That so many come in one moment says more than that they take long together.
+            slow = late or standstill.clock.seconds > SLOW_FLOOD_SEC
             self.flooded = count - before > (SLOW_FLOOD if slow else FLOOD)
             if stands > (HANG_SEC if running is not None else STILL_SEC):
                 self.hanging = standstill.what()
-            if self.flooded or self.hanging or not executor.is_open:
+            elif late and not self.flooded:
+                self.overloaded = self.overloaded or standstill.what()
+            if self.stopped or not executor.is_open:
                 return
 
+    def _callback_sleeps(self) -> bool:
+        """Tell whether a callback sleeps: nothing else runs until time has passed.
 
-def _sleepers(timers: Iterable[Timer]) -> dict[Timer, set[int]]:
-    """Return the timers of rates, each with the ids of the threads that sleep in its rate."""
-    from labkit.background.compat import rate_is_awaited, rate_sleepers
-
-    rates = {timer: awaited for timer in timers if (awaited := rate_is_awaited(timer)) is not None}
-    _left.difference_update(timer for timer, awaited in rates.items() if awaited)
-    return {timer: rate_sleepers(timer) for timer in rates}
-
-
-def _wait_for_rate(timer: Timer, threads: set[int]) -> None:
-    """Wait until a thread that was woken by a rate sleeps in it again.
-
-    One that has ended, or works for long, is not waited for again.
-
-    Args:
-        timer: The timer of the rate.
-        threads: Ids of the threads that slept there.
-    """
-    from labkit.background.compat import rate_is_awaited
-    from labkit.background.patience import answer_sec
-
-    if rate_is_awaited(timer):
-        _slow.discard(timer)
-    clock, looks = FairClock(), 0
-    while not (rate_is_awaited(timer) or timer in _slow or timer in _left):
-        passed = clock.seconds
-        if passed > IDLE_SEC:
-            looks = 0 if _is_at_work(timer, threads) else looks + 1
-        if passed > answer_sec(RATE_SEC):
-            _slow.add(timer)
-        if looks > IDLE_LOOKS:
-            _left.add(timer)
-        time.sleep(POLL_SEC if passed < IDLE_SEC else 10 * POLL_SEC)
-
-
-def _is_at_work(timer: Timer, threads: set[int]) -> bool:
-    """Tell whether one of the threads has not ended, and does not wait for something else.
-
-    On a busy machine a thread may take long to leave the rate that has woken it.
-    """
-    from labkit.background.compat import rate_sleepers
-
-    frames = sys._current_frames()
-    inside = rate_sleepers(timer)
-    return any(ident in inside or not waits(frames[ident]) for ident in threads & frames.keys())
-
-
-def _settle_other(executor: Executor) -> bool:
-    """Wait until an executor of the learner's own has gone round twice; tell whether it has."""
-    for _ in range(2):
-        task: Any = executor.create_task(lambda: None)
-        clock = FairClock()
-        while not task.done():
-            if clock.seconds > ROUND_SEC:
-                return False
-            time.sleep(POLL_SEC)
-    return True
+        One that takes too long of that time hangs.
+        """
+        due = learner_time.due_of(self._runtime.executor.thread)
+        if due is None:
+            return False
+        standstill = Standstill()
+        if standstill.at != self._asleep_at:
+            self._asleep_at, self._asleep_since = standstill.at, self._now
+        took = (self._origin + due - self._asleep_since) / NANOSECONDS
+        asleep = replace(standstill.what(), took=took)
+        if took > HANG_SEC:
+            self.hanging = asleep
+        if 0 < asleep.period < took:
+            self.overrun = asleep
+        return True

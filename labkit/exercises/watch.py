@@ -25,7 +25,7 @@ class Sample:
     Attributes:
         message: The message itself.
         stamp: When it was published, by the publisher's clock, in seconds.
-        number: The how manieth message of its publisher it is, from 1; 0 if that is not known.
+        number: Its publisher's sequence number, from 1; 0 if that is not known.
     """
 
     message: Any
@@ -39,9 +39,12 @@ class Lived(Sample):
 
     Attributes:
         at: When it was published in virtual time, in seconds from its beginning.
+        node: Full name of the node that has published it; empty if that is
+            not known, as of another process.
     """
 
     at: float
+    node: str = ''
 
 
 AnySample = TypeVar('AnySample', bound=Sample)
@@ -61,29 +64,27 @@ class Watch:
     def __init__(
         self, node: Any, topic: str, msg_type: str, *, reliable: bool = True, latched: bool = False
     ) -> None:
-        from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+        from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
+        from labkit.asking.listener import Listener, least_profile
         from labkit.rosgraph.interfaces import message_class
 
         self.topic = topic
         self.msg_type = msg_type
         self.samples: list[Sample] = []
         self.last_arrival = self.started = time.monotonic()
-        self._node = node
-        durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
-        reliability = ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT
-        self._subscription = node.create_subscription(
-            message_class(msg_type),
-            topic,
-            lambda message: None,
-            QoSProfile(  # type: ignore[no-untyped-call]
-                depth=DEPTH, reliability=reliability, durability=durability
-            ),
+        profile = least_profile(DEPTH)
+        if reliable:
+            profile.reliability = ReliabilityPolicy.RELIABLE
+        if latched:
+            profile.durability = DurabilityPolicy.TRANSIENT_LOCAL
+        self._listener = Listener(
+            node, topic, message_class(msg_type), lambda message: None, qos_profile=profile
         )
 
     def pump(self) -> None:
         """Take what has arrived."""
-        handle, msg_class = self._subscription.handle, self._subscription.msg_type
+        handle, msg_class = self._listener.subscription.handle, self._listener.msg_type
         with handle:
             # No more than the queue holds: a flood may come faster than it is taken.
             for _ in range(DEPTH):
@@ -126,13 +127,14 @@ class Watch:
             for earlier, later in pairwise(stream)
         ]
 
-    def clear(self) -> None:
-        """Forget what has come so far."""
-        self.samples.clear()
+    def clear(self) -> list[Sample]:
+        """Forget what has come so far, and return it."""
+        forgotten, self.samples = self.samples, []
+        return forgotten
 
     def close(self) -> None:
         """Stop watching. What has come stays."""
-        self._node.destroy_subscription(self._subscription)
+        self._listener.close()
 
     def __len__(self) -> int:
         return len(self.samples)

@@ -1,6 +1,6 @@
-"""A class on JupyterHub: one machine, Docker, Kubernetes. docs/hub.md says how.
+"""A class on JupyterHub: one machine, Docker, Kubernetes. See docs/hub.md.
 
-The engine is JupyterHub. What is here sets it up: who may log in (`class_list`), with which
-account of the system (`accounts`) and first password (`passwords`), with which limits (`spawner`),
-and what a learner's server is (`learner`). `jupyterhub_config.py` puts that together.
+This package configures JupyterHub: who may log in (`class_list`), with which system account
+(`accounts`) and first password (`passwords`), with which limits (`spawner`), and how a learner's
+server starts (`learner`). `jupyterhub_config.py` puts it together.
 """

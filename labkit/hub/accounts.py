@@ -1,4 +1,4 @@
-"""An account of the system for each member of a class: it keeps files and processes apart."""
+"""A system account for each member of a class, to separate files and processes."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from labkit.hub.class_list import Member
 __all__ = ['GROUP', 'make_accounts', 'make_class_folder']
 
 GROUP = 'labkit-class'
-"""The group of all accounts that were made here, by which they are told from others."""
+"""The group of all accounts made here, to tell them from others."""
 
 
 def make_accounts(names: Iterable[str]) -> list[str]:
-    """Make sure that everybody has an account, with a home that nobody else can look into.
+    """Make sure that everybody has an account, with a home that nobody else can read.
 
-    The accounts have no password: nobody can log in to the machine itself with them.
+    The accounts have no password: they can't be used to log in to the machine itself.
 
     Args:
         names: The members of the class.
 
     Returns:
-        Whose account is new.
+        The names of new accounts.
 
     Raises:
-        LabError: A name is that of an account that was not made here, such as `root`. Whoever logs
-            in to the hub would be in it.
+        LabError: A name belongs to an account that was not made here, such as `root`, which a
+            login on the hub would open.
     """
     ours = _members()
     missing = [name for name in names if name not in ours]
@@ -55,13 +55,13 @@ def make_accounts(names: Iterable[str]) -> list[str]:
 
 
 def make_class_folder(folder: Path, members: Sequence[Member]) -> None:
-    """Make sure that each member has a folder for what they share with the class.
+    """Make sure that each member has a folder to share progress with the class.
 
-    Only its owner can write in it, and only teachers can read it, too. Nobody but root makes
-    folders beside it, so its name says for certain whose it is.
+    Only its owner can write in it, and only teachers can read it as well. Only root can create
+    folders beside it, so its name is reliable.
 
     Args:
-        folder: Where these folders are. It is not for two classes.
+        folder: The parent folder, for one class only.
         members: The class; all have an account.
     """
     group = f'{GROUP}-{zlib.crc32(str(folder).encode()):08x}'

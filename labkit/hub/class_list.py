@@ -1,4 +1,4 @@
-"""The list of a class: a text file that says who may log in, and who of them teaches."""
+"""The list of a class: a text file with the people who may log in, and who of them teaches."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from labkit.errors import LabError
 
 __all__ = ['Member', 'read_class']
 
-# A name is also that of an account of the system, and part of the path of a kernel's sockets,
-# which has to be short.
+# A name is also a system account, and part of the path of a kernel's sockets, which has to be
+# short.
 _NAME = re.compile(r'[a-z][a-z0-9_-]{0,19}')
 _TEACHER = 'teacher'
 
 
 @dataclass(frozen=True)
 class Member:
-    """Somebody of the class.
+    """A member of the class.
 
     Attributes:
-        name: The name to log in with.
-        teaches: Whether it is a teacher, who sees everybody's server and may end it.
+        name: Login name.
+        teaches: Whether it is a teacher, who sees everybody's server and may stop it.
     """
 
     name: str
@@ -33,11 +33,11 @@ def read_class(path: Path) -> list[Member]:
     """Read the list of a class.
 
     Args:
-        path: A text file with a name on each line, and the word `teacher` behind a teacher's. What
-            follows a `#` is not read.
+        path: A text file with one name per line, followed by the word `teacher` for teachers. Text
+            after `#` is ignored.
 
     Raises:
-        LabError: The file can't be read, is empty, or says something else.
+        LabError: The file can't be read, is empty, or has other content.
     """
     try:
         lines = path.read_text(encoding='utf-8').splitlines()

@@ -1,6 +1,6 @@
-"""The command `labkit hub`: make all that a hub needs, and become JupyterHub.
+"""The command `labkit hub`: install a hub, and become JupyterHub.
 
-This part runs in a bare Python. When the environment is there, `labkit.hub.start` goes on in it.
+This part runs in a bare Python. `labkit.hub.start` continues in the environment.
 """
 
 from __future__ import annotations
@@ -15,11 +15,14 @@ from labkit.hub.class_list import read_class
 from labkit.hub.proxy import install_proxy
 from labkit.setup.environment import environment_variables, make_environment
 
-__all__ = ['FOLDER', 'REQUIREMENTS', 'run_hub']
+__all__ = ['FOLDER', 'PORT', 'REQUIREMENTS', 'run_hub']
 
 REQUIREMENTS = ('environment.txt', 'labkit/hub/requirements.txt')
 FOLDER = Path('/var/lib/labkit-hub')
-"""What the hub keeps: who is logged in, hashes of passwords, first passwords."""
+"""State of the hub: sessions, password hashes, first passwords."""
+PORT = 800
+"""Of the hub's pages. The two after it are the hub's and its proxy's own."""
+_FIRST_FOR_ALL = Path('/proc/sys/net/ipv4/ip_unprivileged_port_start')
 
 
 def run_hub(
@@ -31,39 +34,40 @@ def run_hub(
     new_password: str | None = None,
     prepare: bool = False,
 ) -> int:
-    """Make the environment and the proxy, then become the hub of a class.
+    """Install the environment and the proxy, then become the hub of a class.
 
     Args:
         arguments: Options for JupyterHub.
-        class_list: The file that names the class.
+        class_list: The file with the class.
         folder: The hub's folder, `FOLDER` if None.
-        image: The image of Docker for learners' servers. Processes of this machine if None.
-        new_password: Somebody of the class who gets another password; then no hub is started.
-        prepare: Whether to end when all is installed, as while an image is built.
+        image: Docker image for learners' servers. Processes on this machine if None.
+        new_password: A member who gets a new password; then no hub is started.
+        prepare: Whether to stop after the installation, as while building an image.
 
     Returns:
-        The exit code, if there is a way back.
+        The exit code, if it returns.
 
     Raises:
         LabError: This machine, the list, or an option does not allow it.
     """
     if not prepare:
-        _check(arguments, class_list)
-    os.umask(0o022)  # learners use the environment, whoever has made it
+        _check(arguments, class_list, image)
+    os.umask(0o022)  # learners use the environment, too
     python = make_environment(REQUIREMENTS)
     install_proxy()
-    # In the environment's Python, since it is about its packages.
+    # In the environment's Python, because it needs its packages.
     command = [str(python), '-m', 'labkit.hub.start']
     if class_list is not None and not prepare:
         command += ['--class', os.path.abspath(class_list)]
         command += ['--folder', os.path.abspath(folder or FOLDER)]
         command += ['--image', image] if image else []
         command += ['--new-password', new_password] if new_password else []
+        command += ['--port', str(_port(arguments))]
         command += ['--', *arguments]
     os.execve(python, command, environment_variables())
 
 
-def _check(arguments: Sequence[str], class_list: str | None) -> None:
+def _check(arguments: Sequence[str], class_list: str | None, image: str | None) -> None:
     if class_list is None:
         raise LabError(
             'A hub is for a class.',
@@ -77,6 +81,8 @@ def _check(arguments: Sequence[str], class_list: str | None) -> None:
             'may do.',
             todo='sudo python3 -m labkit hub --class ' + class_list,
         )
+    if not image:
+        _check_port(_port(arguments))
     text = ' '.join(arguments)
     address = re.search(r'(?:--ip|--JupyterHub\.ip)[= ](\S*)|bind_url[= ]\S*?//([^:/\s]*)', text)
     open_to = (address[1] or address[2] or '*') if address else '127.0.0.1'
@@ -87,3 +93,26 @@ def _check(arguments: Sequence[str], class_list: str | None) -> None:
             todo='Give --ssl-key and --ssl-cert too (docs/hub.md tells how they are made), or '
             'leave out --ip, and let a web server with TLS of this machine lead here.',
         )
+
+
+def _port(arguments: Sequence[str]) -> int:
+    """Return the port of the hub's pages."""
+    text = ' '.join(arguments)
+    given = re.search(r'(?:--port|--JupyterHub\.port)[= ](\d+)|bind_url[= ]\S*:(\d+)', text)
+    return int(given[1] or given[2]) if given else PORT
+
+
+def _check_port(port: int) -> None:
+    """Refuse ports that learners' accounts could take while the hub is down."""
+    first = int(_FIRST_FOR_ALL.read_text())
+    if port + 2 < first:
+        return
+    if first <= PORT + 2:
+        todo = 'Keep ports for root: sudo sysctl net.ipv4.ip_unprivileged_port_start=1024'
+    else:
+        todo = f'Choose one up to {first - 3}: --port {PORT}. The two after it are used, too.'
+    raise LabError(
+        f'While the hub is down, any account of this machine could take port {port}, show a page '
+        'that looks like the hub, and be told passwords.',
+        todo=todo,
+    )

@@ -1,4 +1,4 @@
-"""What containers of a class share: each learner's folder, with their own and the teachers'."""
+"""Volumes of a class in containers: each learner's own folder, and all of them for teachers."""
 
 from __future__ import annotations
 
@@ -9,23 +9,25 @@ from typing import Any
 
 from labkit.hub.class_list import Member
 
-__all__ = ['MOUNTED', 'make_class_volumes', 'mount_class']
+__all__ = ['HUB_IP', 'MOUNTED', 'make_class_volumes', 'mount_class']
 
+HUB_IP = '172.17.0.1'
+"""The address of the hub for containers: this machine's end of Docker's bridge."""
 MOUNTED = '/srv/class'
-"""Where the folder of the class is inside of a container."""
+"""The folder of the class inside a container."""
 
-# The user of the image, see Dockerfile.
+# The user in the image, see Dockerfile.
 _USER_ID = 1000
 
 
 def make_class_volumes(folder: Path, members: Sequence[Member]) -> None:
-    """Make sure that each member has a folder for what they share with the class.
+    """Make sure that each member has a folder to share progress with the class.
 
-    All containers have the same user, so it is not its owner that keeps a folder from other
-    learners, but that it is not in their containers.
+    All containers have the same user, so folders are protected from other learners not by
+    ownership but by being absent from their containers.
 
     Args:
-        folder: Where these folders are. The way to it is closed to accounts of this machine.
+        folder: The parent folder, inaccessible to accounts of this machine.
         members: The class.
     """
     places = [(folder, 0, 0o755)]
@@ -37,13 +39,12 @@ def make_class_volumes(folder: Path, members: Sequence[Member]) -> None:
 
 
 def mount_class(folder: Path, members: Sequence[Member]) -> Callable[[Any], None]:
-    """Return what gives a container its part of the folder of a class, before it starts.
+    """Return a hook that gives a container its part of the class's folder before it starts.
 
-    Learners get a folder of their own, in which they write, and nothing beside it. Teachers also
-    get the whole, to read.
+    Learners get only their own folder, writable. Teachers also get the whole, read-only.
 
     Args:
-        folder: What `make_class_volumes` has made.
+        folder: The folder of `make_class_volumes`.
         members: The class.
     """
     teachers = {member.name for member in members if member.teaches}
@@ -51,7 +52,7 @@ def mount_class(folder: Path, members: Sequence[Member]) -> Callable[[Any], None
     def mount(spawner: Any) -> None:
         name = spawner.user.name
         volumes: dict[str, Any] = {str(folder / name): f'{MOUNTED}/{name}'}
-        # Not `user.admin`: the hub keeps that for somebody who teaches no more.
+        # Not `user.admin`: the hub keeps that for former teachers.
         if name in teachers:
             volumes[str(folder)] = {'bind': MOUNTED, 'mode': 'ro'}
         spawner.volumes = {**spawner.volumes, **volumes}

@@ -1,6 +1,6 @@
-"""A learner's server, in an account, a container or a pod: their lessons, then JupyterLab.
+"""A learner's server, in an account, a container or a pod: lessons first, then JupyterLab.
 
-Run as `python -m labkit.hub.learner` by the hub's spawner. Options go to JupyterLab.
+Run as `python -I -m labkit.hub.learner` by the hub's spawner. Options go to JupyterLab.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ __all__ = ['start']
 
 
 def start(arguments: Sequence[str]) -> NoReturn:
-    """Bring the learner's lessons up to date, and become their JupyterLab.
+    """Update the learner's lessons, and become their JupyterLab.
 
     Args:
-        arguments: Options for JupyterLab, besides those set here.
+        arguments: Further options for JupyterLab.
     """
     os.umask(0o077)
-    # The course itself is everybody's and stays as it is. In terminals `labkit reset` reads this.
+    # The course itself is shared and read-only. `labkit reset` in terminals reads this.
     os.environ.setdefault('LABKIT_WORK', str(Path.home() / 'work'))
     from labkit.course import jupyterlab, learner_folder
 
@@ -31,17 +31,16 @@ def start(arguments: Sequence[str]) -> NoReturn:
     variables = jupyterlab.lesson_variables()
     first = jupyterlab.write_home(python, variables)
     variables.setdefault('JUPYTERHUB_DEFAULT_URL', f'/lab/tree/{first}')
-    # Shared memory belongs to one account, and Fast DDS takes it for everybody on a machine. Nodes
-    # that look beyond LOCALHOST, as `lab.join()` does, find those of other learners so.
+    # Shared memory is per account, but Fast DDS assumes one per machine. With UDP, nodes that look
+    # beyond LOCALHOST, as with `lab.join()`, reach those of other learners.
     variables.setdefault('FASTDDS_BUILTIN_TRANSPORTS', 'UDPv4')
     options = [
         *jupyterlab.lesson_options(),
-        # Sockets in the learner's home, not ports: on a port of this machine everybody can listen
-        # to what a kernel publishes.
+        # Sockets in the learner's home, not ports: anybody could listen to a kernel's port.
         '--KernelManager.transport=ipc',
     ]
     os.chdir(learner_folder.WORK)
-    # Isolated: no module of the learner's takes the place of one that JupyterLab needs.
+    # Isolated, so that the learner's modules can't shadow those that JupyterLab needs.
     command = [str(python), '-I', '-m', 'jupyterhub.singleuser', *options, *arguments]
     os.execve(python, command, variables)
 

@@ -1,4 +1,4 @@
-"""First passwords, made by chance; what is kept for logging in are their hashes."""
+"""Random first passwords, and their hashes for logging in."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from labkit.files import write_atomically
 __all__ = ['FIRST_PASSWORDS', 'HASHES', 'make_passwords']
 
 HASHES = 'passwords.dbm'
-"""What jupyterhub-firstuseauthenticator compares with: names and hashes."""
+"""Names and hashes, for jupyterhub-firstuseauthenticator."""
 FIRST_PASSWORDS = 'first-passwords.txt'
-"""What the teacher hands out."""
+"""The passwords for the teacher to hand out."""
 
-# No signs that look like others, in three groups to be read from paper: 59 bits.
+# No look-alike characters, in three groups to be read from paper: 59 bits.
 _SIGNS = 'abcdefghijkmnpqrstuvwxyz23456789'.replace('v', '')
 _GROUPS, _SIGNS_EACH = 3, 4
 
 
 def make_passwords(folder: Path, names: Iterable[str], *, anew: Iterable[str] = ()) -> list[str]:
-    """Make a first password for everybody who has none.
+    """Make a first password for everybody without one.
 
     Args:
-        folder: The hub's folder, which only root can look into.
+        folder: The hub's folder, readable for root only.
         names: The members of the class.
-        anew: Those of them who get another password, because they have forgotten theirs.
+        anew: Members who get a new password, because they have forgotten theirs.
 
     Returns:
-        Whose password is new; the file `FIRST_PASSWORDS` tells it.
+        The names with new passwords, which are in the file `FIRST_PASSWORDS`.
     """
     with dbm.open(str(folder / HASHES), 'c', 0o600) as hashes:
         wanted = [name for name in names if name in set(anew) or name.encode() not in hashes]

@@ -1,7 +1,7 @@
-"""The proxy of JupyterHub, from npm: installed beside the environment's packages, with its node.
+"""JupyterHub's proxy from npm, installed in the environment together with node.
 
-configurable-http-proxy is what JupyterHub is made and tested with. node comes as a wheel, so that
-no machine needs one of its own, and npm compares each file with the hash in `npm/`.
+configurable-http-proxy is the proxy that JupyterHub is made for. node comes as a wheel, so that no
+machine needs its own, and npm compares each file with the hash in `npm/`.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def proxy_command() -> list[str]:
 
 
 def install_proxy() -> None:
-    """Make sure that the proxy is there, in the version that the course was tested with.
+    """Make sure that the proxy is installed, in the tested version.
 
     Raises:
         SetupError: npm could not fetch it.
@@ -44,9 +44,9 @@ def install_proxy() -> None:
     for name in ('package.json', _LOCK):
         shutil.copyfile(_WANTED / name, _FOLDER / name)
     npm = _node() / 'lib' / 'node_modules' / 'npm' / 'bin' / 'npm-cli.js'
-    # Schools that look into encrypted traffic put their certificates into the system's.
+    # Schools that inspect encrypted traffic have their certificates in the system's store.
     node = [str(_node() / 'bin' / 'node'), '--use-system-ca']
-    # Nothing that a package brings is run while it is installed.
+    # Run no scripts of packages during installation.
     options = ['--ignore-scripts', '--no-audit', '--no-fund', '--no-update-notifier']
     answer = subprocess.run(
         [*node, str(npm), 'ci', *options],

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
+import socket
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -14,8 +16,9 @@ import numpy
 from labkit.errors import LabError
 from labkit.hub.accounts import make_accounts, make_class_folder
 from labkit.hub.class_list import read_class
-from labkit.hub.containers import make_class_volumes
+from labkit.hub.containers import HUB_IP, make_class_volumes
 from labkit.hub.passwords import FIRST_PASSWORDS, make_passwords
+from labkit.hub.sessions import end_all, note_hub
 from labkit.setup.compiler import fix_exported_paths
 from labkit.setup.environment import ROOT, environment_variables
 
@@ -28,13 +31,13 @@ def main(words: Sequence[str]) -> int:
     """Make accounts and passwords, and become JupyterHub.
 
     Args:
-        words: The options that `labkit.hub.command` gives.
+        words: The options from `labkit.hub.command`.
 
     Returns:
         The exit code, if no hub is started.
     """
     options = _parser().parse_args(words)
-    # Learners can't write to the environment, so lesson 12 finds this done.
+    # Learners can't write to the environment, so lesson 12 relies on this.
     fix_exported_paths(Path(sys.prefix), numpy.get_include())
     if options.class_list is None:
         print('All that a hub needs is installed.')
@@ -51,9 +54,12 @@ def main(words: Sequence[str]) -> int:
         for name in make_accounts(names):
             print(f'{name} has an account now.')
         _check_access(names[0])
-        # Beside the hub's folder, which is closed to learners.
+        # Beside the hub's folder, which learners can't read.
         class_folder = options.folder.with_name(f'{options.folder.name}-class')
         make_class_folder(class_folder, members)
+        private = class_folder.with_name(f'{class_folder.name}-private')
+        private.mkdir(exist_ok=True)
+        private.chmod(0o711)
     else:
         class_folder = options.folder / 'class'
         make_class_volumes(class_folder, members)
@@ -62,8 +68,13 @@ def main(words: Sequence[str]) -> int:
     if new:
         print(f'New passwords, for {", ".join(new)}: {passwords}')
     if anew is not None:
+        end_all(options.folder, anew, account=options.image is None)
+        print(f'Sessions, tokens and processes of {anew} are ended.')
         return 0
+    _check_free(options.port + 1)
     variables = environment_variables() | {
+        'LABKIT_HUB_TOKEN': note_hub(options.folder, _address(options)),
+        'LABKIT_PORT': str(options.port),
         'LABKIT_CLASS': str(options.class_list),
         'LABKIT_CLASS_FOLDER': str(class_folder),
     }
@@ -75,8 +86,29 @@ def main(words: Sequence[str]) -> int:
     os.execve(sys.executable, command, variables)
 
 
+def _address(options: argparse.Namespace) -> str:
+    """Return where the hub itself will be reached, see `jupyterhub_config`."""
+    given = re.search(r'hub_ip[= ](\S+)', ' '.join(options.arguments))
+    ip = given[1] if given else HUB_IP if options.image else '127.0.0.1'
+    return f'http{"" if options.image else "s"}://{ip}:{options.port + 1}'
+
+
+def _check_free(port: int) -> None:
+    """Check that the hub can have its port: otherwise it would end when its proxy runs."""
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind(('127.0.0.1', port))
+        except OSError as error:
+            raise LabError(
+                f'The hub can not have port {port}: {error}.',
+                todo='End the program that has it (sudo ss -lntp), or give another --port: the '
+                "hub's is the one after it.",
+            ) from error
+
+
 def _check_access(name: str) -> None:
-    """Make sure that learners can read the course and run its Python."""
+    """Check that learners can read the course and run its Python."""
     done = subprocess.run(
         [sys.executable, '-c', 'import rclpy, labkit'],
         cwd='/',
@@ -102,6 +134,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--folder', type=Path)
     parser.add_argument('--image')
     parser.add_argument('--new-password')
+    parser.add_argument('--port', type=int)
     parser.add_argument('arguments', nargs='*')
     return parser
 

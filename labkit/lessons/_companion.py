@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from labkit.errors import LabTimeout
 
 if TYPE_CHECKING:
-    from labkit.background.child_processes import Process
+    from labkit.programs.child_processes import Process
 
 __all__ = ['start_companion']
 
@@ -29,8 +29,8 @@ def start_companion(name: str, module: str, earlier: Process | None) -> Process:
     Raises:
         LabTimeout: Its nodes did not come.
     """
-    from labkit.background.child_processes import environment, start_process
     from labkit.background.runtime import runtime
+    from labkit.programs.child_processes import environment, start_process
     from labkit.rosgraph.snapshot import node_names
 
     if earlier is not None:

@@ -1,1 +1,1 @@
-"""Packages that colcon builds: their files, and nodes of a notebook in them."""
+"""Packages that colcon builds: their files, and nodes exported from a notebook."""

@@ -1,4 +1,4 @@
-"""Where a name of the notebook comes from: the statement that has made it, with its cell."""
+"""The origin of a name in the notebook: the statement that defines it, with its cell."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ Position = tuple[int, str, int]
 
 @dataclass(frozen=True)
 class Cell:
-    """A cell that has run, or the file of a module.
+    """An executed cell, or the file of a module.
 
     Attributes:
-        label: What it is called, such as `'Cell In[3]'`.
-        number: Its place in the order of execution.
+        label: Its name, such as `'Cell In[3]'`.
+        number: Its execution count.
         source: Its text.
     """
 
@@ -37,7 +37,7 @@ class Cell:
 
     @cached_property
     def body(self) -> list[ast.stmt]:
-        """Return its statements; none if it is not Python."""
+        """Its statements; none if it is not Python."""
         try:
             return ast.parse(self.source).body
         except (SyntaxError, ValueError):
@@ -46,13 +46,12 @@ class Cell:
 
 @dataclass(frozen=True)
 class Definition:
-    """A statement that gives a name its value.
+    """A statement that binds a name.
 
     Attributes:
-        name: The name.
-        cell: Where it stands.
+        cell: The cell of the statement.
         node: The statement.
-        plain: Whether it stands by itself, not in a loop, a condition or a `with` block.
+        plain: Whether it is at top level, not in a loop, a condition or a `with` block.
     """
 
     name: str
@@ -62,12 +61,12 @@ class Definition:
 
     @property
     def position(self) -> Position:
-        """Return its place in the order of execution; what a magic runs has its number twice."""
+        """Its place in the order of execution; code run by a magic repeats the cell's number."""
         return self.cell.number, self.cell.source, self.node.lineno
 
     @property
     def text(self) -> str:
-        """Return its source, with decorators and the comment above it."""
+        """Its source, with decorators and the comment above it."""
         lines = self.cell.source.splitlines()
         first = min(_first_lines(self.node))
         whole = ast.get_source_segment(self.cell.source, self.node) or ''
@@ -79,11 +78,11 @@ class Definition:
 
 
 class Notebook:
-    """What the cells that have run have made, newest first.
+    """The definitions in executed cells.
 
     Args:
-        namespace: The names that cells have made, with their values.
-        cells: The cells, in the order of execution.
+        namespace: The names defined by cells, with their values.
+        cells: The cells, in order of execution.
     """
 
     def __init__(self, namespace: dict[str, Any], cells: Sequence[Cell]) -> None:
@@ -92,7 +91,7 @@ class Notebook:
 
     @classmethod
     def of(cls, thing: Any) -> Notebook:
-        """Return the running notebook, or the module that a class or function was made in."""
+        """Return the running notebook, or the module in which a class or function was defined."""
         module = sys.modules.get(thing.__module__)
         ipython = sys.modules.get('IPython')
         shell = ipython.get_ipython() if ipython is not None else None
@@ -106,7 +105,7 @@ class Notebook:
 
     @property
     def has_annotations_as_text(self) -> bool:
-        """Tell whether a cell has imported `annotations` from `__future__`."""
+        """Whether a cell has imported `annotations` from `__future__`."""
         return any(
             isinstance(node, ast.ImportFrom)
             and node.module == '__future__'
@@ -116,9 +115,9 @@ class Notebook:
         )
 
     def find(self, name: str) -> Definition | None:
-        """Return the statement that has given a name its value, None if no cell has.
+        """Return the statement that defines a name, None if no cell does.
 
-        Where the value is a class or a function, it is the one that has made just that value.
+        For a class or a function, it is the statement that made the current value.
         """
         own = self._cell_of(self.namespace.get(name))
         for cell in [*([own] if own else []), *reversed(self.cells)]:
@@ -128,7 +127,7 @@ class Notebook:
         return None
 
     def _cell_of(self, value: Any) -> Cell | None:
-        """Return the cell that a class or function was made in, as far as its code tells."""
+        """Return the cell in which a class or function was defined, if its code tells."""
         for code in _codes(value):
             label = cell_name(code.co_filename)
             if label:
@@ -136,7 +135,7 @@ class Notebook:
                 source = ''.join(linecache.getlines(code.co_filename))
                 if number:
                     return Cell(label, int(number[0]), source)
-                # An IPython that does not tell numbers: it is the last one with that text.
+                # Without numbers, as in an old IPython: take the last cell with that text.
                 text = source.rstrip()
                 same = (cell for cell in reversed(self.cells) if cell.source.rstrip() == text)
                 return next(same, Cell(label, 0, source))
@@ -144,7 +143,7 @@ class Notebook:
 
 
 def definitions(cell: Cell) -> Iterator[Definition]:
-    """Return what the statements of a cell give names to."""
+    """Yield the names bound by a cell's statements."""
     for node in cell.body:
         for name in _bound(node):
             yield Definition(name, cell, node)
@@ -163,13 +162,13 @@ def definitions(cell: Cell) -> Iterator[Definition]:
 
 
 def place(cell: Cell, line: int) -> str:
-    """Return a line of a cell as messages name it."""
+    """Return a line of a cell for an error message."""
     text = cell.source.splitlines()[line - 1].strip() if cell.source else ''
     return f'{cell.label}, line {line}: {text}'
 
 
 def _bound(node: ast.stmt) -> Iterator[str]:
-    """Return the names that one statement gives values to."""
+    """Yield the names bound by one statement."""
     if isinstance(node, (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
         yield node.name
     elif isinstance(node, ast.Assign):
@@ -194,7 +193,7 @@ def _first_lines(node: ast.stmt) -> list[int]:
 
 
 def _codes(value: Any) -> Iterator[CodeType]:
-    """Return the code of a function, or of the methods of a class."""
+    """Yield the code of a function, or of the methods of a class."""
     values = vars(value).values() if inspect.isclass(value) else [value]
     for each in values:
         each = getattr(each, 'fget', None) or getattr(each, '__func__', each)

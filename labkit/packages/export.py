@@ -1,4 +1,4 @@
-"""`lab.export`: a node class of a notebook becomes a package that runs without the notebook."""
+"""`lab.export`: turn a node class of a notebook into a package that runs without it."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from labkit.errors import LabError, first_few
+from labkit.errors import LabError, first_few, quoted
+from labkit.files import read_limited
 from labkit.packages.cells import Definition, Notebook
 from labkit.packages.gather import Gathered, gather
 from labkit.packages.skeleton import Part, Skeleton, check_name, license_text, own_email, own_name
 
 __all__ = ['Exported', 'export']
 
-# Modules that are no packages of ROS, and the names under which ROS knows what they come with
-# (rosdep's list for Python).
+# Modules that are not ROS packages, and the rosdep keys of the packages that provide them.
 _ROSDEP = {
     'cv2': 'python3-opencv',
     'matplotlib': 'python3-matplotlib',
@@ -75,16 +75,14 @@ def test_{module}_can_be_made():
 
 @dataclass(frozen=True)
 class Exported:
-    """A package that was made of node classes.
+    """A package made from node classes.
 
     Attributes:
-        package: Its name.
-        folder: Its folder.
-        files: Its files, as paths from that folder on.
-        executables: What `ros2 run` can start in it.
-        dependencies: What package.xml says that it needs.
-        unnamed: Modules that it imports and that package.xml does not name, since labkit does
-            not know in which package they come.
+        files: Its files, relative to that folder.
+        executables: Its executables for `ros2 run`.
+        dependencies: Its dependencies in package.xml.
+        unnamed: Imported modules missing in package.xml, since labkit does not know their
+            packages.
     """
 
     package: str
@@ -113,36 +111,39 @@ def export(
     license: str = 'Apache-2.0',
     maintainer_name: str = '',
     maintainer_email: str = '',
+    launch_files: Sequence[str | Path] = (),
     overwrite: bool = False,
 ) -> Exported:
-    """Make a package of ROS 2 from node classes of this notebook.
+    """Make a ROS 2 package from node classes of this notebook.
 
-    Each class becomes a module with a `main()` and an entry in setup.py, and gets a test. What it
-    uses of the notebook (imports, constants, functions, base classes) comes along. The package
-    needs neither labkit nor the notebook: `colcon build` builds it on any machine with ROS 2.
+    Each class becomes a module with a `main()` and an entry in setup.py, and gets a test.
+    Everything it uses from the notebook (imports, constants, functions, base classes) is included.
+    The package needs neither labkit nor the notebook: `colcon build` builds it on any machine with
+    ROS 2.
 
     Args:
-        node_classes: One or more classes on `rclpy.node.Node` that can be made without arguments.
-        package: Name of the package, in small letters, digits and underscores.
-        folder: Where the folder of the package is made, such as the `src` of a workspace.
-        description: A sentence on what it does; made from the names of the classes if empty.
-        license: An SPDX identifier, or any other text.
-        maintainer_name: Who looks after it; the user of this computer if empty.
-        maintainer_email: Their address; that of git, or a placeholder, if empty.
-        overwrite: Whether to replace a package of that name that is there.
+        node_classes: One or more subclasses of `rclpy.node.Node` that need no arguments.
+        package: Name of the package, in lower-case letters, digits and underscores.
+        folder: Parent folder of the package, such as the `src` of a workspace.
+        description: A sentence on its purpose; by default made from the names of the classes.
+        license: An SPDX identifier, or any other text. Apache-2.0 adds a file LICENSE.
+        maintainer_name: Its maintainer; by default the user of this computer.
+        maintainer_email: Their address; by default git's, or a placeholder.
+        launch_files: Launch files to put into its folder `launch`, and to install from there.
+        overwrite: Whether to replace an existing package of that name.
 
     Returns:
-        What was made.
+        A summary of the package.
 
     Raises:
-        LabError: A class leans on something that can not come along, or the folder is taken.
+        LabError: A class uses something that can't be included, or the folder exists.
     """
     check_name(package)
     modules = _modules(node_classes)
-    sources = {name: _module_text(made, package) for name, made in modules.items()}
+    sources = {name: _module_text(cls, package) for name, cls in modules.items()}
     dependencies, unnamed = _dependencies(sources.values())
     maintainer = maintainer_name or own_name()
-    names = ' and '.join(made.__name__ for made in node_classes)
+    names = ' and '.join(cls.__name__ for cls in node_classes)
     skeleton = Skeleton(
         name=package,
         maintainer=maintainer,
@@ -152,8 +153,9 @@ def export(
         dependencies=dependencies,
         test_dependencies=['python3-pytest'],
         scripts=[(name, f'{package}.{name}:main') for name in modules],
+        launch_files=[Path(path).name for path in launch_files],
     )
-    parts = _parts(skeleton, modules, sources)
+    parts = [*_parts(skeleton, modules, sources), *_launch_parts(launch_files)]
     target = Path(folder) / package
     _make(parts, target, overwrite=overwrite)
     files = sorted(part.path for part in parts if part.text is not None)
@@ -163,81 +165,97 @@ def export(
 def _parts(
     skeleton: Skeleton, modules: Mapping[str, type], sources: Mapping[str, str]
 ) -> list[Part]:
-    """Return all files and folders of the package."""
+    """Return the parts of the package."""
     package = skeleton.name
     parts = [
         *skeleton.parts(),
         *(Part(f'{package}/{name}.py', text) for name, text in sources.items()),
-        *(_test(name, made, package) for name, made in modules.items()),
+        *(_test(name, cls, package) for name, cls in modules.items()),
     ]
     text = license_text(skeleton.license)
     return parts if text is None else [*parts, Part('LICENSE', text)]
 
 
-def _modules(node_classes: Sequence[type]) -> dict[str, type]:
-    """Return the classes by the names of their modules.
+def _launch_parts(paths: Sequence[str | Path]) -> list[Part]:
+    """Return the folder `launch` with copies of launch files.
 
     Raises:
-        LabError: One of them is no class of a node, or can not be made without arguments.
+        LabError: One can't be read.
+    """
+    parts = [Part('launch')] if paths else []
+    for path in paths:
+        try:
+            text = read_limited(path).decode()
+        except (OSError, UnicodeDecodeError) as error:
+            raise LabError(f'The launch file {path} can not be read: {error}.') from error
+        parts.append(Part(f'launch/{Path(path).name}', text))
+    return parts
+
+
+def _modules(node_classes: Sequence[type]) -> dict[str, type]:
+    """Return the classes by module name.
+
+    Raises:
+        LabError: One is not a node class, or needs arguments.
     """
     from rclpy.node import Node
 
     if not node_classes:
         raise LabError('Which class?', todo="lab.export(Talker, package='my_package')")
     found: dict[str, type] = {}
-    for made in node_classes:
-        if isinstance(made, Node):
-            name = type(made).__name__
+    for cls in node_classes:
+        if isinstance(cls, Node):
+            name = type(cls).__name__
             raise LabError(
                 f'lab.export takes the class, and {name}() is one of its nodes.',
                 todo=f'Write {name} without brackets, and without lab.spin.',
             )
-        if not (inspect.isclass(made) and issubclass(made, Node)):
+        if not (inspect.isclass(cls) and issubclass(cls, Node)):
             raise LabError(
-                f'lab.export takes classes of nodes, and this is {made!r}.',
+                f'lab.export takes classes of nodes, and this is {quoted(cls)}.',
                 todo='Write a class that begins with: class Talker(Node):',
             )
-        if made.__module__.partition('.')[0] == 'labkit':
+        if cls.__module__.partition('.')[0] == 'labkit':
             raise LabError(
-                f'{made.__name__} belongs to labkit, the helper of this notebook.',
+                f'{cls.__name__} belongs to labkit, the helper of this notebook.',
                 todo='Export a class of your own, that uses rclpy alone.',
             )
-        if '<locals>' in made.__qualname__ or made.__name__ != made.__qualname__:
+        if '<locals>' in cls.__qualname__ or cls.__name__ != cls.__qualname__:
             raise LabError(
-                f'{made.__name__} is defined inside of {made.__qualname__.split(".")[0]}.',
+                f'{cls.__name__} is defined inside of {cls.__qualname__.split(".")[0]}.',
                 todo='Write the class at the beginning of a line, in a cell.',
             )
-        _refuse_arguments(made)
-        name = re.sub(r'(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])', '_', made.__name__)
+        _refuse_arguments(cls)
+        name = re.sub(r'(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])', '_', cls.__name__)
         name = name.lower()
-        if name in found and found[name] is not made:
+        if name in found and found[name] is not cls:
             raise LabError(f'Two of the classes would both become {name}.py.')
-        found[name] = made
+        found[name] = cls
     return found
 
 
-def _refuse_arguments(made: type) -> None:
-    """Raise a LabError if a class can not be made without arguments: `ros2 run` has none."""
+def _refuse_arguments(cls: type) -> None:
+    """Raise a LabError if a class needs arguments, which `ros2 run` does not give."""
     needed = [
         one.name
-        for one in inspect.signature(made).parameters.values()
+        for one in inspect.signature(cls).parameters.values()
         if one.default is one.empty and one.kind not in (one.VAR_POSITIONAL, one.VAR_KEYWORD)
     ]
     if needed:
         raise LabError(
-            f'{made.__name__}() needs {first_few(needed)}, and `ros2 run` gives it nothing.',
+            f'{cls.__name__}() needs {first_few(needed)}, and `ros2 run` gives it nothing.',
             todo=f'Give each a value to begin with, as in __init__(self, {needed[0]}=...), or '
             'make it a parameter of the node.',
         )
 
 
-def _module_text(made: type, package: str) -> str:
-    gathered = gather(made, Notebook.of(made))
-    summary = (inspect.cleandoc(made.__doc__ or '').partition('\n')[0]) or (
-        f'The node {made.__name__} of the package {package}.'
+def _module_text(cls: type, package: str) -> str:
+    gathered = gather(cls, Notebook.of(cls))
+    summary = (inspect.cleandoc(cls.__doc__ or '').partition('\n')[0]) or (
+        f'The node {cls.__name__} of the package {package}.'
     )
-    if made.__doc__ == getattr(made.__base__, '__doc__', None):
-        summary = f'The node {made.__name__} of the package {package}.'
+    if cls.__doc__ == getattr(cls.__base__, '__doc__', None):
+        summary = f'The node {cls.__name__} of the package {package}.'
     needed = {'import rclpy', 'from rclpy.executors import ExternalShutdownException'}
     groups = _groups(gathered)
     short = _is_short(gathered.definitions[0])
@@ -245,12 +263,12 @@ def _module_text(made: type, package: str) -> str:
         summary=summary.replace('\\', '\\\\').replace('"', "'"),
         imports=_import_lines(gathered.imports | needed, annotations=gathered.annotations),
         definitions='\n' * (1 if short else 2) + '\n\n\n'.join(groups),
-        name=made.__name__,
+        name=cls.__name__,
     )
 
 
 def _groups(gathered: Gathered) -> list[str]:
-    """Return the statements; constants that follow each other stand together."""
+    """Return the statements, with consecutive constants in one group."""
     groups: list[str] = []
     last_short = False
     for definition in gathered.definitions:
@@ -271,7 +289,8 @@ def _import_lines(imports: set[str], *, annotations: bool) -> str:
     """Return import statements in the order of PEP 8: the standard library, then the others."""
     groups: list[list[str]] = [[], []]
     for statement in imports:
-        groups[_top(statement) not in sys.stdlib_module_names].append(statement)
+        top = statement.split()[1].partition('.')[0]
+        groups[top not in sys.stdlib_module_names].append(statement)
 
     def key(statement: str) -> tuple[str, str]:
         return statement.split()[1], statement
@@ -282,7 +301,7 @@ def _import_lines(imports: set[str], *, annotations: bool) -> str:
 
 
 def _joined(statements: Sequence[str]) -> list[str]:
-    """Put names that come from one module into one statement."""
+    """Combine imports from one module into one statement."""
     result: list[str] = []
     for statement in statements:
         start, _, name = statement.partition(' import ')
@@ -295,12 +314,9 @@ def _joined(statements: Sequence[str]) -> list[str]:
     return result
 
 
-def _top(statement: str) -> str:
-    return statement.split()[1].partition('.')[0]
-
-
 def _dependencies(sources: Iterable[str]) -> tuple[list[str], list[str]]:
-    """Return what package.xml has to name, and the modules that it can not name."""
+    """Return the dependencies for package.xml, and modules of unknown packages."""
+    from labkit.rosgraph.interfaces import buildable
     from labkit.rosgraph.packages import package_names
 
     modules: set[str] = set()
@@ -311,21 +327,21 @@ def _dependencies(sources: Iterable[str]) -> tuple[list[str], list[str]]:
             elif isinstance(node, ast.ImportFrom) and node.module:
                 modules.add(node.module.partition('.')[0])
     others = sorted(modules - set(sys.stdlib_module_names))
-    known = set(package_names())
+    known = {*package_names(), *(name.partition('/')[0] for name in buildable())}
     named = [_ROSDEP.get(name, name) for name in others if name in known or name in _ROSDEP]
     return named, [name for name in others if name not in known and name not in _ROSDEP]
 
 
-def _test(module: str, made: type, package: str) -> Part:
-    node_name = _literal_name(made)
+def _test(module: str, cls: type, package: str) -> Part:
+    node_name = _literal_name(cls)
     claim = f'node.get_name() == {node_name!r}' if node_name else 'node.get_name()'
-    text = _TEST.format(name=made.__name__, package=package, module=module, claim=claim)
+    text = _TEST.format(name=cls.__name__, package=package, module=module, claim=claim)
     return Part(f'test/test_{module}.py', text)
 
 
-def _literal_name(made: type) -> str:
-    """Return the name that a class gives its nodes, `''` if only a run could tell."""
-    definition = Notebook.of(made).find(made.__name__)
+def _literal_name(cls: type) -> str:
+    """Return the name that a class gives its nodes, `''` if it is not a literal."""
+    definition = Notebook.of(cls).find(cls.__name__)
     for node in ast.walk(definition.node) if definition is not None else ():
         if isinstance(node, ast.Call) and ast.unparse(node.func) == 'super().__init__':
             first = node.args[0] if node.args else None
@@ -335,10 +351,10 @@ def _literal_name(made: type) -> str:
 
 
 def _make(parts: Sequence[Part], target: Path, *, overwrite: bool) -> None:
-    """Make the files of a package, in the place of an earlier one if that is allowed.
+    """Write the files of a package, replacing an existing one if allowed.
 
     Raises:
-        LabError: The folder is taken, or can't be written.
+        LabError: The folder exists, or can't be written.
     """
     if target.exists() or target.is_symlink():
         if not overwrite:
@@ -361,9 +377,10 @@ def _make(parts: Sequence[Part], target: Path, *, overwrite: bool) -> None:
 
 
 def _is_package(target: Path) -> bool:
-    """Tell whether a folder is a package of the name that the folder has."""
+    """Return whether a folder is a package of the same name."""
     path = target / 'package.xml'
     try:
-        return not target.is_symlink() and f'<name>{target.name}</name>' in path.read_text()
+        text = read_limited(path).decode()
+        return not target.is_symlink() and f'<name>{target.name}</name>' in text
     except (OSError, UnicodeDecodeError):
         return False

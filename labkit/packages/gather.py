@@ -1,7 +1,7 @@
-"""All that a node class of a notebook needs, put together as a module of its own.
+"""Collecting everything that a node class of a notebook needs, for a module.
 
-The names that the class uses are followed to the cells that have made them: imports, constants,
-functions and base classes come along. What can not come along is named, with its line.
+Names used by the class are followed to the cells that define them: imports, constants, functions
+and base classes are included. What can't be included is named, with its line.
 """
 
 from __future__ import annotations
@@ -15,28 +15,28 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
-from labkit.errors import LabError, nearest
+from labkit.errors import LabError, nearest, quoted
 from labkit.packages.cells import Definition, Notebook, Position, place
 
 __all__ = ['Gathered', 'gather']
 
-# Names that IPython adds to those of Python, and that a program does not have.
-_OF_IPYTHON = {'display', 'get_ipython', '__IPYTHON__'}
-_OF_PYTHON = set(dir(builtins)) - _OF_IPYTHON
-# What a module has by itself.
-_OF_MODULE = {'__name__', '__file__', '__doc__', '__package__', '__spec__'}
+# Names that IPython adds to Python's, and that a program does not have.
+_IPYTHON_NAMES = {'display', 'get_ipython', '__IPYTHON__'}
+_PYTHON_NAMES = set(dir(builtins)) - _IPYTHON_NAMES
+# Names that every module has.
+_MODULE_NAMES = {'__name__', '__file__', '__doc__', '__package__', '__spec__'}
 _LABKIT = 'It belongs to labkit, the helper of this notebook: on a robot it is not there.'
-# What `main()` of the module uses.
+# Names used by the module's `main()`.
 RESERVED = {'main', 'rclpy', 'ExternalShutdownException'}
 
 
 @dataclass
 class Gathered:
-    """What a module consists of.
+    """The content of a module.
 
     Attributes:
         imports: Statements such as `'import math'`.
-        definitions: The others, in an order in which they can be run.
+        definitions: The other statements, in executable order.
         annotations: Whether annotations are not evaluated, see `from __future__`.
     """
 
@@ -46,14 +46,14 @@ class Gathered:
 
 
 def gather(node_class: type, notebook: Notebook) -> Gathered:
-    """Return what a module with this class consists of.
+    """Return the content of a module with this class.
 
     Args:
         node_class: The class.
-        notebook: Where it was made.
+        notebook: The notebook that defines it.
 
     Raises:
-        LabError: It uses what can not come along. The message names it, and its line.
+        LabError: It uses something that can't be included. The message names it, and its line.
     """
     collector = _Collector(node_class.__name__, notebook)
     name = node_class.__name__
@@ -73,16 +73,16 @@ def gather(node_class: type, notebook: Notebook) -> Gathered:
 
 
 class _Collector:
-    """Follow names to their statements.
+    """Follows names to their statements.
 
     Args:
-        name: Name of the class that is to be exported.
-        notebook: Where the names are looked up.
+        name: Name of the exported class.
+        notebook: The notebook that defines the names.
 
     Attributes:
-        imports: The import statements that are needed.
-        taken: The statements that come along, by place, with the names that each uses: all, and
-            those that have to be there when the statement itself is run.
+        imports: The required import statements.
+        taken: The included statements, by position, each with the names it uses: all, and those it
+            needs when it is executed.
     """
 
     def __init__(self, name: str, notebook: Notebook) -> None:
@@ -93,16 +93,20 @@ class _Collector:
         self._known: set[str] = set()
 
     def take(self, definition: Definition) -> None:
-        """Take a statement along, and all that it needs."""
+        """Include a statement, and everything it needs."""
         if definition.position in self.taken:
             return
         source = ast.unparse(definition.node)
         used = _free_names(source)
-        self.taken[definition.position] = (definition, used, used & _at_once(definition.node))
+        self.taken[definition.position] = (
+            definition,
+            used,
+            used & _eager_names(definition.node),
+        )
         for node in ast.walk(definition.node):
             if isinstance(node, (ast.Import, ast.ImportFrom)) and 'labkit' in _modules_of(node):
                 self._refuse('labkit', definition, _LABKIT, f'Write {self.name} without it.')
-        for name in sorted(used - _OF_MODULE):
+        for name in sorted(used - _MODULE_NAMES):
             self._follow(name, definition)
 
     def _follow(self, name: str, user: Definition) -> None:
@@ -131,7 +135,7 @@ class _Collector:
                 'statement.',
                 'Write it at the beginning of a line, in a statement of its own.',
             )
-        elif name not in _OF_PYTHON:
+        elif name not in _PYTHON_NAMES:
             self._refuse_unknown(name, user)
 
     def _refuse_labkit(self, name: str, value: Any, user: Definition) -> None:
@@ -145,7 +149,7 @@ class _Collector:
             )
 
     def _refuse_live(self, name: str, value: Any, user: Definition, found: Definition) -> None:
-        """Refuse what only a running program has: a node, or something that belongs to one."""
+        """Refuse what exists only in a running program: a node, or a part of one."""
         if isinstance(found.node, (ast.Assign, ast.AnnAssign)) and not inspect.isclass(value):
             module = type(value).__module__
             own = isinstance(value, _node_class()) or (
@@ -161,7 +165,7 @@ class _Collector:
                 )
 
     def _refuse_unknown(self, name: str, user: Definition) -> NoReturn:
-        if name in _OF_IPYTHON:
+        if name in _IPYTHON_NAMES:
             self._refuse(
                 name,
                 user,
@@ -172,13 +176,13 @@ class _Collector:
         if name in sys.stdlib_module_names:
             todo = f'Run a cell with: import {name}'
         else:
-            near = nearest(name, [*self.notebook.namespace, *_OF_PYTHON])
+            near = nearest(name, [*self.notebook.namespace, *_PYTHON_NAMES])
             todo = f'Did you mean {near!r}?' if near else 'Import it, or define it, in a cell.'
         self._refuse(name, user, 'No cell of this notebook has made it.', todo)
 
     def _refuse(self, name: str, user: Definition, why: str, todo: str) -> NoReturn:
         raise LabError(
-            f'{self.name} can not become a package: it uses {name!r}.\n'
+            f'{self.name} can not become a package: it uses {quoted(name)}.\n'
             f'{place(user.cell, _line_of(name, user))}\n{why}',
             todo=todo,
         )
@@ -191,7 +195,7 @@ def _node_class() -> type:
 
 
 def _in_order(collector: _Collector) -> list[Definition]:
-    """Return the statements as they ran, but each after what it needs at once."""
+    """Return the statements in their original order, but each after what it needs at once."""
     taken = collector.taken
     makes: dict[str, set[Position]] = {}
     for position, (definition, _, _) in taken.items():
@@ -200,10 +204,10 @@ def _in_order(collector: _Collector) -> list[Definition]:
             makes.setdefault(name, set()).add(position)
 
     def needs(position: Position, seen: set[Position]) -> set[Position]:
-        """Return what has to stand before a statement."""
-        definition, used, at_once = taken[position]
-        # A value may come from a call: then all that the called function uses is needed, too.
-        names = used if isinstance(definition.node, (ast.Assign, ast.AnnAssign)) else at_once
+        """Return what has to precede a statement."""
+        definition, used, eager = taken[position]
+        # A value may come from a call: then everything that the function uses is needed, too.
+        names = used if isinstance(definition.node, (ast.Assign, ast.AnnAssign)) else eager
         found: set[Position] = set()
         for name in names:
             for other in makes.get(name, ()):
@@ -228,7 +232,7 @@ def _names_made(node: ast.stmt) -> Iterator[str]:
 
 
 def _free_names(source: str) -> set[str]:
-    """Return the names that a statement uses and does not make itself."""
+    """Return the names that a statement uses but does not define."""
     top = symtable.symtable(source, 'cell', 'exec')
     made = {symbol.get_name() for symbol in top.get_symbols() if symbol.is_assigned()}
     used: set[str] = set()
@@ -241,13 +245,13 @@ def _free_names(source: str) -> set[str]:
             for symbol in table.get_symbols()
             if symbol.is_referenced() and (table is top or symbol.is_global())
         }
-        # `global count` makes a name of the module, and need not read it.
+        # `global count` binds a name of the module, which need not be read.
         used |= {each.get_name() for each in table.get_symbols() if each.is_declared_global()}
     return used - made
 
 
-def _at_once(node: ast.stmt) -> set[str]:
-    """Return the names that are read when a statement is run, not later in a function."""
+def _eager_names(node: ast.stmt) -> set[str]:
+    """Return the names that a statement reads when executed, not later in a function."""
     names: set[str] = set()
     waiting: list[ast.AST] = [node]
     while waiting:
@@ -284,7 +288,7 @@ def _modules_of(node: ast.Import | ast.ImportFrom) -> set[str]:
 
 
 def _import_of(node: ast.Import | ast.ImportFrom, name: str) -> str:
-    """Return the import of one name of a statement that may import several."""
+    """Return the import of one name from a statement that may import several."""
     for alias in node.names:
         if (alias.asname or alias.name.partition('.')[0]) == name:
             what = f'{alias.name} as {alias.asname}' if alias.asname else alias.name

@@ -1,7 +1,7 @@
-"""The files of an `ament_python` package, as `ros2 pkg create` of Jazzy makes them.
+"""The files of an `ament_python` package, as made by `ros2 pkg create` of Jazzy.
 
-Form and wording are those of the templates of ros2cli 0.32, because tools and tutorials expect
-them. Unlike there, text is escaped for the file that it goes into: a description may hold `&`.
+Form and wording are those of the templates of ros2cli 0.32, which tools and tutorials expect.
+Unlike there, text is escaped: a description may contain `&`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.sax.saxutils import escape, quoteattr
 
-from labkit.errors import LabError
+from labkit.errors import LabError, quoted
 
 __all__ = [
     'DESCRIPTION',
@@ -35,7 +35,7 @@ DESCRIPTION = 'TODO: Package description'
 LICENSE = 'TODO: License declaration'
 VERSION = '0.0.0'
 TEST_DEPENDENCIES = ('ament_copyright', 'ament_flake8', 'ament_pep257', 'python3-pytest')
-# Identifiers of the licenses whose text is here, in the order in which ros2cli names them.
+# Identifiers known to ros2cli, in its order. Only the text of the first, ROS's own, is here.
 LICENSES = (
     *('Apache-2.0', 'BSL-1.0', 'BSD-2.0', 'BSD-2-Clause', 'BSD-3-Clause', 'GPL-3.0-only'),
     *('LGPL-3.0-only', 'MIT', 'MIT-0'),
@@ -70,7 +70,7 @@ setup(
         ('share/ament_index/resource_index/packages',
             ['resource/' + package_name]),
         ('share/' + package_name, ['package.xml']),
-    ],
+{launch}    ],
     install_requires=['setuptools'],
     zip_safe=True,
     maintainer={maintainer},
@@ -98,7 +98,11 @@ def main():
 if __name__ == '__main__':
     main()
 """
-# The tests of style carry the notice of those who wrote them, wherever they are generated.
+_LAUNCH_XML = """\
+<launch>
+{nodes}</launch>
+"""
+# The style tests carry the notice of their authors, wherever they are generated.
 _NOTICE = """\
 # Copyright {year} Open Source Robotics Foundation, Inc.
 #
@@ -159,18 +163,18 @@ class Part:
     """A file or a folder of a package.
 
     Attributes:
-        path: Where it lies, from the folder of the package on.
-        text: What the file holds, None for a folder.
+        path: Its path relative to the package.
+        text: Content of a file, None for a folder.
     """
 
     path: str
     text: str | None = None
 
     def write(self, folder: Path) -> None:
-        """Make it in the folder of the package.
+        """Create it in the folder of the package.
 
         Raises:
-            OSError: It can't be made.
+            OSError: It can't be created.
         """
         if self.text is None:
             (folder / self.path).mkdir(parents=True, exist_ok=True)
@@ -180,18 +184,18 @@ class Part:
 
 @dataclass(frozen=True, kw_only=True)
 class Skeleton:
-    """What an `ament_python` package says about itself, and its files.
+    """The metadata and the files of an `ament_python` package.
 
     Attributes:
         name: Its name, see `check_name`.
-        maintainer: Name of who looks after it.
-        email: Where they can be reached.
-        description: A sentence on what it does.
+        email: Their address.
+        description: A sentence on its purpose.
         license: An SPDX identifier, or any other text.
-        dependencies: Names of packages that it needs.
-        test_dependencies: What its tests need.
-        scripts: Name of each executable -> the function that it runs: `'talker.talker:main'`.
-        format: Version of the form of package.xml, 2 or 3.
+        dependencies: Names of required packages.
+        test_dependencies: Packages required by its tests.
+        launch_files: Names of files in the folder `launch`, which are installed.
+        scripts: Executable -> its function: `'talker.talker:main'`.
+        format: Format version of package.xml, 2 or 3.
     """
 
     name: str
@@ -202,10 +206,11 @@ class Skeleton:
     dependencies: Sequence[str] = ()
     test_dependencies: Sequence[str] = TEST_DEPENDENCIES
     scripts: Sequence[tuple[str, str]] = ()
+    launch_files: Sequence[str] = ()
     format: int = 3
 
     def parts(self) -> list[Part]:
-        """Return its files and folders, in the order in which they are made."""
+        """Return its files and folders, in order of creation."""
         return [
             Part(''),
             Part('package.xml', self.package_xml()),
@@ -219,12 +224,22 @@ class Skeleton:
         ]
 
     def style_tests(self) -> list[Part]:
-        """Return the tests that come with a new package: of copyright, style and docstrings."""
+        """Return the style tests of a new package: copyright, style and docstrings."""
         return [
             Part('test/test_copyright.py', _NOTICE.format(year=2015) + _TEST_COPYRIGHT),
             Part('test/test_flake8.py', _NOTICE.format(year=2017) + _TEST_FLAKE8),
             Part('test/test_pep257.py', _NOTICE.format(year=2015) + _TEST_PEP257),
         ]
+
+    def launch(self) -> list[Part]:
+        """Return its launch files, in which all of its executables are."""
+        nodes = ''.join(
+            f'  <node pkg="{self.name}" exec="{name}" output="screen"/>\n'
+            for name, _ in self.scripts
+        )
+        text = _LAUNCH_XML.format(nodes=nodes)
+        files = [Part(f'launch/{name}', text) for name in self.launch_files]
+        return [Part('launch'), *files] if files else []
 
     def node(self, name: str) -> Part:
         """Return a module with a `main()` that says hello."""
@@ -232,7 +247,11 @@ class Skeleton:
 
     def package_xml(self) -> str:
         """Return the text of package.xml."""
-        groups = {'depend': self.dependencies, 'test_depend': self.test_dependencies}
+        groups = {
+            'depend': self.dependencies,
+            'exec_depend': ['ros2launch'] if self.launch_files else [],
+            'test_depend': self.test_dependencies,
+        }
         depends = ''
         for tag, names in groups.items():
             lines = [f'  <{tag}>{escape(name)}</{tag}>\n' for name in names]
@@ -250,7 +269,8 @@ class Skeleton:
 
     def setup_py(self) -> str:
         """Return the text of setup.py."""
-        # As in the template, a single entry has no comma behind it; several need them.
+        # As in the template, a single entry has no trailing comma; several need them.
+        launch = ', '.join(_quoted(f'launch/{name}') for name in self.launch_files)
         scripts = ',\n'.join(f"            '{name} = {where}'" for name, where in self.scripts)
         return _SETUP_PY.format(
             name=_quoted(self.name),
@@ -259,23 +279,24 @@ class Skeleton:
             email=_quoted(self.email),
             description=_quoted(self.description),
             license=_quoted(self.license),
+            launch=f"        ('share/' + package_name + '/launch', [{launch}]),\n" * bool(launch),
             scripts=scripts + ('\n' if scripts else ''),
         )
 
 
 def check_name(name: str, what: str = 'package') -> None:
-    """Raise a LabError unless a package or a node can be called so.
+    """Raise a LabError unless a package or a node can have a name.
 
     Args:
-        name: The name. It becomes the name of a module, so it has to be one in Python.
-        what: What it is the name of, for the error.
+        name: The name. It becomes the name of a Python module.
+        what: The kind of thing, for the error.
     """
     if re.fullmatch(r'[A-Za-z][A-Za-z0-9_]*', name) is None or keyword.iskeyword(name):
         better = re.sub(r'[^a-z0-9_]+', '_', name.lower()).strip('_0123456789')
         todo = 'Begin with a letter, and use only small letters, digits and underscores'
         good = better and not keyword.iskeyword(better) and better != name
         raise LabError(
-            f'{name!r} can not be the name of a {what}: Python imports it under that name.',
+            f'{quoted(name)} can not be the name of a {what}: Python imports it under that name.',
             todo=f'{todo}: {better}' if good else f'{todo}.',
         )
     if what == 'package' and name == 'test':
@@ -286,23 +307,22 @@ def check_name(name: str, what: str = 'package') -> None:
 
 
 def license_text(name: str) -> str | None:
-    """Return the text of a license, None if there is none of that name."""
-    if name not in LICENSES:
+    """Return the text of a license, None for all but Apache-2.0."""
+    if name != LICENSES[0]:
         return None
-    path = Path(__file__).parent / 'licenses' / f'{name}.txt'
-    return path.read_text(encoding='utf-8')
+    return Path(__file__).with_name(f'{name}.txt').read_text(encoding='utf-8')
 
 
 def own_name() -> str:
-    """Return the name of the user of this computer."""
+    """Return the name of this computer's user."""
     try:
         return getpass.getuser()
-    except (KeyError, OSError):  # nobody that the system knows
+    except (KeyError, OSError):  # a user unknown to the system
         return 'user'
 
 
 def own_email(name: str) -> str:
-    """Return the address that git has for its user, or a placeholder.
+    """Return git's email address of the user, or a placeholder.
 
     Args:
         name: The name of the maintainer.
@@ -318,6 +338,6 @@ def own_email(name: str) -> str:
 
 
 def _quoted(text: str) -> str:
-    """Return text as a piece of Python, in single quotes."""
+    """Return text as a Python literal in single quotes."""
     inner = repr('"' + text)  # with a double quote inside, repr() takes single ones
     return f"'{inner[2:]}"

@@ -1,4 +1,4 @@
-"""`ros2 action`: which actions there are, who is at their ends, and sending a goal."""
+"""`ros2 action`: list actions and their endpoints, and send goals."""
 
 from __future__ import annotations
 
@@ -11,26 +11,33 @@ from typing import TYPE_CHECKING, Any
 from action_msgs.msg import GoalStatus
 
 from labkit import settings
-from labkit.background.action_goals import ActionGoals, shown_id
-from labkit.background.discovery import alone, soon
+from labkit.asking.action_goals import ActionGoals, shown_id
+from labkit.asking.discovery import poll_until
 from labkit.errors import LabError
-from labkit.ros2.asking import add_discovery_options, asking_node, full_name, unknown
+from labkit.ros2.asking import (
+    add_discovery_options,
+    asking_node,
+    full_name,
+    known_names,
+    unknown,
+    values_text,
+)
 from labkit.ros2.graph_words import action_names, types_of_action
-from labkit.ros2.parser import Command, Parser, Usage, Verb
+from labkit.ros2.parser import Command, Parser, Verb
 from labkit.ros2.streams import tell
 from labkit.rosgraph import interfaces
-from labkit.rosgraph.actions import action_ends
 from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.listings import NamesAndTypes, action_types, actions
 from labkit.rosgraph.message_yaml import fill, prototype, read_yaml, to_yaml
 from labkit.rosgraph.refusals import Refusal, Refused
+from labkit.rosgraph.servers import action_ends
 
 if TYPE_CHECKING:
     from rclpy.node import Node
 
 __all__ = ['COMMAND']
 
-# How long a server may take to end a goal that is canceled, s.
+# Time for a server to end a canceled goal, s.
 CANCEL_SEC = 5.0
 _STATUS = {
     GoalStatus.STATUS_ACCEPTED: 'ACCEPTED',
@@ -44,7 +51,7 @@ _STATUS = {
 
 def list_actions(args: Namespace) -> None:
     """Print the names of the actions."""
-    found = actions(asking_node(args))
+    found = known_names(args, 'actions')
     if args.count_actions:
         print(len(found))
         return
@@ -53,11 +60,11 @@ def list_actions(args: Namespace) -> None:
 
 
 def show_info(args: Namespace) -> None:
-    """Print who is at the ends of an action."""
+    """Print the nodes at both ends of an action."""
     node = asking_node(args)
     name = full_name(args.action_name, node)
     _types_of(node, name)
-    ends = soon(lambda: action_ends(node, name))
+    ends = poll_until(lambda: action_ends(node, name))
     print(f'Action: {args.action_name}')
     _print_ends('clients', ends.clients, args)
     _print_ends('servers', ends.servers, args)
@@ -76,10 +83,10 @@ def show_type(args: Namespace) -> None:
 
 
 def send_goal(args: Namespace) -> None:
-    """Send a goal, and print whether it was accepted, feedback and result."""
+    """Send a goal, and print whether it is accepted, its feedback and its result."""
     action_type = interfaces.action_class(args.action_type)
     goal = action_type.Goal()
-    fill(goal, read_yaml(_values(args)))
+    fill(goal, read_yaml(values_text(args, 'action send_goal', args.goal)))
     node = asking_node(args)
     name = full_name(args.action_name, node)
     _check_type(node, name, type_name(action_type))
@@ -127,8 +134,8 @@ def _cancel(goals: ActionGoals, handle: Any) -> None:
 
 
 def _check_type(node: Node, name: str, wanted: str) -> None:
-    """Raise a LabError if an action is there, but of another type: no goal would arrive."""
-    types = soon(lambda: action_types(node, name), 0.0 if alone() else 0.3)
+    """Raise a LabError if an action exists with another type: the goal would never arrive."""
+    types = poll_until(lambda: action_types(node, name), 0.3)
     if types and wanted not in types:
         raise Refused(
             f'{name} is a {", ".join(types)}, not a {wanted}.', reason=Refusal.OTHER_TYPE
@@ -140,19 +147,11 @@ def _check_type(node: Node, name: str, wanted: str) -> None:
 
 
 def _types_of(node: Node, name: str) -> list[str]:
-    types = soon(lambda: action_types(node, name))
+    types = poll_until(lambda: action_types(node, name))
     if not types:
         names = [other for other, _ in actions(node)]
         raise LabError(f"Unknown action '{name}'", todo=unknown(name, names, 'action'))
     return types
-
-
-def _values(args: Namespace) -> str:
-    if not args.stdin:
-        return str(args.goal)
-    if settings.in_kernel():
-        raise Usage('ros2 action send_goal: --stdin works in a terminal only.')
-    return sys.stdin.read()
 
 
 def _prototype(args: Namespace) -> Iterable[str]:

@@ -1,17 +1,22 @@
-"""What verbs share that ask the graph: their options, the node to ask with, unknown names."""
+"""Helpers of verbs that query the graph: common options, the querying node, unknown names."""
 
 from __future__ import annotations
 
+import sys
 from argparse import Namespace
 from typing import TYPE_CHECKING, Any
 
-from labkit.background import discovery
-from labkit.background.discovery import DISCOVERY_SEC, soon
+from labkit import settings
+from labkit.asking import discovery
+from labkit.asking.discovery import DISCOVERY_SEC, SOON_SEC, poll_until
+from labkit.asking.notebook_graph import KINDS, ask_notebook
+from labkit.background.runtime import runtime
 from labkit.errors import LabError, nearest
-from labkit.ros2.parser import Parser, positive_float
+from labkit.ros2.parser import Parser, Usage, positive_float
 from labkit.rosgraph.interfaces import type_name
+from labkit.rosgraph.listings import NamesAndTypes
 from labkit.rosgraph.matching import other_type_here
-from labkit.rosgraph.names import full_topic_name
+from labkit.rosgraph.names import full_topic_name, is_hidden
 from labkit.rosgraph.refusals import Refusal, Refused
 from labkit.rosgraph.snapshot import node_names
 
@@ -23,13 +28,15 @@ __all__ = [
     'asking_node',
     'check_node_name',
     'full_name',
+    'known_names',
     'other_type',
     'unknown',
+    'values_text',
 ]
 
 
 def add_discovery_options(parser: Parser) -> None:
-    """Add the options that all commands have that look at the graph."""
+    """Add the options of all commands that query the graph."""
     parser.add(
         '--spin-time',
         type=positive_float,
@@ -38,31 +45,49 @@ def add_discovery_options(parser: Parser) -> None:
         help='seconds to wait for discovery, if ROS was started just now',
     )
     parser.add('-s', '--use-sim-time', action='store_true', help='accepted, without effect')
-    parser.add('--no-daemon', action='store_true', help='accepted; there is no daemon here')
+    parser.add(
+        '--no-daemon',
+        action='store_true',
+        help='look for nodes anew, and do not ask a running notebook',
+    )
 
 
 def asking_node(args: Namespace) -> Node:
-    """Return the node to ask the graph with. ROS is started if it is not up.
+    """Return the node to query the graph with; start ROS if it is not up.
 
     Args:
-        args: The arguments of the verb, perhaps with `spin_time`.
+        args: The arguments of the verb, maybe with `spin_time`.
     """
     return discovery.asking_node(getattr(args, 'spin_time', DISCOVERY_SEC))
 
 
-def check_node_name(node: Node, name: str, *, timeout_sec: float | None = None) -> str:
+def known_names(args: Namespace, kind: str, *, include_hidden: bool = False) -> NamesAndTypes:
+    """Return names with their types, as a running notebook knows them, or else this process.
+
+    Args:
+        args: The arguments of the verb.
+        kind: One of `KINDS`; nodes have no types.
+        include_hidden: Whether to include hidden ones.
+    """
+    own = runtime.started or getattr(args, 'no_daemon', False)
+    told = None if own else ask_notebook(kind)
+    found = KINDS[kind](asking_node(args)) if told is None else told
+    return [each for each in found if include_hidden or not is_hidden(each[0])]
+
+
+def check_node_name(node: Node, name: str, *, timeout_sec: float = SOON_SEC) -> str:
     """Return the full name of a node of the graph.
 
     Args:
         node: The node to ask with.
-        name: The name as typed; the first slash may be missing.
+        name: The name as typed; the leading slash is optional.
         timeout_sec: Seconds to wait for it.
 
     Raises:
         LabError: There is no such node.
     """
     full_name = name if name.startswith('/') else f'/{name}'
-    if not soon(lambda: full_name in node_names(node), timeout_sec):
+    if not poll_until(lambda: full_name in node_names(node), timeout_sec):
         raise LabError('Node not found', todo=unknown(full_name, node_names(node), 'node'))
     return full_name
 
@@ -71,11 +96,11 @@ def full_name(name: str, node: Node) -> str:
     """Return the full name of a topic or service, which need not exist.
 
     Args:
-        name: The name as typed; the first slash may be missing.
+        name: The name as typed; the leading slash is optional.
         node: The node to ask with.
 
     Raises:
-        Refused: It is no name of a topic.
+        Refused: The name is invalid.
     """
     try:
         return full_topic_name(name, node)
@@ -85,13 +110,13 @@ def full_name(name: str, node: Node) -> str:
 
 
 def other_type(node: Node, topic: str, msg_type: Any, error: Exception) -> Refused:
-    """Return what to raise when a topic can't be used with a type.
+    """Return the error for a topic that can't be used with a type.
 
     Args:
         node: The node to ask with.
         topic: Full name of the topic.
-        msg_type: The type that was asked for.
-        error: What ROS has said. It is shown if nobody here uses another type.
+        msg_type: The requested type.
+        error: The error of ROS, shown if nobody here uses another type.
     """
     why = other_type_here(node, topic, msg_type)
     return Refused(
@@ -101,12 +126,12 @@ def other_type(node: Node, topic: str, msg_type: Any, error: Exception) -> Refus
 
 
 def unknown(name: str, names: list[str], what: str) -> str:
-    """Return what to say of a name that does not exist: the nearest one, or all.
+    """Return a hint for a name that does not exist: the nearest one, or how to list all.
 
     Args:
-        name: The name that was asked for.
-        names: The names that exist.
-        what: What they are names of, such as `'topic'`.
+        name: The unknown name.
+        names: The existing names.
+        what: The kind of names, such as `'topic'`.
     """
     shown = [other for other in names if '/_' not in other]
     near = nearest(name, shown)
@@ -115,3 +140,12 @@ def unknown(name: str, names: list[str], what: str) -> str:
     if not shown:
         return f'There is no {what} at all.'
     return f'ros2 {what} list shows the {what}s that exist.'
+
+
+def values_text(args: Namespace, verb: str, values: str) -> str:
+    """Return the YAML of a message: an argument or, with `--stdin`, standard input."""
+    if not args.stdin:
+        return values
+    if settings.in_kernel():
+        raise Usage(f'ros2 {verb}: --stdin works in a terminal only.')
+    return sys.stdin.read()

@@ -1,18 +1,18 @@
-"""`%ros2 topic echo /odds &`: a command as a process of its own, as a shell's `&` does it.
+"""Run a command as a background process: `%ros2 topic echo /odds &`, like a shell's `&`.
 
-So a stream can be watched in one cell while the next cells go on, without a second terminal.
+A stream can so be watched in one cell while other cells run, without a second terminal.
 """
 
 from __future__ import annotations
 
 import shlex
 import sys
-import time
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
-from labkit.background.child_processes import end_earlier, environment, start_process
-from labkit.background.discovery import calm
+from labkit.asking.discovery import wait_until_graph_is_stable
+from labkit.background.wait import wait_for
+from labkit.programs.child_processes import end_earlier, environment, start_process
 from labkit.ros2.asking import asking_node
 from labkit.rosgraph.endpoints import publishers, subscriptions
 
@@ -21,9 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ['start']
 
-# How long a command may take to begin. On a busy machine Python itself takes a while.
+# Time for a command to begin. On a busy machine Python itself takes a while to start.
 BEGIN_SEC = 15.0
-POLL_SEC = 0.02
 
 
 def start(words: list[str], args: Namespace) -> int | None:
@@ -31,7 +30,7 @@ def start(words: list[str], args: Namespace) -> int | None:
 
     Args:
         words: The words after `ros2`.
-        args: The same, understood.
+        args: The parsed words.
 
     Returns:
         Its exit code, if it has ended with an error.
@@ -43,15 +42,16 @@ def start(words: list[str], args: Namespace) -> int | None:
     topic = getattr(args, 'topic_name', '')
     before = _ends(node, topic)
     variables = environment()
-    variables.pop('LABKIT_HEADLESS', None)  # what runs in the background can always be stopped
+    variables.pop('LABKIT_HEADLESS', None)  # a background process can always be stopped
     process = start_process(name, command, variables)
-    end = time.monotonic() + BEGIN_SEC
-    # It has begun when it is at the topic, or has something to say.
-    while process.running and not process.output and time.monotonic() < end:
-        if topic and _ends(node, topic) - before:
-            calm(node)
-            break
-        time.sleep(POLL_SEC)
+
+    def has_come() -> bool:
+        return bool(_ends(node, topic) - before)
+
+    # It has begun when it has an endpoint on the topic, or some output.
+    wait_for(lambda: process.output or not process.running or has_come(), BEGIN_SEC)
+    if not process.output and has_come():
+        wait_until_graph_is_stable(node)
     if process.exit_code:
         print('\n'.join(process.output[-10:]))
         return process.exit_code
@@ -61,7 +61,7 @@ def start(words: list[str], args: Namespace) -> int | None:
 
 
 def _ends(node: Node, topic: str) -> set[bytes]:
-    """Return the ids of the publishers and subscriptions of a topic."""
+    """Return the GUIDs of the publishers and subscriptions of a topic."""
     if not topic:
         return set()
     name = topic if topic.startswith('/') else f'/{topic}'

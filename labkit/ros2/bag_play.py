@@ -1,4 +1,4 @@
-"""`ros2 bag play`: publish what a bag holds."""
+"""`ros2 bag play`: publish the messages of a bag."""
 
 from __future__ import annotations
 
@@ -6,39 +6,46 @@ import argparse
 import re
 import time
 from argparse import Namespace
+from collections.abc import Iterable
 from contextlib import suppress
+from pathlib import Path
 
-from labkit.background.progress_bar import ProgressBar
-from labkit.bags.choice import TopicChoice
-from labkit.bags.player import CLOCK, NODE_NAME, play
-from labkit.bags.reader import open_bag
-from labkit.errors import LabError
+from labkit.background.wait import wait_for
+from labkit.bags.choice import SERVICE_EVENTS, TopicChoice
+from labkit.bags.finding import is_bag
+from labkit.bags.player import CLOCK, NODE_NAME, start_playing
+from labkit.bags.reader import Bag, open_bag
+from labkit.bags.writer import STORAGES
+from labkit.errors import LabError, quoted
+from labkit.progress_bar import ProgressBar
 from labkit.ros2.asking import asking_node, full_name
-from labkit.ros2.bag_words import add_reader_arguments, check_kind, say, topics_in_bag
 from labkit.ros2.parser import Parser, Usage, Verb, positive_float
-from labkit.ros2.streams import POLL_SEC, Stop
+from labkit.ros2.streams import Stop, log
+from labkit.rosgraph.qos import read_overrides
 
-__all__ = ['PLAY']
+__all__ = ['PLAY', 'add_reader_arguments', 'bag_paths', 'check_storage']
 
 _CLOCK_HZ = 40.0
 
 
 def play_back(args: Namespace) -> str | None:
-    """Play until the end of the bag, a time, or the stop button."""
+    """Play until the end of the bag, a timeout, or the stop button."""
     endless = args.loop or args.start_paused
 
     def limit() -> Stop | None:
         return Stop(None, args.timeout) if endless or args.timeout else None
 
-    limit()  # refuses what nobody could end
+    limit()  # raises if nobody could end it
     node = asking_node(args)
     remap = dict(_rule(words) for words in args.remap)
-    topics = _topics(args)
+    topics, end_sec = _chosen(args)
+    path = args.qos_profile_overrides_path
+    overrides = read_overrides(path) if path else {}
     if args.delay:
         time.sleep(args.delay)
     bar = ProgressBar('Playing')
-    say('INFO', NODE_NAME, f'Set rate to {args.rate:g}')
-    playing = play(
+    log('INFO', NODE_NAME, f'Set rate to {args.rate:g}')
+    playing = start_playing(
         args.bag_path,
         topics,
         rate=args.rate,
@@ -47,31 +54,39 @@ def play_back(args: Namespace) -> str | None:
         start_offset=args.start_offset,
         paused=args.start_paused,
         clock=args.clock,
+        end_sec=end_sec,
+        overrides=overrides,
     )
     for name, why in playing.skipped.items():
-        say('WARN', NODE_NAME, f"Ignoring a topic '{name}', reason: {why}.")
+        log('WARN', NODE_NAME, f'Ignoring a topic {quoted(name)}, reason: {why}.')
     length, stop = playing.bag.duration_sec, limit()
     with playing, suppress(KeyboardInterrupt):
-        while not (playing.done or (stop is not None and stop.reached)):
-            time.sleep(stop.left_sec if stop is not None else POLL_SEC)
+
+        def is_over() -> bool:
             at = playing.position_sec
             bar.show(at / length if length else None, f'{at:.0f} of {length:.0f} s')
+            return playing.done or (stop is not None and stop.reached)
+
+        wait_for(is_over, None)
     bar.close()
     return str(playing.error) if playing.error is not None else None
 
 
-def _topics(args: Namespace) -> list[str]:
-    """Return the topics of the bag that are meant."""
+def _chosen(args: Namespace) -> tuple[list[str], float | None]:
+    """Return the selected topics of the bag, and where to end, s from its beginning."""
     with open_bag(args.bag_path) as bag:
-        check_kind(bag, args)
+        check_storage(bag, args)
         if bag.note:
-            say('WARN', 'ros2bag', bag.note)
+            log('WARN', 'ros2bag', bag.note)
         choice = TopicChoice(
-            not (args.topics or args.regex),
-            frozenset(bag.topic(name).name for name in args.topics),
+            not (args.topics or args.services or args.regex),
+            frozenset(bag.topic(name).name for name in (*args.topics, *_events(args.services))),
             regex=args.regex,
             exclude=[args.exclude_regex] if args.exclude_regex else [],
-            exclude_names=frozenset(bag.topic(name).name for name in args.exclude_topics),
+            exclude_names=frozenset(
+                bag.topic(name).name
+                for name in (*args.exclude_topics, *_events(args.exclude_services))
+            ),
             hidden=True,
         )
         found = [topic.name for topic in bag.topics if choice.takes(topic.name, topic.msg_type)]
@@ -79,18 +94,30 @@ def _topics(args: Namespace) -> list[str]:
         found = [name for name in found if name != CLOCK]
     if not found and bag.topics:
         raise LabError(
-            f'None of the topics of {args.bag_path!r} is chosen.',
+            f'None of the topics of {quoted(args.bag_path)} is chosen.',
             todo=f'It has {", ".join(topic.name for topic in bag.topics)}.',
         )
-    return found
+    ends = []
+    if args.playback_duration >= 0:
+        ends.append(args.start_offset + args.playback_duration)
+    if args.playback_until_sec >= 0:
+        ends.append(args.playback_until_sec - bag.start_ns * 1e-9)
+    if args.playback_until_nsec >= 0:
+        ends.append((args.playback_until_nsec - bag.start_ns) * 1e-9)
+    return found, max(ends, default=None)
+
+
+def _events(services: Iterable[str]) -> list[str]:
+    return [f'{name}{SERVICE_EVENTS}' for name in services]
 
 
 def _rule(words: str) -> tuple[str, str]:
-    """Take a rule such as `/odom:=/odom2` apart."""
+    """Parse a rule such as `/odom:=/odom2`."""
     found = re.fullmatch(r'([^:=]+):=([^:=]+)', words)
     if found is None:
         raise Usage(
-            f'ros2 bag play: {words!r} is no remapping.', todo='Write old:=new: -m /odom:=/odom2'
+            f'ros2 bag play: {quoted(words)} is no remapping.',
+            todo='Write old:=new: -m /odom:=/odom2',
         )
     return found[1], found[2]
 
@@ -101,7 +128,9 @@ def _not_negative_float(text: str) -> float:
     except ValueError:
         value = -1.0
     if not 0 <= value < float('inf'):
-        raise argparse.ArgumentTypeError(f'expected a number of at least 0, but got {text!r}')
+        raise argparse.ArgumentTypeError(
+            f'expected a number of at least 0, but got {quoted(text)}'
+        )
     return value
 
 
@@ -116,6 +145,8 @@ def _arguments(parser: Parser) -> None:
     for names, metavar, text in (
         (['--topics'], 'topic', 'Space-delimited list of topics to play.'),
         (['--exclude-topics'], 'topic', 'Space-delimited list of topics not to play.'),
+        (['--services'], 'service', 'Space-delimited list of services to play, by their events.'),
+        (['--exclude-services'], 'service', 'Space-delimited list of services not to play.'),
     ):
         parser.add(
             *names, default=[], metavar=metavar, nargs='+', complete=topics_in_bag, help=text
@@ -162,10 +193,86 @@ def _arguments(parser: Parser) -> None:
         (['-d', '--delay'], 'Sleep duration before play, in seconds.'),
     ):
         parser.add(*names, type=_not_negative_float, default=0.0, metavar='SEC', help=text)
+    _more_arguments(parser)
     parser.add(
         '--timeout', metavar='N', type=positive_float, help='Exit after N seconds (only here)'
     )
 
+
+def _more_arguments(parser: Parser) -> None:
+    parser.add(
+        '--qos-profile-overrides-path',
+        metavar='FILE',
+        help='Path to a yaml file defining overrides of the QoS profile for specific topics.',
+    )
+    for name, kind, text in (
+        ('--playback-duration', float, 'Playback duration, in seconds.'),
+        ('--playback-until-sec', float, 'Playback until a time, in seconds since epoch.'),
+        ('--playback-until-nsec', int, 'Playback until a time, in nanoseconds since epoch.'),
+    ):
+        words = f'{text} Negative: until the end. The latest of the three counts.'
+        parser.add(name, type=kind, default=-1, metavar='N', help=words)
+    for name in ('--read-ahead-queue-size', '--log-level', '--wait-for-all-acked'):
+        parser.accept(name)
+    parser.accept('--disable-keyboard-controls', flag=True)
+    parser.accept('--disable-loan-message', flag=True)
+    for name, why in _REFUSED.items():
+        parser.refuse(name, why=why)
+
+
+# -- shared by the verbs that read a bag --------------------------------------------------------
+
+
+def add_reader_arguments(parser: Parser) -> None:
+    """Add the arguments of verbs that read one bag."""
+    parser.add('bag_path', help='Bag to open', complete=bag_paths)
+    parser.add(
+        *('-s', '--storage'),
+        choices=STORAGES,
+        help='Storage implementation of bag. By default attempts to detect automatically - use '
+        'this argument to override.',
+    )
+
+
+def check_storage(bag: Bag, args: Namespace) -> None:
+    """Raise a LabError if a bag has another storage than requested."""
+    if args.storage and args.storage != bag.storage:
+        bag.close()
+        raise LabError(
+            f'{quoted(str(bag.path))} is stored as {bag.storage}, not as {args.storage}.',
+            todo='Leave --storage out.',
+        )
+
+
+def bag_paths(_: Namespace) -> Iterable[str]:
+    """Return the bags in this folder and one level below."""
+    found: list[str] = []
+    with suppress(OSError):
+        for path in Path().iterdir():
+            if is_bag(path):
+                found.append(str(path))
+            elif path.is_dir() and not path.name.startswith('.'):
+                with suppress(OSError):
+                    found += [str(inner) for inner in path.iterdir() if is_bag(inner)]
+    return sorted(found)
+
+
+def topics_in_bag(args: Namespace) -> Iterable[str]:
+    """Return the topics of the bag named earlier on the line."""
+    path = getattr(args, 'bag_path', '')
+    if not path:
+        return []
+    with open_bag(path) as bag:
+        return [topic.name for topic in bag.topics]
+
+
+_REFUSED = {
+    '--clock-topics': 'take --clock HZ.',
+    '--clock-topics-all': 'take --clock HZ.',
+    '--storage-config-file': 'bags of all forms are read without one.',
+    '--publish-service-requests': 'events are played as messages, and nobody is called.',
+    '--service-requests-source': 'events are played as messages, and nobody is called.',
+}
 
 PLAY = Verb(
     'play',

@@ -1,4 +1,4 @@
-"""`ros2 bag record`: write what is published to a bag."""
+"""`ros2 bag record`: record topics to a bag."""
 
 from __future__ import annotations
 
@@ -8,79 +8,103 @@ from argparse import Namespace
 from contextlib import suppress
 from pathlib import Path
 
-from labkit.background.progress_bar import ProgressBar
-from labkit.bags.choice import TopicChoice
+from labkit.background.wait import wait_for
+from labkit.bags.choice import SERVICE_EVENTS, TopicChoice
 from labkit.bags.recorder import CACHE_BYTES, NODE_NAME, Recording, start_recording
 from labkit.bags.writer import STORAGES, BagWriter
 from labkit.errors import LabError
+from labkit.progress_bar import ProgressBar
 from labkit.ros2.asking import asking_node, full_name
-from labkit.ros2.bag_words import say
-from labkit.ros2.graph_words import topic_names
+from labkit.ros2.graph_words import service_names, topic_names
 from labkit.ros2.parser import Parser, Verb, unsigned_int
-from labkit.ros2.streams import Stop, add_stop_options
+from labkit.ros2.streams import Stop, add_stop_options, log
+from labkit.rosgraph.qos import read_overrides
 
 __all__ = ['RECORD']
 
-_SELECTION = '--all, --all-topics, --topics, --topic-types or --regex'
+_SELECTION = '--all, --all-topics, --all-services, --services, --topics, --topic-types or --regex'
 
 
 def record(args: Namespace) -> str | None:
-    """Record until a count, a time, or the stop button."""
-    Stop(args.count, args.timeout)  # refuses what nobody could end
+    """Record until a count, a timeout, or the stop button."""
+    Stop(args.count, args.timeout)  # raises if nobody could end it
+    if args.compression_mode != 'none':
+        raise LabError(
+            'Bags are written without compression here.',
+            todo='Leave --compression-mode out. The folder can be packed afterwards.',
+        )
+    if args.use_sim_time and args.no_discovery:
+        raise LabError(
+            '[ERROR] [ros2bag]: --use-sim-time and --no-discovery both set, but are incompatible '
+            'settings. The /clock topic needs to be discovered to record with sim time.'
+        )
+    path = args.qos_profile_overrides_path
+    overrides = read_overrides(path) if path else {}
     choice = _choice(args)
     writer = _writer(args)
-    say('INFO', NODE_NAME, 'Listening for topics...')
+    log('INFO', NODE_NAME, 'Listening for topics...')
     recording = start_recording(
         writer,
         choice,
         count=args.count,
         cache_bytes=args.max_cache_size or CACHE_BYTES,
         discovery=not args.no_discovery,
+        overrides=overrides,
+        use_sim_time=args.use_sim_time,
     )
     stop = Stop(args.count, args.timeout)
-    told: set[str] = set()
+    logged: set[str] = set()
     bar = ProgressBar('Recording')
     began = time.monotonic()
     with recording, suppress(KeyboardInterrupt):
-        _tell_new(recording, told)
-        say('INFO', NODE_NAME, 'Recording...')
-        while not (stop.reached or recording.done):
-            time.sleep(stop.left_sec)
-            _tell_new(recording, told)
+        _log_changes(recording, logged)
+        log('INFO', NODE_NAME, 'Recording...')
+
+        def is_over() -> bool:
+            _log_changes(recording, logged)
             bar.show(None, f'{recording.count} messages in {time.monotonic() - began:.0f} s')
+            return stop.reached or recording.done
+
+        wait_for(is_over, None)
     bar.close()
-    _tell_new(recording, told)
-    say('INFO', NODE_NAME, 'Recording stopped')
+    _log_changes(recording, logged)
+    log('INFO', NODE_NAME, 'Recording stopped')
     if recording.lost:
-        say('WARN', NODE_NAME, f'{recording.lost} messages were lost: the disk is too slow.')
+        log(
+            'WARN',
+            NODE_NAME,
+            f'{recording.lost} messages were lost: they came faster than they were written.',
+        )
     return str(recording.error) if recording.error is not None else None
 
 
-def _tell_new(recording: Recording, told: set[str]) -> None:
-    for name in sorted(recording.counts.keys() - recording.skipped.keys() - told):
-        say('INFO', NODE_NAME, f"Subscribed to topic '{name}'")
-        told.add(name)
-    for name in sorted(recording.skipped.keys() - told):
-        say('WARN', NODE_NAME, f"Topic '{name}' is not recorded: {recording.skipped[name]}")
-        told.add(name)
+def _log_changes(recording: Recording, logged: set[str]) -> None:
+    for name in sorted(recording.counts.keys() - recording.skipped.keys() - logged):
+        log('INFO', NODE_NAME, f"Subscribed to topic '{name}'")
+        logged.add(name)
+    for name in sorted(recording.skipped.keys() - logged):
+        log('WARN', NODE_NAME, f"Topic '{name}' is not recorded: {recording.skipped[name]}")
+        logged.add(name)
     for warning in list(recording.warnings):
-        if warning not in told:
-            say('WARN', 'ROSBAG2_STORAGE', warning)
-            told.add(warning)
+        if warning not in logged:
+            log('WARN', 'ROSBAG2_STORAGE', warning)
+            logged.add(warning)
 
 
 def _choice(args: Namespace) -> TopicChoice:
-    """Return which topics are meant; complain in the words of the real command."""
+    """Return the selected topics; complain in the words of the real command."""
     names = list(args.topics)
     if args.topics_positional:
-        say(
+        log(
             *('WARN', 'ros2bag'),
             'Positional "topics" argument deprecated. Please use optional "--topics" argument '
             'instead.',
         )
         names = [*args.topics_positional, *names]
     everything = args.all or args.all_topics
-    if not (everything or names or args.topic_types or args.regex):
+    services = args.all or args.all_services
+    named = names or args.services
+    if not (everything or services or named or args.topic_types or args.regex):
         raise LabError(
             f'[ERROR] [ros2bag]: Need to specify at least one option out of {_SELECTION}',
             todo='ros2 bag record -a   records all topics.',
@@ -97,17 +121,20 @@ def _choice(args: Namespace) -> TopicChoice:
             )
     for option, value in (('--topics', names), ('--regex', args.regex)):
         if everything and value:
-            say('WARN', 'ros2bag', f'--all or --all-topics will override {option}')
+            log('WARN', 'ros2bag', f'--all or --all-topics will override {option}')
     node = asking_node(args)
+    events = [f'{full_name(name, node)}{SERVICE_EVENTS}' for name in args.services]
+    no_events = [f'{full_name(name, node)}{SERVICE_EVENTS}' for name in args.exclude_services]
     return TopicChoice(
         everything,
-        frozenset() if everything else frozenset(full_name(name, node) for name in names),
+        frozenset([*events, *(full_name(name, node) for name in names if not everything)]),
         frozenset(args.topic_types),
         args.regex,
         [args.exclude_regex] if args.exclude_regex else [],
-        frozenset(full_name(name, node) for name in args.exclude_topics),
+        frozenset([*no_events, *(full_name(name, node) for name in args.exclude_topics)]),
         frozenset(args.exclude_topic_types),
         args.include_hidden_topics,
+        services,
     )
 
 
@@ -175,11 +202,38 @@ def _arguments(parser: Parser) -> None:
     ):
         words = f'{text} Default: {default}'
         parser.add(*names, type=unsigned_int, default=default, metavar='N', help=words)
+    _more_arguments(parser)
     add_stop_options(parser, 'messages')
 
 
+def _more_arguments(parser: Parser) -> None:
+    parser.add(
+        '--qos-profile-overrides-path',
+        metavar='FILE',
+        help='Path to a yaml file defining overrides of the QoS profile for specific topics.',
+    )
+    parser.add(
+        '--use-sim-time',
+        action='store_true',
+        help='Use simulation time for message timestamps by subscribing to the /clock topic. '
+        'Until first /clock message is received, no messages will be written to bag.',
+    )
+    parser.add(
+        '--compression-mode',
+        choices=['none', 'file', 'message'],
+        default='none',
+        help='Bags are written without compression here: none',
+    )
+    parser.add(*('-f', '--serialization-format'), choices=['cdr'], help='cdr, as always here')
+    for name in ('--polling-interval', '--log-level'):
+        parser.accept(*(['-p'] * (name == '--polling-interval')), name)
+    parser.accept('--disable-keyboard-controls', flag=True)
+    for name, why in _REFUSED.items():
+        parser.refuse(name, why=why)
+
+
 def _topic_arguments(parser: Parser) -> None:
-    """Add the options that choose topics."""
+    """Add the options that select topics."""
     parser.add(
         '--topics',
         default=[],
@@ -195,8 +249,16 @@ def _topic_arguments(parser: Parser) -> None:
         nargs='+',
         help='Space-delimited list of topic types to record.',
     )
+    for name, text in (
+        ('--services', 'Space-delimited list of services to record, by their introspection.'),
+        ('--exclude-services', 'Space-delimited list of services not being recorded.'),
+    ):
+        parser.add(
+            name, default=[], metavar='ServiceName', nargs='+', complete=service_names, help=text
+        )
     for names, text in (
         (['-a', '--all'], 'Record all topics and services (Exclude hidden topic).'),
+        (['--all-services'], 'Record all services via service event topics.'),
         (['--all-topics'], 'Record all topics (Exclude hidden topic).'),
     ):
         parser.add(*names, action='store_true', help=text)
@@ -229,12 +291,26 @@ def _topic_arguments(parser: Parser) -> None:
     )
 
 
+_REFUSED = {
+    '--start-paused': 'there are no keys to go on with. Start it when it is to record.',
+    '--snapshot-mode': 'all messages are written at once. Cut the bag with ros2 bag convert.',
+    '--compression-format': 'bags are written without compression.',
+    '--compression-queue-size': 'bags are written without compression.',
+    '--compression-threads': 'bags are written without compression.',
+    '--storage-preset-profile': 'storage has one form, which survives a crash.',
+    '--storage-config-file': 'storage has one form, which survives a crash.',
+    '--include-unpublished-topics': 'a topic is recorded once somebody publishes on it.',
+    '--ignore-leaf-topics': 'name the topics, or leave some out with --exclude-topics.',
+    '--node-name': f'the node is called {NODE_NAME}.',
+    '--custom-data': 'metadata.yaml has what belongs to the messages.',
+}
+
 RECORD = Verb(
     'record',
     'Record ROS data to a bag',
     record,
     _arguments,
     'It ends after --count messages, after --timeout seconds, or with Ctrl-C or the stop button; '
-    'the real one knows the last only. Its options for services, compression and simulation '
-    'time are not here.',
+    'the real one knows the last only. Services are recorded if they have introspection. What '
+    'is refused here says so in a sentence.',
 )

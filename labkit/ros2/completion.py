@@ -1,4 +1,4 @@
-"""Completion by the Tab key: commands, verbs, options, and names read off the live graph."""
+"""Completion with the Tab key: commands, verbs, options, and names from the live graph."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ __all__ = ['complete', 'complete_line']
 
 
 def complete_line(line: str) -> tuple[str, list[str]]:
-    """Return what may stand at the end of a line.
+    """Complete the end of a line.
 
     Args:
-        line: What stands after `ros2`, up to the cursor.
+        line: The text after `ros2`, up to the cursor.
 
     Returns:
-        The word that is begun, as typed, and the words that may stand in its place.
+        The last word as typed, and its completions.
     """
     words, last, quote = _split(line)
     return f'{quote}{last}', [f'{quote}{text}' for text in complete(words, last)]
 
 
 def complete(words: list[str], last: str) -> list[str]:
-    """Return what may stand as the last word.
+    """Complete the last word.
 
     Args:
-        words: The words after `ros2` that are complete.
-        last: The word that is begun.
+        words: The complete words after `ros2`.
+        last: The last, incomplete word.
 
     Returns:
-        Words that begin like it, sorted.
+        Its completions, sorted.
     """
     try:
         found = set(_candidates(words, last))
@@ -62,7 +62,7 @@ def _candidates(words: list[str], last: str) -> Iterable[str]:
 
 
 def _arguments(parser: Parser, words: list[str], last: str) -> Iterable[str]:
-    """Return what may stand at the end of the words after the verb."""
+    """Return candidates for the word after some words that follow the verb."""
     known, wanted = parser.guess(words)
     in_option = wanted is not None and bool(wanted.option_strings) and wanted.nargs != '+'
     if last.startswith('-') and not in_option:
@@ -81,7 +81,7 @@ def _words_for(action: argparse.Action, known: Namespace) -> Iterable[str]:
 
 
 def _split(line: str) -> tuple[list[str], str, str]:
-    """Split a line into complete words, the word that is begun, and its quotation mark if any."""
+    """Split a line into complete words, the incomplete word, and its quotation mark if any."""
     for quote in ('', '"', "'"):
         try:
             words = shlex.split(line + quote)

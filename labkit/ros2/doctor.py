@@ -1,6 +1,6 @@
-"""`ros2 doctor`: what in this machine and in the graph is likely to cause trouble.
+"""`ros2 doctor`: likely causes of trouble in this machine and in the graph.
 
-About this course itself, its environment and its notebook, `lab.doctor()` knows more.
+For the course's own environment and notebooks, `lab.doctor()` knows more.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ Section = tuple[str, list[tuple[str, object]]]
 
 
 def doctor(args: Namespace) -> int:
-    """Print warnings and how many checks have failed, or all there is to know."""
+    """Print warnings and the number of failed checks, or a full report."""
     node = asking_node(args)
     if args.report:
         for title, items in _report(node):
@@ -90,7 +90,14 @@ def _check_topics(node: Node) -> Findings:
             warnings += [f'Publisher without subscriber detected on {topic}.']
         elif sinks > sources == 0:
             warnings += [f'Subscriber without publisher detected on {topic}.']
-    return warnings, []
+    return [*warnings, *_silent_faults()], []
+
+
+def _silent_faults() -> list[str]:
+    from labkit.silent.watch import faults
+
+    # Profiles that do not match are told in the words of the real one.
+    return [f'{one} {one.advice}' for one in faults() if not one.kind.id.startswith('qos.')]
 
 
 def _check_qos(node: Node) -> Findings:
@@ -161,7 +168,7 @@ def _report(node: Node) -> list[Section]:
 
 
 def _pairs(node: Node) -> Iterator[tuple[Endpoint, Endpoint, str]]:
-    """Yield each publisher with each subscription of its topic, and why they do not match."""
+    """Yield each publisher with each subscription of its topic, and the reason for a mismatch."""
     for topic in own_topics(node):
         for publisher, subscription in itertools.product(
             publishers(node, topic), subscriptions(node, topic)
@@ -170,7 +177,7 @@ def _pairs(node: Node) -> Iterator[tuple[Endpoint, Endpoint, str]]:
 
 
 def _interfaces() -> list[tuple[str, int, int]]:
-    """Return name, flags and size of a packet in bytes of each network interface."""
+    """Return name, flags and MTU of each network interface."""
     found = []
     for folder in sorted(Path('/sys/class/net').glob('*')):
         try:

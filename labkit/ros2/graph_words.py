@@ -1,4 +1,4 @@
-"""Words to offer for completion that are read off the live graph."""
+"""Completion candidates from the live graph."""
 
 from __future__ import annotations
 
@@ -7,12 +7,10 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from labkit import settings
-from labkit.background.discovery import SOON_SEC, alone, soon
-from labkit.background.patience import answer_sec
+from labkit.asking.discovery import poll_until
 from labkit.background.runtime import runtime
-from labkit.ros2.asking import asking_node
-from labkit.rosgraph import interfaces, listings, snapshot
-from labkit.rosgraph.names import is_hidden
+from labkit.ros2.asking import asking_node, known_names
+from labkit.rosgraph import interfaces, listings
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -27,55 +25,61 @@ __all__ = [
     'types_of_topic',
 ]
 
+# A type that is not found within this time, s, is taken for missing.
+COMPLETION_SEC = 3.0
+
 
 def topic_names(args: Namespace) -> Iterable[str]:
-    """Return the topics that there are."""
-    return [name for name, _ in listings.topics(asking_node(args))] if _may_ask() else ()
+    """Return the topics in the graph."""
+    return _names(args, 'topics')
 
 
 def types_of_topic(args: Namespace) -> Iterable[str]:
-    """Return the type of the topic that stands before, or all types."""
+    """Return the type of the topic named earlier on the line, or all types."""
     name = getattr(args, 'topic_name', '')
     return _found(listings.topic_types, args, name) or interfaces.names('msg')
 
 
 def node_names(args: Namespace) -> Iterable[str]:
-    """Return the nodes that there are."""
-    found = snapshot.node_names(asking_node(args)) if _may_ask() else []
-    return (name for name in found if not is_hidden(name))
+    """Return the nodes in the graph."""
+    return _names(args, 'nodes')
 
 
 def service_names(args: Namespace) -> Iterable[str]:
-    """Return the services that there are."""
-    return [name for name, _ in listings.services(asking_node(args))] if _may_ask() else ()
+    """Return the services in the graph."""
+    return _names(args, 'services')
 
 
 def types_of_service(args: Namespace) -> Iterable[str]:
-    """Return the type of the service that stands before, or all types."""
+    """Return the type of the service named earlier on the line, or all types."""
     name = getattr(args, 'service_name', '')
     return _found(listings.service_types, args, name) or interfaces.names('srv')
 
 
 def action_names(args: Namespace) -> Iterable[str]:
-    """Return the actions that there are."""
-    return [name for name, _ in listings.actions(asking_node(args))] if _may_ask() else ()
+    """Return the actions in the graph."""
+    return _names(args, 'actions')
 
 
 def types_of_action(args: Namespace) -> Iterable[str]:
-    """Return the type of the action that stands before, or all types."""
+    """Return the type of the action named earlier on the line, or all types."""
     name = getattr(args, 'action_name', '')
     return _found(listings.action_types, args, name) or interfaces.names('action')
+
+
+def _names(args: Namespace, kind: str) -> list[str]:
+    return [name for name, _types in known_names(args, kind)] if _may_ask() else []
 
 
 def _found(types_of: Callable[[Node, str], list[str]], args: Namespace, name: str) -> list[str]:
     if not _may_ask():
         return []
     node = asking_node(args)
-    # A terminal's process has just come into the graph, and hears of it piece by piece.
-    patience = 0.0 if settings.in_kernel() or alone() else answer_sec(SOON_SEC)
-    return soon(lambda: types_of(node, name), patience)
+    # The process of a terminal has just joined the graph, and discovers it bit by bit.
+    patience_sec = 0.0 if settings.in_kernel() else COMPLETION_SEC
+    return poll_until(lambda: types_of(node, name), patience_sec)
 
 
 def _may_ask() -> bool:
-    # In a notebook the Tab key does not start ROS.
+    # In a notebook the Tab key must not start ROS.
     return runtime.started or not settings.in_kernel()

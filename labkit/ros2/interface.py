@@ -1,4 +1,4 @@
-"""`ros2 interface`: which types there are, and what they look like."""
+"""`ros2 interface`: list and show interface types."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ def list_package(args: Namespace) -> None:
     """Print the names of the interface types of one package."""
     interfaces.check_package(args.package_name)
     kinds = _kinds(args)
-    for name in interfaces.names_in(args.package_name):
+    for name in interfaces.listed_in(args.package_name):
         if name.split('/')[1] in kinds:
             print(name)
 
 
 def list_packages(args: Namespace) -> None:
-    """Print the names of the packages that have interface types."""
+    """Print the names of the packages with interface types."""
     kinds = _kinds(args)
     found = {package for kind in kinds for package in interfaces.packages(kind)}
     print('\n'.join(sorted(found)))
 
 
 def show(args: Namespace) -> None:
-    """Print the definition of an interface type, with those of the types within it."""
+    """Print the definition of an interface type, including nested types."""
     name = interfaces.check_exists(_type(args))
     if args.all_comments and args.no_comments:
         raise Usage('ros2 interface show: --all-comments and --no-comments can not go together.')
@@ -52,7 +52,7 @@ def show(args: Namespace) -> None:
 
 
 def show_prototype(args: Namespace) -> None:
-    """Print the values of a new message as YAML, to be edited and published."""
+    """Print the default values of a message as YAML, to be edited and published."""
     name = interfaces.check_exists(args.type)
     if name.split('/')[1] == 'srv':
         text = to_yaml(interfaces.service_class(name).Request())
@@ -64,7 +64,7 @@ def show_prototype(args: Namespace) -> None:
 
 
 def _type(args: Namespace) -> str:
-    """Return the type that is asked for; `-` stands for a line of standard input."""
+    """Return the requested type; `-` means a line of standard input."""
     if args.type != '-':
         return str(args.type)
     if settings.in_kernel() or sys.stdin.isatty():

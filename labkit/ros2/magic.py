@@ -1,4 +1,4 @@
-"""`%ros2 ...` in a notebook, with completion by the Tab key."""
+"""`%ros2 ...` in a notebook, with Tab completion."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ['register']
 
 
 def register() -> None:
-    """Make `%ros2` known to the running IPython; without one nothing happens. Light and fast."""
+    """Register `%ros2` with the running IPython, if there is one. Must stay light and fast."""
     ipython = sys.modules.get('IPython')
     shell = ipython.get_ipython() if ipython is not None else None
     if shell is None:
@@ -34,16 +34,16 @@ def _ros2(line: str) -> None:
 
     several = _is_one_of_several()
     if several:
-        # As in a terminal: or else nobody could tell where the next one's output begins.
+        # As in a terminal: otherwise nobody could tell which output belongs to which command.
         print(f'$ ros2 {line}', flush=True)
     run_line(line)
     if several:
         sys.stdout.flush()
-        sys.stderr.flush()  # or the next one's would overtake a complaint
+        sys.stderr.flush()  # or the next command's output would overtake an error
 
 
 def _is_one_of_several() -> bool:
-    """Tell whether the running cell has more such lines."""
+    """Return whether the running cell has more such lines."""
     from labkit import settings
 
     if not settings.in_kernel():
@@ -54,12 +54,12 @@ def _is_one_of_several() -> bool:
     return len(re.findall(r'^[ \t]*%ros2[ \t]', code, re.MULTILINE)) > 1
 
 
-# Braces and dollar signs belong to YAML; IPython would take them for Python variables.
+# Braces and dollar signs belong to YAML; IPython would expand them as Python variables.
 _ros2._ipython_magic_no_var_expand = True  # type: ignore[attr-defined]
 
 
 def _complete(context: Any) -> dict[str, Any]:
-    """Return what may stand at the cursor; called by IPython's completer in every line."""
+    """Return completions at the cursor; called by IPython's completer for every line."""
     from IPython.core.completer import SimpleCompletion
 
     last, words = _possible(context.text_until_cursor)
@@ -69,21 +69,21 @@ def _complete(context: Any) -> dict[str, Any]:
         'completions': [SimpleCompletion(text=word, type='ros2') for word in words],
         'matched_fragment': last,
         'ordered': True,
-        'suppress': True,  # the words of Python have no place here
+        'suppress': True,  # no Python completions here
     }
 
 
 def _complete_word(text: str) -> list[str]:
-    """Return what may stand for `text` at the cursor, as an older IPython asks it."""
+    """Return completions for `text` at the cursor, for an older IPython."""
     shell = sys.modules['IPython'].get_ipython()
     last, words = _possible(shell.Completer.text_until_cursor)
-    # What is replaced ends at the cursor, but it need not begin where the command's word does.
+    # The replaced text ends at the cursor, but need not begin where the command's word does.
     start = len(last) - len(text)
     return [word[start:] if start >= 0 else text[:-start] + word for word in words]
 
 
 def _possible(text: str) -> tuple[str, list[str]]:
-    """Return the word before the cursor, and what may stand there; nothing in other lines."""
+    """Return the word before the cursor and its completions; nothing on other lines."""
     magic, space, line = text.lstrip().partition(' ')
     if magic != '%ros2' or not space:
         return '', []

@@ -1,14 +1,15 @@
-"""`ros2 node`: which nodes there are, and what a node publishes, subscribes to and offers."""
+"""`ros2 node`: list nodes, and show a node's endpoints."""
 
 from __future__ import annotations
 
 import sys
 from argparse import Namespace
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from labkit.background.discovery import soon
+from labkit.asking.discovery import poll_until
 from labkit.errors import LabError
-from labkit.ros2.asking import add_discovery_options, asking_node, unknown
+from labkit.ros2.asking import add_discovery_options, asking_node, known_names, unknown
 from labkit.ros2.graph_words import node_names
 from labkit.ros2.parser import Command, Parser, Verb
 from labkit.rosgraph.listings import ends_of_node
@@ -23,7 +24,8 @@ __all__ = ['COMMAND']
 
 def list_nodes(args: Namespace) -> None:
     """Print the names of the nodes."""
-    names = _nodes(asking_node(args), args.all)
+    known = known_names(args, 'nodes', include_hidden=True)
+    names = _shown((name for name, _types in known), args.all)
     if args.count_nodes:
         print(len(names))
         return
@@ -38,10 +40,10 @@ def list_nodes(args: Namespace) -> None:
 
 
 def show_info(args: Namespace) -> None:
-    """Print what a node publishes, subscribes to and offers."""
+    """Print the endpoints of a node."""
     node = asking_node(args)
     name = args.node_name
-    count = soon(lambda: _nodes(node, args.include_hidden).count(name))
+    count = poll_until(lambda: _nodes(node, args.include_hidden).count(name))
     if not count:
         hidden = name in _nodes(node, include_hidden=True)
         todo = unknown(name, _nodes(node, include_hidden=False), 'node')
@@ -70,12 +72,12 @@ def show_info(args: Namespace) -> None:
 
 
 def _nodes(node: Node, include_hidden: bool) -> list[str]:
-    # The name alone decides, not the namespace.
-    return [
-        name
-        for name in names_of_nodes(node)
-        if include_hidden or not is_hidden(name.rpartition('/')[2])
-    ]
+    return _shown(names_of_nodes(node), include_hidden)
+
+
+def _shown(names: Iterable[str], include_hidden: bool) -> list[str]:
+    # Only the name counts, not the namespace.
+    return [name for name in names if include_hidden or not is_hidden(name.rpartition('/')[2])]
 
 
 def _list_arguments(parser: Parser) -> None:

@@ -1,4 +1,4 @@
-"""`ros2 param`: the parameters of nodes, which every node holds itself."""
+"""`ros2 param`: the parameters of nodes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rcl_interfaces.msg import Parameter
 
-from labkit.background.parameters import (
+from labkit.asking.parameters import (
     delete_parameter,
     describe_parameters,
     get_parameters,
@@ -18,7 +18,7 @@ from labkit.background.parameters import (
     parameter_names,
     set_parameters,
 )
-from labkit.errors import LabError
+from labkit.errors import LabError, quoted
 from labkit.ros2.asking import add_discovery_options, asking_node, check_node_name, unknown
 from labkit.ros2.graph_words import node_names
 from labkit.ros2.parser import Command, Parser, Usage, Verb, positive_float
@@ -72,7 +72,7 @@ def _pattern(text: str) -> re.Pattern[str]:
         return re.compile(text)
     except re.error as error:
         raise Usage(
-            f'ros2 param list: {text!r} is no regular expression: {error}.',
+            f'ros2 param list: {quoted(text)} is no regular expression: {error}.',
             todo="Such as 'qos.*', which stands for all that begins with qos.",
         ) from error
 
@@ -110,7 +110,7 @@ def set_parameter(args: Namespace) -> str | None:
 
 
 def delete(args: Namespace) -> str | None:
-    """Undeclare a parameter, where the node allows it."""
+    """Undeclare a parameter, if the node allows it."""
     node = asking_node(args)
     name = check_node_name(node, args.node_name)
     result = delete_parameter(node, name, args.parameter_name)
@@ -118,7 +118,7 @@ def delete(args: Namespace) -> str | None:
 
 
 def describe(args: Namespace) -> None:
-    """Print what is known of parameters: type, description, what they may be."""
+    """Print the descriptors of parameters: type, description, constraints."""
     node = asking_node(args)
     name = check_node_name(node, args.node_name)
     known = parameter_names(node, name)
@@ -145,7 +145,7 @@ def describe(args: Namespace) -> None:
 
 
 def dump(args: Namespace) -> None:
-    """Print all parameters of a node as YAML, as `load` and `--params-file` read it."""
+    """Print all parameters of a node as YAML that `load` and `--params-file` can read."""
     node = asking_node(args)
     name = check_node_name(node, args.node_name)
     names = parameter_names(node, name)
@@ -154,7 +154,7 @@ def dump(args: Namespace) -> None:
 
 
 def load(args: Namespace) -> int:
-    """Set the parameters of a node to those of a file."""
+    """Set the parameters of a node from a file."""
     node = asking_node(args)
     name = check_node_name(node, args.node_name)
     wanted = parameters_in(args.parameter_file, name, wildcard=not args.no_use_wildcard)
@@ -170,7 +170,7 @@ def load(args: Namespace) -> int:
 
 
 def _told(result: SetParametersResult, good: str, bad: str) -> str | None:
-    """Print that a parameter was set; return what to say if it was not."""
+    """Print that a parameter was set; return an error message if it was not."""
     reason = f': {result.reason}' if result.reason else ''
     if not result.successful:
         return f'{bad}{reason}'
@@ -179,7 +179,7 @@ def _told(result: SetParametersResult, good: str, bad: str) -> str | None:
 
 
 def _label(kind: str) -> str:
-    """Return how `get` introduces a value of a type."""
+    """Return the text with which `get` introduces a value."""
     if kind == NOT_SET:
         return 'Parameter not set.'
     word = kind.removesuffix(' array').capitalize()
@@ -197,7 +197,7 @@ def _other_name(name: str, names: list[str]) -> str:
 
 
 def _parameters(args: Namespace) -> Iterable[str]:
-    """Return the parameters to offer for completion."""
+    """Return completion candidates for a parameter name."""
     node = asking_node(args)
     return parameter_names(node, check_node_name(node, args.node_name, timeout_sec=0.0))
 

@@ -1,8 +1,8 @@
-"""Commands, verbs and options: how a line of `ros2` is taken apart, and what is said of a bad one.
+"""Commands, verbs and options: parsing a `ros2` line, and errors in it.
 
-The words and options are those of the real `ros2`. What is said when one of them is wrong is our
-own: one sentence with the nearest right word, then the usage line. It is the same under every
-version of Python, so that it can stand in a notebook.
+Words and options are those of the real `ros2`. Errors are our own: one sentence with the nearest
+right word, then the usage line. They are the same in every version of Python, so that they can be
+stored in a notebook.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
-from labkit.errors import nearest
+from labkit.errors import nearest, quoted
 from labkit.rosgraph.refusals import Refusal, Refused
 
 __all__ = [
@@ -28,27 +28,27 @@ __all__ = [
     'unsigned_int',
 ]
 
-# Columns of the help.
+# Width of the help text.
 WIDTH = 88
 
 Complete = Callable[[argparse.Namespace], Iterable[str]]
-"""Return the words that may stand at a place of the line, given what stands before it."""
+"""Return the completion candidates for a word, given the words before it."""
 
 
 class Usage(Refused):
-    """Report that a line can't be understood. Exit code 2, as with the real `ros2`."""
+    """Report a line that can't be parsed. Exit code 2, as with the real `ros2`."""
 
 
 class Done(Exception):
-    """End a line early, because help was asked for and shown."""
+    """End a line early, because help was requested and shown."""
 
 
 class Parser(argparse.ArgumentParser):
     """An argument parser that raises `Usage` and never ends the process.
 
     Args:
-        prog: The words that lead here, such as `ros2 topic echo`.
-        description: What it does, as one line.
+        prog: The command and verb, such as `ros2 topic echo`.
+        description: Its purpose, in one line.
     """
 
     def __init__(self, prog: str, description: str = '') -> None:
@@ -61,15 +61,15 @@ class Parser(argparse.ArgumentParser):
     def add(
         self, *names: str, complete: Complete | None = None, **options: Any
     ) -> argparse.Action:
-        """Add an argument, and say what may stand there.
+        """Add an argument with its completion.
 
         Args:
-            names: Name or option strings, as `add_argument` takes them.
-            complete: Returns the words to offer for completion.
-            options: As `add_argument` takes them.
+            names: Name or option strings, as for `add_argument`.
+            complete: Returns completion candidates.
+            options: As for `add_argument`.
         """
         if 'choices' in options:
-            # argparse words its complaint in another way in every version of Python.
+            # The wording of argparse's own error depends on the version of Python.
             choices = list(options.pop('choices'))
             options['type'] = _choice(choices)
             options.setdefault('metavar', '{' + ','.join(choices) + '}')
@@ -78,34 +78,43 @@ class Parser(argparse.ArgumentParser):
         action.complete = complete  # type: ignore[attr-defined]
         return action
 
+    def accept(self, *names: str, flag: bool = False) -> None:
+        """Add an option of the real verb that has no effect here."""
+        form: dict[str, Any] = {'action': 'store_true'} if flag else {'metavar': 'X'}
+        self.add(*names, help='accepted, without effect', **form)
+
+    def refuse(self, *names: str, why: str) -> None:
+        """Add an option of the real verb that is refused in words."""
+        self.add(*names, action=_Refusing, nargs='*', metavar='X', help=f'refused here: {why}')
+
     @property
     def actions(self) -> list[argparse.Action]:
-        """Return all arguments, in the order they were added."""
+        """All arguments, in the order they were added."""
         return self._actions
 
     def read(self, words: Sequence[str]) -> argparse.Namespace:
-        """Read the words after the verb.
+        """Parse the words after the verb.
 
         Raises:
-            Usage: They can't be understood.
-            Done: Help was asked for, and has been shown.
+            Usage: They can't be parsed.
+            Done: Help was requested, and has been shown.
         """
         if any(action.nargs == argparse.REMAINDER for action in self._actions):
             return self.parse_args(list(words))
-        # Options may stand anywhere, also before a positional that may be left out.
+        # Options may be anywhere, even before an optional positional.
         found, others = self.parse_known_intermixed_args(list(words))
         if others:
             raise self._refuse(others, found)
         return found
 
     def guess(self, words: Sequence[str]) -> tuple[argparse.Namespace, argparse.Action | None]:
-        """Tell what words mean that are perhaps not complete, or wrong. Nothing is refused.
+        """Parse words that may be incomplete or wrong, without raising.
 
         Args:
             words: The words after the verb.
 
         Returns:
-            What is known by the names of the arguments, and which one the next word would be.
+            The values known by argument name, and the argument that the next word belongs to.
         """
         options = {name: action for action in self._actions for name in action.option_strings}
         positionals = [action for action in self._actions if not action.option_strings]
@@ -117,7 +126,7 @@ class Parser(argparse.ArgumentParser):
                 setattr(known, waiting.dest, word)
                 waiting = waiting if several else None
             elif word in options or word.startswith('--'):
-                # An option may be cut short, as long as it is clear which one it is.
+                # An option may be abbreviated as long as it is unambiguous.
                 meant = [action for name, action in options.items() if name.startswith(word)]
                 action = options.get(word) or next(iter(meant), None)
                 nargs = action.nargs if action is not None else 0
@@ -133,12 +142,12 @@ class Parser(argparse.ArgumentParser):
         raise Usage(f'{self.prog}: {message}', todo=self.usage_line, reason=Refusal.BAD_ARGUMENT)
 
     def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
-        """End the line; called by argparse after it has shown help."""
+        """End the line; called by argparse after showing help."""
         raise Done
 
     @property
     def usage_line(self) -> str:
-        """Return how the command is used, on one line."""
+        """The usage of the command, on one line."""
         words = [self.prog, '[options]']
         for action in self._actions:
             if not action.option_strings:
@@ -154,18 +163,27 @@ class Parser(argparse.ArgumentParser):
             near = nearest(wrong.partition('=')[0], options)
             hint = f' Did you mean {near!r}?' if near else ''
             return Usage(
-                f'{self.prog} has no option {wrong!r}.{hint}',
+                f'{self.prog} has no option {quoted(wrong)}.{hint}',
                 todo=self.usage_line,
                 reason=Refusal.UNKNOWN_OPTION,
             )
         rest = ' '.join(others)
         hint, reason = '', Refusal.TOO_MANY_WORDS
-        # Of `data: 1` the first word has been taken for all of the YAML.
+        # Of `data: 1`, only the first word was taken as the YAML.
         if set(rest) & set('{}[]:') or str(getattr(found, 'values', '')).endswith(':'):
             hint = ' YAML goes in quotation marks: "{data: 1}"'
             reason = Refusal.QUOTES_MISSING
         return Usage(
-            f'{self.prog}: {rest!r} is too much.{hint}', todo=self.usage_line, reason=reason
+            f'{self.prog}: {quoted(rest)} is too much.{hint}', todo=self.usage_line, reason=reason
+        )
+
+
+class _Refusing(argparse.Action):
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> NoReturn:
+        why = str(self.help).partition(': ')[2]
+        raise Usage(
+            f'{parser.prog}: {self.option_strings[0]} is not here: {why}',
+            reason=Refusal.UNKNOWN_OPTION,
         )
 
 
@@ -174,11 +192,10 @@ class Verb:
     """One verb of a command, such as `list` of `ros2 topic list`.
 
     Attributes:
-        name: The word.
-        summary: What it does, as the real `ros2` says it in its help.
-        run: Does it. Returns None or 0 if all went well, another exit code, or an error message.
+        summary: Its help text in the real `ros2`.
+        run: Runs it. Returns None or 0 on success, another exit code, or an error message.
         arguments: Adds its arguments to a parser.
-        note: Where it differs from the real one, for the end of its help.
+        note: Differences from the real verb, shown at the end of its help.
     """
 
     name: str
@@ -201,42 +218,49 @@ class Command:
     """One command, such as `topic`.
 
     Attributes:
-        name: The word.
-        summary: What it is for, as the real `ros2` says it in its help.
-        verbs: Its verbs. A command that has none has itself as its only verb.
-        options: Option of the command that may stand before the verb -> its help.
+        summary: Its help text in the real `ros2`.
+        verbs: Its verbs. A command without verbs has itself as its only verb.
+        options: Options allowed before the verb -> help text.
+        elsewhere: Verbs of a full installation -> what they do.
     """
 
     name: str
     summary: str
     verbs: tuple[Verb, ...]
     options: dict[str, str] = field(default_factory=dict)
+    elsewhere: dict[str, str] = field(default_factory=dict)
 
     @property
     def has_verbs(self) -> bool:
-        """Tell whether a verb has to follow."""
+        """Whether a verb has to follow."""
         return [verb.name for verb in self.verbs] != [self.name]
 
     def verb(self, name: str) -> Verb:
-        """Return a verb.
+        """Return a verb by its name.
 
         Raises:
-            Usage: There is none of that name.
+            Usage: There is no such verb.
         """
         for verb in self.verbs:
             if verb.name == name:
                 return verb
         names = [verb.name for verb in self.verbs]
+        if name in self.elsewhere:
+            raise Usage(
+                f'ros2 {self.name} {name} is part of a full installation of ROS 2, but not of '
+                f'this course. It {self.elsewhere[name]}.',
+                reason=Refusal.UNKNOWN_VERB,
+            )
         near = nearest(name, names)
         hint = f' Did you mean {near!r}?' if near else ''
         raise Usage(
-            f'ros2 {self.name} has no verb {name!r}.{hint}',
+            f'ros2 {self.name} has no verb {quoted(name)}.{hint}',
             todo=f'usage: ros2 {self.name} <verb>   with one of: {", ".join(sorted(names))}',
             reason=Refusal.UNKNOWN_VERB,
         )
 
     def help(self) -> str:
-        """Return what `-h` shows, in the form of the real `ros2`."""
+        """Return the help text, in the form of the real `ros2`."""
         options = {'-h, --help': 'show this help message and exit', **self.options}
         calls = f'Call `ros2 {self.name} <command> -h` for more detailed usage.'
         return '\n'.join(
@@ -257,30 +281,30 @@ class Command:
 
 
 def table(rows: Iterable[tuple[str, str]]) -> list[str]:
-    """Return lines of a word and what it means, sorted and set in two columns."""
+    """Return rows of word and meaning as sorted lines in two columns."""
     found = sorted(rows)
     width = max(len(word) for word, _ in found)
     return [f'  {word:{width}}  {text}' for word, text in found]
 
 
 def unsigned_int(text: str) -> int:
-    """Read a whole number of at least 0."""
+    """Parse a whole number of at least 0."""
     return _int_from(text, 0)
 
 
 def positive_int(text: str) -> int:
-    """Read a whole number of at least 1."""
+    """Parse a whole number of at least 1."""
     return _int_from(text, 1)
 
 
 def positive_float(text: str) -> float:
-    """Read a finite number above 0."""
+    """Parse a finite number above 0."""
     try:
         value = float(text)
     except ValueError:
         value = math.nan
     if not 0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f'expected a number above 0, but got {text!r}')
+        raise argparse.ArgumentTypeError(f'expected a number above 0, but got {quoted(text)}')
     return value
 
 
@@ -291,7 +315,7 @@ def _int_from(text: str, least: int) -> int:
         value = least - 1
     if value < least:
         raise argparse.ArgumentTypeError(
-            f'expected a whole number of at least {least}, but got {text!r}'
+            f'expected a whole number of at least {least}, but got {quoted(text)}'
         )
     return value
 
@@ -302,6 +326,7 @@ def _choice(choices: list[str]) -> Callable[[str], str]:
             return text
         near = nearest(text, choices)
         hint = f'; did you mean {near!r}?' if near else ''
-        raise argparse.ArgumentTypeError(f'{text!r} is not one of {", ".join(choices)}{hint}')
+        known = ', '.join(choices)
+        raise argparse.ArgumentTypeError(f'{quoted(text)} is not one of {known}{hint}')
 
     return read

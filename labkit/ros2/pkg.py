@@ -1,4 +1,4 @@
-"""`ros2 pkg`: which packages there are, where, what they have to run; make a new one."""
+"""`ros2 pkg`: list packages and their executables, and create a package."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import xml.etree.ElementTree as ET
 from argparse import Namespace
 
 from labkit import settings
-from labkit.errors import LabError
+from labkit.errors import LabError, quoted
 from labkit.ros2.parser import Command, Parser, Verb
 from labkit.ros2.pkg_create import CREATE
-from labkit.rosgraph.packages import DEMO, executables, package_names, prefix_of
+from labkit.rosgraph.packages import DEMO, executables, package_names, prefix_of, with_executables
 
 __all__ = ['COMMAND']
 
@@ -21,13 +21,13 @@ def list_packages(args: Namespace) -> None:
 
 
 def show_prefix(args: Namespace) -> None:
-    """Print the folder that a package is installed in."""
+    """Print the folder where a package is installed."""
     prefix = prefix_of(args.package_name)
     print(prefix / 'share' / args.package_name if args.share else prefix)
 
 
 def show_xml(args: Namespace) -> None:
-    """Print what a package says about itself."""
+    """Print the manifest of a package."""
     path = prefix_of(args.package_name) / 'share' / args.package_name / 'package.xml'
     try:
         tree = ET.parse(path)
@@ -39,24 +39,21 @@ def show_xml(args: Namespace) -> None:
     elements = tree.getroot().findall(args.tag)
     if not elements:
         tags = ', '.join(sorted({child.tag for child in tree.getroot()}))
-        raise LabError(f'XML tag not found: {args.tag!r}', todo=f'It has: {tags}.')
+        raise LabError(f'XML tag not found: {quoted(args.tag)}', todo=f'It has: {tags}.')
     for element in elements:
         print(element.text)
 
 
 def list_executables(args: Namespace) -> None:
-    """Print what can be started with `ros2 run`."""
-    if args.package_name is None:
-        packages = sorted({*package_names(), DEMO})
-    else:
-        packages = [args.package_name]
+    """Print the executables that `ros2 run` can start."""
+    packages = with_executables() if args.package_name is None else [args.package_name]
     stand_ins = False
     for package in packages:
         for one in executables(package):
             stand_ins = stand_ins or one.stand_in
             print(' '.join(one.command) if args.full_path else f'{package} {one.path.name}')
     if stand_ins:
-        # In a notebook, what goes there is shown as an error.
+        # In a notebook, stderr is shown as an error.
         place = sys.stdout if settings.in_kernel() else sys.stderr
         print(f'({DEMO} is not installed; labkit has its talker and listener.)', file=place)
 
@@ -80,7 +77,7 @@ def _executables_arguments(parser: Parser) -> None:
         'package_name',
         nargs='?',
         help='The package name',
-        complete=lambda _: [*package_names(), DEMO],
+        complete=lambda _: with_executables(),
     )
     parser.add('--full-path', action='store_true', help='Show full path of each executable')
 

@@ -1,14 +1,15 @@
-"""`ros2 pkg create`: a new package for nodes in Python."""
+"""`ros2 pkg create`: create a Python package."""
 
 from __future__ import annotations
 
 import os
+import re
 import sys
 from argparse import Namespace
 from dataclasses import replace
 from pathlib import Path
 
-from labkit.errors import LabError
+from labkit.errors import LabError, quoted
 from labkit.packages.skeleton import (
     DESCRIPTION,
     LICENSE,
@@ -29,14 +30,14 @@ BUILD_TYPES = ('cmake', 'ament_cmake', 'ament_python')
 
 
 def create(args: Namespace) -> str | None:
-    """Make the files of a package, and print what is made."""
+    """Create the files of a package, and print their names."""
     if args.license == '?':
-        print('Supported licenses:', *LICENSES, sep='\n')
+        print('Supported licenses:', LICENSES[0], sep='\n')
         return None
     if args.build_type != 'ament_python':
         raise LabError(
             f'ros2 pkg create makes packages of the build type ament_python here, not '
-            f'{args.build_type!r}.',
+            f'{quoted(args.build_type)}.',
             todo='For nodes in Python: --build-type ament_python',
         )
     for name, what in (
@@ -46,6 +47,11 @@ def create(args: Namespace) -> str | None:
     ):
         if name is not None:
             check_name(name, what)
+    if args.launch_file and not re.fullmatch(r'[\w-]+\.launch\.xml', args.launch_file):
+        raise LabError(
+            f'{quoted(args.launch_file)} can not be the name of the launch file.',
+            todo='Letters, digits and _, and then .launch.xml: --launch-file robots.launch.xml',
+        )
     node_name = _node_name(args)
     package = _described(args, node_name)
     folder = os.path.join(args.destination_directory, package.name)
@@ -67,7 +73,7 @@ def create(args: Namespace) -> str | None:
 
 
 def _node_name(args: Namespace) -> str | None:
-    """Return the name of the node; a library of the same name takes it away."""
+    """Return the name of the node; append `_node` if the library has the same name."""
     if args.node_name is None or args.node_name != args.library_name:
         name: str | None = args.node_name
         return name
@@ -87,10 +93,10 @@ def _described(args: Namespace, node_name: str | None) -> Skeleton:
         license=args.license,
         dependencies=args.dependencies,
         format=int(args.package_format),
+        launch_files=[args.launch_file] if args.launch_file else [],
     )
-    if node_name is None:
-        return package
-    return replace(package, scripts=[(node_name, f'{package.name}.{node_name}:main')])
+    scripts = [] if node_name is None else [(node_name, f'{package.name}.{node_name}:main')]
+    return replace(package, scripts=scripts)
 
 
 def _announce(package: Skeleton, args: Namespace, node_name: str | None) -> None:
@@ -108,6 +114,8 @@ def _announce(package: Skeleton, args: Namespace, node_name: str | None) -> None
         print('node_name:', node_name)
     if args.library_name:
         print('library_name:', args.library_name)
+    if args.launch_file:
+        print('launch file:', args.launch_file)
 
 
 def _make(package: Skeleton, folder: str, node: str | None, library: str | None) -> None:
@@ -117,6 +125,7 @@ def _make(package: Skeleton, folder: str, node: str | None, library: str | None)
     if library:
         inside = f'{package.name}/{library}'
         parts += [Part(inside), Part(f'{inside}/__init__.py', '')]
+    parts += package.launch()
     for part in parts:
         if part.path == package.name:
             print('creating source folder')
@@ -129,6 +138,12 @@ def _add_license(name: str, folder: str) -> None:
     text = license_text(name)
     if text is not None:
         Part('LICENSE', text).write(Path(folder))
+        return
+    if name in LICENSES:
+        print(
+            f"\n[WARNING]: No text of the license '{name}' comes with this ros2.  This has been "
+            'set in the package.xml, but no LICENSE file has been created.'
+        )
         return
     print(
         f"\n[WARNING]: Unknown license '{name}'.  This has been set in the package.xml, but no "
@@ -174,6 +189,9 @@ def _arguments(parser: Parser) -> None:
     parser.add('--maintainer-name', help='name of the maintainer of this package')
     parser.add('--node-name', help='name of the empty executable')
     parser.add('--library-name', help='name of the empty library')
+    parser.add(
+        '--launch-file', help='name of a launch file, NAME.launch.xml, that starts the node'
+    )
 
 
 CREATE = Verb(
@@ -182,5 +200,5 @@ CREATE = Verb(
     create,
     _arguments,
     note='Here it makes packages of the build type ament_python. A name that Python could not '
-    'import is refused.',
+    'import is refused. --launch-file is not an option of the real one.',
 )

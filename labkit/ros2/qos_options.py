@@ -1,4 +1,4 @@
-"""The `--qos-...` options, and the QoS profile that they ask for."""
+"""The `--qos-...` options, and the QoS profile they describe."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ def add_qos_options(parser: Parser, default: str) -> None:
     """Add the `--qos-...` options.
 
     Args:
-        parser: Where to add them.
-        default: Short name of the preset profile that is the default, such as `'sensor_data'`.
+        parser: The parser to extend.
+        default: Short name of the default preset, such as `'sensor_data'`.
     """
     parser.add(
         '--qos-profile',
@@ -52,7 +52,7 @@ def add_qos_options(parser: Parser, default: str) -> None:
 
 
 def profile_from(args: Namespace) -> QoSProfile:
-    """Return the profile that the options ask for."""
+    """Return the profile described by the options."""
     return make_profile(
         args.qos_profile,
         _policies(args),
@@ -62,15 +62,15 @@ def profile_from(args: Namespace) -> QoSProfile:
 
 
 def matching_profile(args: Namespace, node: Node, topic: str) -> tuple[QoSProfile, list[str]]:
-    """Return the profile to subscribe with: by default one that all publishers match.
+    """Return the profile to subscribe with, by default one that matches all publishers.
 
     Args:
-        args: The arguments, with those of `add_qos_options`.
-        node: The node to ask the graph with.
+        args: The arguments, including those of `add_qos_options`.
+        node: The node to query the graph with.
         topic: Full name of the topic.
 
     Returns:
-        The profile, and lines that say so when publishers differ.
+        The profile, and notes about publishers that differ.
     """
     profile = profile_from(args)
     numbers = (args.qos_depth, args.qos_liveliness_lease_duration_seconds)
@@ -81,6 +81,6 @@ def matching_profile(args: Namespace, node: Node, topic: str) -> tuple[QoSProfil
 
 
 def _policies(args: Namespace) -> dict[str, str]:
-    """Return the policies that were asked for by name."""
+    """Return the policies that were set explicitly."""
     asked = {name: getattr(args, f'qos_{name}') for name in POLICIES}
     return {name: kind for name, kind in asked.items() if kind is not None}

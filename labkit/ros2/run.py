@@ -1,7 +1,7 @@
-"""`ros2 run`: start an executable of a package as a process of its own.
+"""`ros2 run`: start an executable of a package in its own process.
 
-In a terminal it runs until it ends or is interrupted, as with the real one. In a notebook it runs
-in the background, so that the next cell can watch it.
+In a terminal it runs in the foreground, as with the real command. In a notebook it runs in the
+background, so that the next cell can watch it.
 """
 
 from __future__ import annotations
@@ -11,19 +11,18 @@ import os
 import shlex
 import sys
 from argparse import Namespace
-from collections.abc import Iterable
 
 from labkit import settings
-from labkit.background.child_processes import end_earlier, environment, start_process
-from labkit.background.discovery import alone
+from labkit.asking.discovery import is_only_process
+from labkit.programs.child_processes import end_earlier, environment, start_process
 from labkit.ros2.asking import asking_node
 from labkit.ros2.parser import Command, Parser, Verb
-from labkit.rosgraph.packages import DEMO, Executable, executable, executables, package_names
+from labkit.rosgraph.packages import Executable, executable, executables, with_executables
 from labkit.rosgraph.snapshot import node_names
 
 __all__ = ['COMMAND']
 
-# How long to wait for the node of a process. On a busy machine Python itself takes a while.
+# Time for the node of a process to appear. On a busy machine Python itself takes a while.
 APPEAR_SEC = 15.0
 
 
@@ -40,8 +39,8 @@ def run(args: Namespace) -> int | None:
     name = f'{args.package_name} {args.executable_name}'
     end_earlier(command)
     before = node_names(node)
-    process = start_process(name, command, environment(), announces=chosen.stand_in)
-    process.wait_for_nodes(node, before, 0.0 if alone() else APPEAR_SEC)
+    process = start_process(name, command, environment(), announces=chosen.own)
+    process.wait_for_nodes(node, before, 0.0 if is_only_process() else APPEAR_SEC)
     if not process.running and process.exit_code:
         print('\n'.join(process.output[-10:]))
         print(f'{name} ended with exit code {process.exit_code}.')
@@ -61,10 +60,6 @@ def _stand_in_note(chosen: Executable) -> str:
     )
 
 
-def _names(args: Namespace) -> Iterable[str]:
-    return [one.path.name for one in executables(args.package_name)]
-
-
 def _arguments(parser: Parser) -> None:
     parser.add(
         '--prefix',
@@ -74,13 +69,17 @@ def _arguments(parser: Parser) -> None:
     parser.add(
         'package_name',
         help='Name of the ROS package',
-        complete=lambda _: [*package_names(), DEMO],
+        complete=lambda _: with_executables(),
     )
-    parser.add('executable_name', help='Name of the executable', complete=_names)
+    parser.add(
+        'executable_name',
+        help='Name of the executable',
+        complete=lambda args: [one.path.name for one in executables(args.package_name)],
+    )
     rest = parser.add(
         'argv', nargs=argparse.REMAINDER, help='Pass arbitrary arguments to the executable'
     )
-    rest.required = False  # or else a complaint about the other two names it too
+    rest.required = False  # otherwise errors about the other two name it too
 
 
 COMMAND = Command(

@@ -1,4 +1,4 @@
-"""`ros2 service`: which services there are, and calling one."""
+"""`ros2 service`: list services, and call one."""
 
 from __future__ import annotations
 
@@ -10,13 +10,21 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from labkit import settings
-from labkit.background.discovery import alone, soon
+from labkit.asking.discovery import poll_until
+from labkit.asking.service_calls import ServiceCalls
 from labkit.background.runtime import runtime
-from labkit.background.service_calls import ServiceCalls
 from labkit.errors import LabError
-from labkit.ros2.asking import add_discovery_options, asking_node, full_name, unknown
+from labkit.ros2.asking import (
+    add_discovery_options,
+    asking_node,
+    full_name,
+    known_names,
+    unknown,
+    values_text,
+)
 from labkit.ros2.graph_words import service_names, types_of_service
-from labkit.ros2.parser import Command, Parser, Usage, Verb, positive_float
+from labkit.ros2.parser import Command, Parser, Verb, positive_float
+from labkit.ros2.service_echo import ECHO
 from labkit.rosgraph import interfaces
 from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.listings import service_types, services
@@ -34,7 +42,7 @@ WAITING = 'waiting for service to become available...'
 
 def list_services(args: Namespace) -> None:
     """Print the names of the services."""
-    found = services(asking_node(args), include_hidden=args.include_hidden_services)
+    found = known_names(args, 'services', include_hidden=args.include_hidden_services)
     if args.count_services:
         print(len(found))
         return
@@ -48,7 +56,7 @@ def show_type(args: Namespace) -> None:
 
 
 def show_info(args: Namespace) -> None:
-    """Print a service's type and how many offer and call it."""
+    """Print a service's type, and the number of its clients and servers."""
     node = asking_node(args)
     types = _types_of(node, args.service_name)
     print(f'Type: {types[0] if len(types) == 1 else types}')
@@ -58,7 +66,7 @@ def show_info(args: Namespace) -> None:
 
 def find(args: Namespace) -> None:
     """Print the services of a type."""
-    found = services(asking_node(args), include_hidden=args.include_hidden_services)
+    found = known_names(args, 'services', include_hidden=args.include_hidden_services)
     names = [name for name, types in found if args.service_type in types]
     if not names:
         interfaces.check_exists(args.service_type, 'srv')
@@ -69,8 +77,8 @@ def call(args: Namespace) -> None:
     """Call a service, and print request and response."""
     srv_type = interfaces.service_class(args.service_type)
     request = srv_type.Request()
-    fill(request, read_yaml(_values(args)))
-    # This process knows of no service yet, as none of the real one does when it makes its client.
+    fill(request, read_yaml(values_text(args, 'service call', args.values)))
+    # A new process knows no services yet; the real command is always one when it makes its client.
     waiting = not runtime.started
     if waiting:
         print(WAITING, flush=True)
@@ -93,33 +101,27 @@ def call(args: Namespace) -> None:
 
 
 def _check_type(node: Node, name: str, wanted: str) -> None:
-    """Raise a LabError if a service is there, but of another type: the call would never end."""
-    types = soon(lambda: service_types(node, name), 0.0 if alone() else 0.3)
+    """Raise a LabError if a service exists with another type: the call would never return."""
+    types = poll_until(lambda: service_types(node, name), 0.3)
     if types and wanted not in types:
         raise Refused(
             f'{name} is a {", ".join(types)}, not a {wanted}.', reason=Refusal.OTHER_TYPE
         )
     if not node.count_services(name):
-        names = [other for other, _ in services(node)]
+        names = [other for other, _ in services(node) if node.count_services(other)]
         hint = unknown(name, names, 'service')
+        if types:
+            print(f'{name} has clients, but no node offers it.', file=sys.stderr, flush=True)
         if hint.startswith('Did you mean'):
             print(hint, file=sys.stderr, flush=True)
 
 
 def _types_of(node: Node, name: str) -> list[str]:
-    types = soon(lambda: service_types(node, name))
+    types = poll_until(lambda: service_types(node, name))
     if not types:
         names = [other for other, _ in services(node)]
         raise LabError(f"Unknown service '{name}'", todo=unknown(name, names, 'service'))
     return types
-
-
-def _values(args: Namespace) -> str:
-    if not args.stdin:
-        return str(args.values)
-    if settings.in_kernel():
-        raise Usage('ros2 service call: --stdin works in a terminal only.')
-    return sys.stdin.read()
 
 
 def _prototype(args: Namespace) -> Iterable[str]:
@@ -203,7 +205,15 @@ COMMAND = Command(
     'service',
     'Various service related sub-commands',
     (
-        Verb('call', 'Call a service', call, _call_arguments),
+        Verb(
+            'call',
+            'Call a service',
+            call,
+            _call_arguments,
+            'Values that a field can not hold are refused here, with exit code 1; the real one '
+            'converts some of them.',
+        ),
+        ECHO,
         Verb(
             'find',
             'Output a list of available services of a given type',

@@ -1,4 +1,4 @@
-"""Take a line of words, find the command and verb that it names, run it, print complaints."""
+"""Run a `ros2` line: find command and verb, run them, print errors."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from labkit import settings
-from labkit.errors import LabError, nearest
+from labkit.errors import LabError, nearest, quoted
 from labkit.ros2.parser import Command, Done, Usage, Verb, table
 from labkit.rosgraph.refusals import Refusal, Refused
 
@@ -23,6 +23,7 @@ COMMANDS = {
     'bag': 'labkit.ros2.bag',
     'doctor': 'labkit.ros2.doctor',
     'interface': 'labkit.ros2.interface',
+    'launch': 'labkit.ros2.launch',
     'node': 'labkit.ros2.node',
     'param': 'labkit.ros2.param',
     'pkg': 'labkit.ros2.pkg',
@@ -30,11 +31,31 @@ COMMANDS = {
     'service': 'labkit.ros2.service',
     'topic': 'labkit.ros2.topic',
 }
-# What a full installation has too. Named, so that nobody takes them for a slip of the pen.
-_ELSEWHERE = (
-    *('component', 'control', 'daemon', 'launch', 'lifecycle', 'multicast', 'plugin'),
-    *('security', 'test', 'wtf'),
-)
+# Commands of a full installation -> what they do, and what does it here.
+_ELSEWHERE = {
+    'component': (
+        'loads nodes in C++ into a running process',
+        'Nodes in Python can not be loaded so. Nodes of a notebook share its process anyway.',
+    ),
+    'control': ('manages the controllers of ros2_control, which are in C++', ''),
+    'daemon': (
+        'starts and stops a process in the background that knows the graph',
+        'A command asks the running notebook, which knows it; without one it looks for itself.',
+    ),
+    'lifecycle': (
+        'changes the states of nodes that have some',
+        'Call their services: ros2 service call /NODE/get_state lifecycle_msgs/srv/GetState, '
+        "or change_state with lifecycle_msgs/srv/ChangeState '{transition: {id: 1}}'.",
+    ),
+    'multicast': (
+        'sends and receives a packet, to try a network out',
+        'ros2 doctor tells how nodes look for each other here.',
+    ),
+    'plugin': ('lists plugins in C++', ''),
+    'security': ('makes keys and rules for encrypted traffic', ''),
+    'test': ('runs tests of launch files', 'pytest runs the tests of a package.'),
+    'wtf': ('is another name of doctor', 'Write ros2 doctor.'),
+}
 # At the end of a line it sends the command to the background, in a notebook too.
 BACKGROUND = '&'
 _SHELL_SIGNS = {'|', '||', '&', '&&', ';', '>', '>>', '<', '<<'}
@@ -42,21 +63,17 @@ _SHELL_SIGNS = {'|', '||', '&', '&&', ';', '>', '>>', '<', '<<'}
 
 @dataclass(frozen=True)
 class Ran:
-    """A command that was run.
+    """A finished command, for checks of exercises.
 
-    A judge takes the last one of `history` that has to do with its exercise. If `reason` is one
-    that it has an explanation for, it explains that; if `topic` is not its own, the command went
-    elsewhere; otherwise it shows `complaint`. It need not read the words, nor the complaint.
-
-        tried = [ran for ran in history if ran.words[:2] == ('topic', 'pub')]
-        if tried and tried[-1].reason is Refusal.SPACE_AFTER_COLON: ...
+    A check looks at the last relevant command of `history`. If it can explain `reason`, it does;
+    if `topic` is not the right one, the command went elsewhere; otherwise it shows `complaint`.
 
     Attributes:
         words: The words after `ros2`.
-        complaint: What was said to be wrong with it, '' if nothing was.
+        complaint: The error message, '' if there was none.
         reason: Why it was refused, None if it was not.
-        topic: Full name of the topic that it named, '' if it named none. Of a command that was
-            refused as far as can be told, so it may be no name that a topic can have.
+        topic: Full name of the topic it named, '' if none. For a refused command it is a guess,
+            and may be an invalid name.
     """
 
     words: tuple[str, ...]
@@ -70,13 +87,13 @@ history: deque[Ran] = deque(maxlen=100)
 
 
 def run_line(line: str) -> int:
-    """Run what stands after `%ros2` in a cell; print what goes wrong.
+    """Run the text after `%ros2` in a cell; print errors.
 
     Args:
         line: The words, quoted as in a terminal.
 
     Returns:
-        The exit code of the real `ros2`: 0 if all went well.
+        The exit code of the real `ros2`: 0 on success.
     """
     try:
         words = split(line)
@@ -88,10 +105,10 @@ def run_line(line: str) -> int:
 
 
 def split(line: str) -> list[str]:
-    """Split a line into words as a terminal does; a comment is left out.
+    """Split a line into words as a terminal does; drop comments.
 
     Raises:
-        Usage: A quotation mark is missing, or it asks for what only a terminal can do.
+        Usage: A quotation mark is missing, or the line needs a terminal.
     """
     lexer = shlex.shlex(line, posix=True, punctuation_chars=True)
     lexer.whitespace_split = True
@@ -112,7 +129,7 @@ def split(line: str) -> list[str]:
     sign = next((word for word in sent if word in _SHELL_SIGNS), '')
     if sign and not _is_quoted(line, sign):
         raise Usage(
-            f'{sign!r} belongs to a terminal; %ros2 runs one command.',
+            f'{quoted(sign)} belongs to a terminal; %ros2 runs one command.',
             todo='Leave it out, put it in quotation marks, or use a terminal: !ros2 ...',
             reason=Refusal.TERMINAL_SIGN,
         )
@@ -120,29 +137,28 @@ def split(line: str) -> list[str]:
 
 
 def execute(words: Sequence[str], *, background: bool = False) -> int:
-    """Run a command; print what goes wrong. Only a BrokenPipeError leaves this function.
+    """Run a command; print errors. Only a BrokenPipeError leaves this function.
 
     Args:
         words: The words after `ros2`.
-        background: Whether to start it as a process of its own, and not wait for its end.
+        background: Whether to start it in its own process, without waiting for its end.
 
     Returns:
-        The exit code: 0 if all went well, 2 if the words can't be understood or it was
-        interrupted, else 1.
+        The exit code: 0 on success, 2 if the words can't be parsed or it was interrupted, else 1.
     """
     try:
         result = _start(list(words)) if background else _run(list(words))
     except Done:
         result = 0
     except KeyboardInterrupt:
-        result = 2  # SIGINT, as the real one
+        result = 2  # SIGINT, as with the real command
     except Usage as error:
         return _complain(words, 2, error)
     except LabError as error:
         return _complain(words, 1, error)
     except BrokenPipeError:
         raise
-    except Exception as error:  # never a traceback: nobody who types a command can read it
+    except Exception as error:  # never a traceback: the user of a command can't read it
         return _complain(words, 1, LabError(f'{type(error).__name__}: {error}'))
     if isinstance(result, str):
         return _complain(words, 1, LabError(result))
@@ -174,21 +190,23 @@ def command(name: str) -> Command:
     """Return a command by its name.
 
     Raises:
-        Usage: There is none of that name.
+        Usage: There is no such command.
     """
     if name in COMMANDS:
         found: Command = importlib.import_module(COMMANDS[name]).COMMAND
         return found
     if name in _ELSEWHERE:
+        does, instead = _ELSEWHERE[name]
         raise Usage(
-            f'ros2 {name} is part of a full installation of ROS 2, but not of this course.',
-            todo=f'Here: {", ".join(sorted(COMMANDS))}.',
+            f'ros2 {name} is part of a full installation of ROS 2, but not of this course. It '
+            f'{does}.',
+            todo=' '.join(filter(None, [instead, f'Here: {", ".join(sorted(COMMANDS))}.'])),
             reason=Refusal.UNKNOWN_COMMAND,
         )
     near = nearest(name, COMMANDS)
     hint = f' Did you mean {near!r}?' if near else ''
     raise Usage(
-        f'ros2 has no command {name!r}.{hint}',
+        f'ros2 has no command {quoted(name)}.{hint}',
         todo=f'usage: ros2 <command>   with one of: {", ".join(sorted(COMMANDS))}',
         reason=Refusal.UNKNOWN_COMMAND,
     )
@@ -200,17 +218,20 @@ def _run(words: list[str]) -> str | int | None:
 
 
 def _start(words: list[str]) -> str | int | None:
-    """Start a command in the background; a bad one is refused here and now."""
+    """Start a command in the background; raise errors in it right away."""
     verb, args = _understand(words)
-    if verb.name == 'run':
-        return verb.run(args)  # is in the background anyway
+    if verb.name in ('launch', 'run'):
+        return verb.run(args)  # already runs in the background
     from labkit.ros2.background_command import start
 
     return start(words, args)
 
 
 def _understand(words: list[str]) -> tuple[Verb, Namespace]:
-    """Return the verb that the words name, and its arguments; show help if that is asked for."""
+    """Return the verb and its arguments; show help if requested."""
+    for word in words:
+        if any('\ud800' <= char <= '\udfff' for char in word):  # a byte that is none in UTF-8
+            raise Usage(f'{quoted(word)} is no text in UTF-8.')
     if not words or words[0] in ('-h', '--help'):
         print(_help())
         raise Done
@@ -227,7 +248,7 @@ def _understand(words: list[str]) -> tuple[Verb, Namespace]:
 
 
 def _options_before_verb(chosen: Command, words: list[str]) -> tuple[list[str], list[str]]:
-    """Split `--include-hidden-topics list -t` before the verb."""
+    """Split off the options before the verb, as in `--include-hidden-topics list -t`."""
     known = {'-h', '--help', *chosen.options}
     count = 0
     while count < len(words) and words[count].startswith('-'):
@@ -235,7 +256,7 @@ def _options_before_verb(chosen: Command, words: list[str]) -> tuple[list[str], 
             near = nearest(words[count], known)
             hint = f' Did you mean {near!r}?' if near else ''
             raise Usage(
-                f'ros2 {chosen.name} has no option {words[count]!r}.{hint}',
+                f'ros2 {chosen.name} has no option {quoted(words[count])}.{hint}',
                 reason=Refusal.UNKNOWN_OPTION,
             )
         count += 1
@@ -262,7 +283,7 @@ def _help() -> str:
 
 
 def _ends_in_background(line: str, words: list[str]) -> bool:
-    """Tell whether the line ends with the sign that a shell sends a command away with."""
+    """Return whether the line ends with the shell's sign for the background."""
     sent = words[-1:] == [BACKGROUND] and not _is_quoted(line, BACKGROUND)
     return sent and settings.in_kernel()
 

@@ -1,20 +1,22 @@
-"""What verbs share that go on until they are stopped: a subscription, and the loop that waits.
+"""Helpers of verbs that run until they are stopped: a subscription, and the loop that waits.
 
-Messages are taken in the background and handed over; all printing is done by the loop, in the
-cell that runs the command. The loop does not let the output of other callbacks through, so a
-cell shows the same each time.
+Messages arrive in the background and are queued; the loop prints them in the cell that runs the
+command. It holds back the output of other callbacks, so the output is the same each time.
 """
 
 from __future__ import annotations
 
-import queue
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from labkit import settings
+from labkit.asking.discovery import poll_until
+from labkit.asking.listener import Listener
 from labkit.background.compat import RCLError
+from labkit.background.wait import wait_for
 from labkit.errors import LabError
 from labkit.ros2.asking import other_type, unknown
 from labkit.ros2.parser import Parser, Usage, positive_float, positive_int
@@ -29,16 +31,15 @@ __all__ = [
     'Arrivals',
     'Stop',
     'add_stop_options',
+    'log',
     'subscribed',
     'tell',
     'wait_for_type',
 ]
 
-# So many messages a cell shows. A terminal forgets what has scrolled away, a notebook keeps it.
+# Most messages shown in a cell. A terminal forgets what scrolls away, a notebook keeps it.
 MAX_SHOWN = 1000
-# While nothing comes, the loop looks this often whether it is time to stop.
-POLL_SEC = 0.05
-# Messages that wait to be printed; more than that are counted as lost.
+# Most queued messages; further ones are lost.
 MAX_WAITING = 1000
 
 
@@ -46,7 +47,7 @@ def add_stop_options(parser: Parser, what: str) -> None:
     """Add the options that end a stream, which the real verbs do not have.
 
     Args:
-        parser: Where to add them.
+        parser: The parser to extend.
         what: What is counted, such as `'messages'`.
     """
     parser.add('--count', metavar='N', type=positive_int, help=f'Exit after N {what} (only here)')
@@ -56,14 +57,14 @@ def add_stop_options(parser: Parser, what: str) -> None:
 
 
 class Stop:
-    """Tells when a stream is to end: after a count, or after a time.
+    """The end of a stream: after a count, or after a time.
 
     Args:
-        count: How often `count_one` is called before the end; None for no end.
-        timeout_sec: Seconds before the end; None for no end.
+        count: Number of calls of `count_one` before the end; None for no limit.
+        timeout_sec: Seconds before the end; None for no limit.
 
     Raises:
-        Usage: There is no end, and nobody to press the stop button.
+        Usage: There is no limit, and nobody to press the stop button.
     """
 
     def __init__(self, count: int | None, timeout_sec: float | None) -> None:
@@ -82,67 +83,69 @@ class Stop:
             self._left -= 1
 
     def now(self) -> None:
-        """End it now."""
+        """End the stream now."""
         self._left = 0
 
     @property
     def reached(self) -> bool:
-        """Tell whether it is time to end."""
-        return self._left == 0 or self.left_sec == 0
-
-    @property
-    def left_sec(self) -> float:
-        """Return how long to wait before looking again, in seconds."""
-        if self._end is None:
-            return POLL_SEC
-        return min(POLL_SEC, max(0.0, self._end - time.monotonic()))
+        """Whether it is time to end."""
+        return self._left == 0 or (self._end is not None and time.monotonic() >= self._end)
 
 
 class Arrivals:
-    """What has come in the background and waits to be printed."""
+    """Queue of messages that arrived in the background."""
 
     def __init__(self) -> None:
-        self._queue: queue.Queue[Callable[[], object]] = queue.Queue(MAX_WAITING)
+        self._waiting: deque[Callable[[], object]] = deque()
 
     def put(self, show: Callable[[], object]) -> None:
-        """Hand over what prints a message. Called in the background; never waits."""
-        try:
-            self._queue.put_nowait(show)
-        except queue.Full:
-            pass
+        """Queue the printing of a message. Called in the background; never blocks."""
+        if len(self._waiting) < MAX_WAITING:
+            self._waiting.append(show)
 
     def show_until(self, stop: Stop, after: Callable[[], object] = lambda: None) -> None:
-        """Print what comes until it is time to stop.
+        """Print messages until it is time to stop.
 
         Args:
             stop: When to stop.
-            after: Called after each message, and some times a second.
+            after: Called after each message, and many times a second.
         """
-        while not stop.reached:
-            try:
-                self._queue.get(timeout=stop.left_sec or 0.001)()
-            except queue.Empty:
-                pass
+
+        def is_due() -> bool:
             after()
+            return stop.reached or bool(self._waiting)
+
+        while wait_for(is_due, None) and not stop.reached:
+            self._waiting.popleft()()
+
+    def show_rest(self) -> None:
+        """Print what has arrived since it was time to stop."""
+        while self._waiting:
+            self._waiting.popleft()()
 
 
 def tell(text: str, end: str = '\n') -> None:
     """Print a part of a stream: at once in a terminal, soon in a cell.
 
-    A kernel sends what is flushed as one message each. A client that is behind loses some of a
-    thousand such messages; left alone, ipykernel sends what was printed five times a second.
+    A kernel sends each flush as one message, and a slow client loses some of a thousand. Without
+    flushes, ipykernel sends the output five times a second.
     """
     print(text, end=end, flush=not settings.in_kernel())
+
+
+def log(level: str, node_name: str, text: str) -> None:
+    """Print a line like the log of a node, without the time, which differs each time."""
+    tell(f'[{level}] [{node_name}]: {text}')
 
 
 def wait_for_type(node: Node, topic: str, stop: Stop, *, typed: str) -> str | None:
     """Return the type of a topic; wait for a topic that does not exist yet, and say so.
 
     Args:
-        node: The node to ask the graph with.
+        node: The node to query the graph with.
         topic: Full name of the topic.
         stop: When to stop waiting.
-        typed: The name of the topic as it was typed, which is how it is shown.
+        typed: The name of the topic as typed, for messages.
 
     Returns:
         The type's name, None if it was time to stop.
@@ -150,26 +153,21 @@ def wait_for_type(node: Node, topic: str, stop: Stop, *, typed: str) -> str | No
     Raises:
         LabError: The topic has more than one type.
     """
-    said = False
-    while True:
+    types = poll_until(lambda: topic_types(node, topic))
+    if not types:
+        hint = unknown(topic, [name for name, _ in topics(node)], 'topic')
+        print(f'WARNING: topic [{typed}] does not appear to be published yet', flush=True)
+        if hint.startswith('Did you mean'):
+            print(hint, flush=True)
+        wait_for(lambda: topic_types(node, topic) or stop.reached, None)
         types = topic_types(node, topic)
-        if len(types) > 1:
-            raise LabError(
-                f"Cannot echo topic '{topic}', as it contains more than one type: "
-                f'[{", ".join(types)}]',
-                todo='Name the type that you want after the topic.',
-            )
-        if types:
-            return types[0]
-        if not said:
-            said = True
-            hint = unknown(topic, [name for name, _ in topics(node)], 'topic')
-            print(f'WARNING: topic [{typed}] does not appear to be published yet', flush=True)
-            if hint.startswith('Did you mean'):
-                print(hint, flush=True)
-        if stop.reached:
-            return None
-        time.sleep(stop.left_sec)
+    if len(types) > 1:
+        raise LabError(
+            f"Cannot echo topic '{topic}', as it contains more than one type: "
+            f'[{", ".join(types)}]',
+            todo='Name the type that you want after the topic.',
+        )
+    return types[0] if types else None
 
 
 @contextmanager
@@ -184,7 +182,7 @@ def subscribed(
     report_lost: bool = False,
     raw: bool = False,
 ) -> Iterator[None]:
-    """Listen to a topic for as long as a `with` block lasts.
+    """Subscribe to a topic while a `with` block runs.
 
     Args:
         node: The node that subscribes.
@@ -192,14 +190,14 @@ def subscribed(
         msg_type: Class of its messages.
         profile: QoS profile.
         callback: Called in the background with each message.
-        say: Called in the background with what else there is to say.
-        report_lost: Whether to say when a message was lost.
-        raw: Whether to hand over serialized messages.
+        say: Called in the background with remarks.
+        report_lost: Whether to report lost messages.
+        raw: Whether to pass serialized messages.
 
     Raises:
         LabError: Somebody in this process uses the topic with another type.
     """
-    from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
+    from rclpy.event_handler import SubscriptionEventCallbacks
     from rclpy.qos import qos_policy_name_from_kind
 
     def lost(event: Any) -> None:
@@ -224,15 +222,10 @@ def subscribed(
         use_default_callbacks=False,
     )
     try:
-        try:
-            subscription = node.create_subscription(
-                msg_type, topic, callback, profile, event_callbacks=events, raw=raw
-            )
-        except UnsupportedEventTypeError:
-            subscription = node.create_subscription(msg_type, topic, callback, profile, raw=raw)
+        listener = Listener(
+            node, topic, msg_type, callback, qos_profile=profile, raw=raw, events=events
+        )
     except (RCLError, LabError) as error:
         raise other_type(node, topic, msg_type, error) from error
-    try:
+    with listener:
         yield
-    finally:
-        node.destroy_subscription(subscription)

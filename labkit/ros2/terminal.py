@@ -1,16 +1,18 @@
-"""`ros2` in a terminal: a real one first, the domain of the running notebook, completion."""
+"""`ros2` in a terminal: prefer a real one, join the domain of the running notebook, complete."""
 
 from __future__ import annotations
 
 import os
 import shutil
 import sys
+from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 
 from labkit import domain_ids
 from labkit.background import domains
 from labkit.errors import LabError
+from labkit.files import read_limited
 
 __all__ = ['BASH', 'choose_domain', 'real_ros2', 'run']
 
@@ -48,7 +50,7 @@ def run(words: list[str]) -> int:
         sys.stdout.flush()
         return code
     except BrokenPipeError:
-        # Whoever read the output has gone, as `head` does. Python flushes once more at exit.
+        # The reader of the output has gone, as `head` does. Python flushes once more at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
 
@@ -73,9 +75,17 @@ def choose_domain() -> None:
         return
     notebooks = domains.claimed_domains()
     if len(notebooks) > 1:
-        lines = [f'  ROS_DOMAIN_ID={number}  {name}' for number, name in notebooks.items()]
+        kernels = Counter(notebooks.values())
+        newest = {name: number for number, name in reversed(notebooks.items())}
+        lines = [
+            f'  ROS_DOMAIN_ID={number}  {name}'
+            + f' (its newest kernel of {kernels[name]})' * (kernels[name] > 1)
+            for number, name in notebooks.items()
+            if newest[name] == number
+        ]
         raise LabError(
-            'Several notebooks are running, each in a ROS domain of its own:\n' + '\n'.join(lines),
+            'Several notebooks are running, each in a ROS domain of its own, the newest first:\n'
+            + '\n'.join(lines),
             todo=f'Choose one: export ROS_DOMAIN_ID={next(iter(notebooks))}{_profile(notebooks)}',
         )
     for domain_id in notebooks:
@@ -83,7 +93,7 @@ def choose_domain() -> None:
 
 
 def _profile(domains: Iterable[int]) -> str:
-    """Say what a program needs that is neither this command nor imports labkit; '' if nothing."""
+    """Return what programs without labkit need for these domains; '' if nothing."""
     if set(domains).isdisjoint(domain_ids.BETWEEN):
         return ''
     return (
@@ -93,7 +103,7 @@ def _profile(domains: Iterable[int]) -> str:
 
 
 def _complete() -> int:
-    """Print what may stand at the cursor, for bash."""
+    """Print completions at the cursor, for bash."""
     line = os.environ['COMP_LINE'][: int(os.environ.get('COMP_POINT', '0')) or None]
     try:
         choose_domain()
@@ -103,22 +113,22 @@ def _complete() -> int:
 
     _, _, rest = line.partition(' ')
     last, words = complete_line(rest)
-    # For bash a word begins anew after a colon or an equals sign.
+    # For bash a word starts over after a colon or an equals sign.
     kept = max(last.rfind(':'), last.rfind('=')) + 1
     print('\n'.join(word[kept:] for word in words))
     return 0
 
 
 def _is_ours(path: Path) -> bool:
-    """Tell whether a script is that of another environment of this course."""
+    """Return whether a script belongs to another environment of this course."""
     try:
-        return b'labkit.ros2' in path.read_bytes()[:2000]
+        return b'labkit.ros2' in read_limited(path)[:2000]
     except OSError:
         return False
 
 
 def _environment_of_others() -> dict[str, str]:
-    """Return the variables without what makes the libraries of the wheels be found first."""
+    """Return the variables without those that make the libraries of the wheels take precedence."""
     variables = dict(os.environ)
     variables.pop('_ROS_WHEELS_BOOTSTRAP_COMPLETE', None)
     paths = variables.pop('LD_LIBRARY_PATH', '').split(os.pathsep)

@@ -1,4 +1,4 @@
-"""`ros2 topic`: what topics there are, who is at their ends, and the verbs that stream."""
+"""`ros2 topic`: list topics and their endpoints; and the verbs that stream."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import argparse
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
-from labkit.background.discovery import soon
+from labkit.asking.discovery import poll_until
 from labkit.errors import LabError
-from labkit.ros2.asking import add_discovery_options, asking_node, unknown
+from labkit.ros2.asking import add_discovery_options, asking_node, known_names, unknown
 from labkit.ros2.graph_words import topic_names
 from labkit.ros2.parser import Command, Parser, Verb
 from labkit.ros2.topic_echo import ECHO
@@ -29,13 +29,15 @@ HIDDEN = '--include-hidden-topics'
 
 def list_topics(args: Namespace) -> None:
     """Print the names of the topics."""
-    node = asking_node(args)
-    found = topics(node, include_hidden=args.include_hidden_topics)
+    if args.verbose and not args.count_topics:
+        node = asking_node(args)
+        if found := topics(node, include_hidden=args.include_hidden_topics):
+            print(_ends(node, found, publishers=True))
+            print(_ends(node, found, publishers=False))
+        return
+    found = known_names(args, 'topics', include_hidden=args.include_hidden_topics)
     if args.count_topics:
         print(len(found))
-    elif args.verbose and found:
-        print(_ends(node, found, publishers=True))
-        print(_ends(node, found, publishers=False))
     else:
         for name, types in found:
             print(f'{name} [{", ".join(types)}]' if args.show_types else name)
@@ -45,7 +47,7 @@ def show_info(args: Namespace) -> None:
     """Print a topic's type and its publishers and subscriptions."""
     node = asking_node(args)
     name = args.topic_name
-    types = soon(lambda: topic_types(node, name))
+    types = poll_until(lambda: topic_types(node, name))
     if not types:
         names = [topic for topic, _ in topics(node)]
         raise LabError(f"Unknown topic '{name}'", todo=unknown(name, names, 'topic'))
@@ -62,11 +64,11 @@ def show_info(args: Namespace) -> None:
 def show_type(args: Namespace) -> str | int:
     """Print a topic's type."""
     node = asking_node(args)
-    types = soon(
+    types = poll_until(
         lambda: dict(topics(node, include_hidden=args.include_hidden_topics)).get(args.topic_name)
     )
     if not types:
-        # The real one says nothing and ends with code 1; a learner needs a word.
+        # The real one is silent and ends with code 1; a learner needs an explanation.
         names = [topic for topic, _ in topics(node)]
         raise LabError(
             f"Unknown topic '{args.topic_name}'", todo=unknown(args.topic_name, names, 'topic')
@@ -77,7 +79,7 @@ def show_type(args: Namespace) -> str | int:
 
 def find(args: Namespace) -> None:
     """Print the topics of a type."""
-    found = topics(asking_node(args), include_hidden=args.include_hidden_topics)
+    found = known_names(args, 'topics', include_hidden=args.include_hidden_topics)
     names = [name for name, types in found if args.topic_type in types]
     if not names:
         interfaces.check_exists(args.topic_type, 'msg')
@@ -85,7 +87,7 @@ def find(args: Namespace) -> None:
 
 
 def _ends(node: Node, found: NamesAndTypes, *, publishers: bool) -> str:
-    """Return the topics that have publishers, or those that have subscribers, as a list."""
+    """Return the list of topics that have publishers, or of those that have subscribers."""
     count_of = node.count_publishers if publishers else node.count_subscribers
     word = 'publisher' if publishers else 'subscriber'
     lines = ['Published topics:' if publishers else 'Subscribed topics:']
@@ -105,8 +107,7 @@ def _print_each(infos: list[TopicEndpointInfo]) -> None:
 
 def _hidden_options(parser: Parser, *, shown: bool) -> None:
     text = 'Consider hidden topics as well' if shown else argparse.SUPPRESS
-    names = [HIDDEN, '-a', '--all'] if shown else [HIDDEN]
-    parser.add(*names, action='store_true', help=text, dest='include_hidden_topics')
+    parser.add(HIDDEN, action='store_true', help=text)
 
 
 def _list_arguments(parser: Parser) -> None:
@@ -177,7 +178,13 @@ COMMAND = Command(
         Verb('info', 'Print information about a topic', show_info, _info_arguments),
         Verb('list', 'Output a list of available topics', list_topics, _list_arguments),
         PUB,
-        Verb('type', "Print a topic's type", show_type, _type_arguments),
+        Verb(
+            'type',
+            "Print a topic's type",
+            show_type,
+            _type_arguments,
+            'An unknown topic is told here; the real one only ends with exit code 1.',
+        ),
     ),
     {HIDDEN: 'Consider hidden topics as well'},
 )

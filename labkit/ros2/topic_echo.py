@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from labkit import settings
-from labkit.background.discovery import soon
+from labkit.asking.silence import why_silent
+from labkit.background.runtime import runtime
 from labkit.errors import LabError, nearest
 from labkit.ros2.asking import add_discovery_options, asking_node, full_name
 from labkit.ros2.graph_words import topic_names, types_of_topic
@@ -27,20 +28,19 @@ from labkit.ros2.qos_options import add_qos_options, matching_profile
 from labkit.ros2.streams import MAX_SHOWN, Arrivals, Stop, subscribed, tell, wait_for_type
 from labkit.rosgraph import interfaces
 from labkit.rosgraph.interfaces import type_name
-from labkit.rosgraph.listings import topic_types
-from labkit.rosgraph.matching import why_silent
 from labkit.rosgraph.message_yaml import field_paths, to_csv, to_yaml
 
 if TYPE_CHECKING:
     from rclpy.node import Node
 
-__all__ = ['ECHO']
+__all__ = ['ECHO', 'add_form_options', 'text_of']
 
 TRUNCATE_LENGTH = 128
+SETTLE_SEC = 2.0
 
 
 def echo(args: Namespace) -> str | None:
-    """Show messages until a count, a time, or the stop button."""
+    """Show messages until a count, a timeout, or the stop button."""
     if args.filter_expr is not None:
         raise Usage(
             'ros2 topic echo: --filter takes Python code, and %ros2 runs none.',
@@ -89,6 +89,10 @@ def echo(args: Namespace) -> str | None:
         arrivals.show_until(stop)
         if seen:
             return None
+        # The background may have had no turn yet; what was to be known at once is told all the
+        # same. A message is too late.
+        runtime.executor.settle(SETTLE_SEC)
+        arrivals.show_rest()
         return f'No message came. {why_silent(node, topic, msg_type, profile)}'
 
 
@@ -96,7 +100,6 @@ def _type_of(node: Node, topic: str, args: Namespace, stop: Stop) -> Any:
     """Return the class of the topic's messages, None if it was time to stop."""
     if args.message_type is not None:
         return interfaces.message_class(args.message_type)
-    soon(lambda: topic_types(node, topic))
     name = wait_for_type(node, topic, stop, typed=args.topic_name)
     return None if name is None else interfaces.message_class(name)
 
@@ -121,63 +124,49 @@ def _check_field(text: str | None, msg_type: Any) -> list[str]:
 def _show(args: Namespace, fields: list[str], message: Any, info: dict[str, Any]) -> None:
     """Print one message."""
     part = functools.reduce(getattr, fields, message)
-    length = None if args.full_length else args.truncate_length
     if not hasattr(part, 'get_fields_and_field_types'):
         if args.include_message_info:
             print('---Got new message, message info:---')
             print(info)
             print('---Message data:---')
         tell(str(part), end='\n---\n')
-    elif args.csv:
-        text = to_csv(part, truncate_length=length, no_arr=args.no_arr, no_str=args.no_str)
-        if args.include_message_info:
-            text = f'{",".join(map(str, info.values()))},{text}'
-        tell(text)
     else:
+        text, end = text_of(part, args)
         if args.include_message_info:
-            tell(yaml.safe_dump(info), end='---\n')
-        text = to_yaml(
-            part,
-            truncate_length=length,
-            no_arr=args.no_arr,
-            no_str=args.no_str,
-            flow_style=args.flow_style,
-        )
-        tell(text, end='---\n')
+            text = (
+                f'{",".join(map(str, info.values()))},{text}'
+                if args.csv
+                else f'{yaml.safe_dump(info)}---\n{text}'
+            )
+        tell(text, end=end)
+
+
+def text_of(message: Any, args: Namespace) -> tuple[str, str]:
+    """Return a message in the form that the options ask for, and what ends it."""
+    form = {
+        'truncate_length': None if args.full_length else args.truncate_length,
+        'no_arr': args.no_arr,
+        'no_str': args.no_str,
+    }
+    if args.csv:
+        return to_csv(message, **form), '\n'
+    return to_yaml(message, **form, flow_style=args.flow_style), '---\n'
 
 
 def _fields(args: Namespace) -> Iterable[str]:
-    """Return the fields to offer for completion."""
+    """Return completion candidates for a field."""
     types = [getattr(args, 'message_type', None)]
     if not types[0] and getattr(args, 'topic_name', None):
         types = list(types_of_topic(args))
     return field_paths(interfaces.message_class(types[0])) if len(types) == 1 and types[0] else ()
 
 
-def _arguments(parser: Parser) -> None:
-    add_discovery_options(parser)
-    parser.add(
-        'topic_name',
-        help="Name of the ROS topic to listen to (e.g. '/chatter')",
-        complete=topic_names,
-    )
-    parser.add(
-        'message_type',
-        nargs='?',
-        help="Type of the ROS message (e.g. 'std_msgs/msg/String')",
-        complete=types_of_topic,
-    )
-    add_qos_options(parser, 'sensor_data')
+def add_form_options(parser: Parser) -> None:
+    """Add the options that say how a message is printed."""
     parser.add(
         '--csv',
         action='store_true',
         help='Output all recursive fields separated by commas (e.g. for plotting)',
-    )
-    parser.add(
-        '--field',
-        help="Echo a selected field of a message. Use '.' to select sub-fields, as in "
-        "'--field pose.pose.position'",
-        complete=_fields,
     )
     parser.add(
         *('-f', '--full-length'),
@@ -196,6 +185,32 @@ def _arguments(parser: Parser) -> None:
         ('--no-arr', "Don't print array fields of messages"),
         ('--no-str', "Don't print string fields of messages"),
         ('--flow-style', 'Print each list on one line (not available with csv format)'),
+    ):
+        parser.add(name, action='store_true', help=text)
+
+
+def _arguments(parser: Parser) -> None:
+    add_discovery_options(parser)
+    parser.add(
+        'topic_name',
+        help="Name of the ROS topic to listen to (e.g. '/chatter')",
+        complete=topic_names,
+    )
+    parser.add(
+        'message_type',
+        nargs='?',
+        help="Type of the ROS message (e.g. 'std_msgs/msg/String')",
+        complete=types_of_topic,
+    )
+    add_qos_options(parser, 'sensor_data')
+    add_form_options(parser)
+    parser.add(
+        '--field',
+        help="Echo a selected field of a message. Use '.' to select sub-fields, as in "
+        "'--field pose.pose.position'",
+        complete=_fields,
+    )
+    for name, text in (
         ('--no-lost-messages', "Don't report when a message is lost"),
         ('--raw', 'Echo the raw binary representation'),
         ('--once', 'Print the first message received and then exit.'),

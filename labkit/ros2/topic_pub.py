@@ -5,19 +5,25 @@ from __future__ import annotations
 import argparse
 import itertools
 import math
-import sys
 import time
 from argparse import Namespace
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from labkit import settings
+from labkit.asking.delivery import MATCH_SEC, wait_until_found, wait_until_taken
 from labkit.background.compat import RCLError
-from labkit.background.delivery import MATCH_SEC, wait_for_known, wait_until_taken
 from labkit.background.nodes import destroy_node
 from labkit.background.runtime import runtime
-from labkit.errors import LabError, nearest
-from labkit.ros2.asking import add_discovery_options, asking_node, full_name, other_type
+from labkit.background.wait import wait_for
+from labkit.errors import LabError, nearest, quoted
+from labkit.ros2.asking import (
+    add_discovery_options,
+    asking_node,
+    full_name,
+    other_type,
+    values_text,
+)
 from labkit.ros2.graph_words import topic_names, types_of_topic
 from labkit.ros2.parser import Parser, Usage, Verb, positive_float, unsigned_int
 from labkit.ros2.qos_options import add_qos_options, profile_from
@@ -32,35 +38,34 @@ if TYPE_CHECKING:
 
 __all__ = ['PUB']
 
-POLL_SEC = 0.01
+# Time for a matched subscriber to receive the messages, s.
+TAKEN_SEC = 5.0
 
 
 def pub(args: Namespace) -> str | None:
-    """Publish until a count, a time, or the stop button."""
+    """Publish until a count, a timeout, or the stop button."""
     times = 1 if args.once else args.times
     if args.once and args.times:
         raise Usage('ros2 topic pub: --once and --times can not go together.')
-    if args.wait_matching_subscriptions is None and args.max_wait_time_secs is not None:
-        return '--max-wait-time-secs option is only effective with --wait-matching-subscriptions'
+    wanted = args.wait_matching_subscriptions
+    wanted = int(times != 0) if wanted is None else wanted
+    if not wanted and args.max_wait_time_secs is not None:
+        return (
+            '--max-wait-time-secs option is only effective with --wait-matching-subscriptions, '
+            '--once or --times'
+        )
     stop = Stop(times or None, args.timeout)
     msg_type = interfaces.message_class(args.message_type)
     message = msg_type()
-    setters = fill(message, _fields_in(_values(args)))
+    setters = fill(message, _fields_in(values_text(args, 'topic pub', args.values)))
     asking = asking_node(args)
     topic = full_name(args.topic_name, asking)
     node = _node(args.node_name, asking)
     try:
         publisher = _publisher(node, topic, msg_type, args)
         try:
-            wanted = args.wait_matching_subscriptions
-            _wait_for_subscribers(
-                asking,
-                publisher,
-                int(times != 0) if wanted is None else wanted,
-                args.max_wait_time_secs,
-                stop,
-            )
-            _publish(node, publisher, message, setters, args, stop)
+            _wait_for_subscribers(asking, publisher, wanted, args.max_wait_time_secs, stop)
+            _publish(node, asking, publisher, message, setters, args, stop)
         finally:
             node.destroy_publisher(publisher)
     finally:
@@ -71,13 +76,14 @@ def pub(args: Namespace) -> str | None:
 
 def _publish(
     node: Node,
+    asking: Node,
     publisher: Publisher,
     message: Any,
     setters: list[Any],
     args: Namespace,
     stop: Stop,
 ) -> None:
-    """Publish at the rate that was asked for."""
+    """Publish at the requested rate."""
     tell('publisher: beginning loop')
     period = 1 / args.rate
     start = time.monotonic()
@@ -93,51 +99,51 @@ def _publish(
                 tell(f'{most} messages are shown. It goes on without showing them.')
         publisher.publish(message)
         stop.count_one()
-        while not stop.reached and time.monotonic() < start + count * period:
-            time.sleep(max(0.0, min(stop.left_sec, start + count * period - time.monotonic())))
+        wait_for(lambda: stop.reached, start + count * period - time.monotonic())
         if stop.reached:
             break
     time.sleep(args.keep_alive)  # so that the last message is on its way before the end
-    wait_until_taken(publisher)
+    wait_until_taken(asking, [publisher], TAKEN_SEC)
 
 
 def _wait_for_subscribers(
     node: Node, publisher: Publisher, count: int, max_wait_sec: float | None, stop: Stop
 ) -> None:
-    """Wait until enough subscribers are there, and say so each second."""
-    started = time.monotonic()
+    """Wait for enough subscribers, with a line each second."""
     if max_wait_sec is None:
         max_wait_sec = settings.audience().patience_sec
+    end = math.inf if max_wait_sec is None else time.monotonic() + max_wait_sec
     known = node.count_subscribers(publisher.topic_name) >= count
     hint = _other_topic(node, publisher.topic_name)
-    due = started + (MATCH_SEC if known else 0.0)
-    while publisher.get_subscription_count() < count and not stop.reached:
-        now = time.monotonic()
-        if max_wait_sec is not None and now >= started + max_wait_sec:
+
+    def enough() -> bool:
+        return publisher.get_subscription_count() >= count or stop.reached
+
+    patience_sec = MATCH_SEC if known else 0.0
+    while not wait_for(enough, min(patience_sec, end - time.monotonic())):
+        if time.monotonic() >= end:
             raise LabError(
                 f'Timed out waiting for subscribers: Expected {count} subscribers but only got '
                 f'{publisher.get_subscription_count()} subscribers'
             )
-        if now >= due:
-            due = now + 1.0
-            print(f'Waiting for at least {count} matching subscription(s)...', flush=True)
-            if hint:
-                print(hint, flush=True)
-                hint = ''
-        time.sleep(POLL_SEC)
+        print(f'Waiting for at least {count} matching subscription(s)...', flush=True)
+        if hint:
+            print(hint, flush=True)
+            hint = ''
+        patience_sec = 1.0
     if count:
-        wait_for_known(node, publisher)
+        wait_until_found(node, [publisher])
 
 
 def _other_topic(node: Node, topic: str) -> str:
-    """Return a word on the topic that was probably meant, '' if this one has subscribers."""
+    """Return a hint at the topic that was probably meant, '' if this one has subscribers."""
     heard = [name for name, _ in topics(node) if node.count_subscribers(name)]
     near = '' if topic in heard else nearest(topic, heard)
     return f'Nobody subscribes to {topic}. Did you mean {near!r}?' if near else ''
 
 
 def _node(name: str | None, asking: Node) -> Node:
-    """Return the node to publish with: one of its own if it is to have a name."""
+    """Return the node to publish with: a new one if a name is requested."""
     from rclpy.node import Node
 
     if not name:
@@ -148,7 +154,7 @@ def _node(name: str | None, asking: Node) -> Node:
         return Node(name, start_parameter_services=False)
     except Exception as error:
         raise LabError(
-            f'{name!r} is no name of a node: {str(error).splitlines()[0]}',
+            f'{quoted(name)} is no name of a node: {str(error).splitlines()[0]}',
             todo='Use letters, digits and _, such as my_talker.',
         ) from error
 
@@ -165,17 +171,9 @@ def _fields_in(text: str) -> dict[str, Any]:
     if not isinstance(values, dict):
         raise no_dictionary(
             values,
-            f'The passed value needs to be a dictionary in YAML format, but it is {text!r}.',
+            f'The passed value needs to be a dictionary in YAML format, but it is {quoted(text)}.',
         )
     return values
-
-
-def _values(args: Namespace) -> str:
-    if not args.stdin:
-        return str(args.values)
-    if settings.in_kernel():
-        raise Usage('ros2 topic pub: --stdin works in a terminal only.')
-    return sys.stdin.read()
 
 
 def _prototype(args: Namespace) -> Iterable[str]:
@@ -237,7 +235,8 @@ def _arguments(parser: Parser) -> None:
         '--max-wait-time-secs',
         metavar='N',
         type=positive_float,
-        help='The maximum wait time in seconds if --wait-matching-subscriptions is set',
+        help='The maximum wait time in seconds if --wait-matching-subscriptions, --once or '
+        '--times is set',
     )
     parser.add(
         '--keep-alive',
@@ -255,4 +254,11 @@ def _arguments(parser: Parser) -> None:
     parser.add('--include-hidden-topics', action='store_true', help=argparse.SUPPRESS)
 
 
-PUB = Verb('pub', 'Publish a message to a topic', pub, _arguments)
+PUB = Verb(
+    'pub',
+    'Publish a message to a topic',
+    pub,
+    _arguments,
+    'Values that a field can not hold, such as 1.5 for a whole number, are refused here, with '
+    'exit code 1; the real one converts some of them.',
+)

@@ -1,4 +1,4 @@
-"""`ros2 topic hz`, `bw` and `delay`: how often, how much, how late messages come."""
+"""`ros2 topic hz`, `bw` and `delay`: rate, bandwidth and age of messages."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from labkit.background.discovery import soon
+from labkit.asking.silence import why_silent
 from labkit.errors import LabError
 from labkit.ros2.asking import add_discovery_options, asking_node, full_name
 from labkit.ros2.graph_words import topic_names
@@ -24,8 +24,6 @@ from labkit.ros2.streams import (
 )
 from labkit.rosgraph import interfaces
 from labkit.rosgraph.interfaces import type_name
-from labkit.rosgraph.listings import topic_types
-from labkit.rosgraph.matching import why_silent
 from labkit.rosgraph.qos import make_profile
 
 __all__ = ['BW', 'DELAY', 'HZ']
@@ -36,10 +34,10 @@ BW_WINDOW = 100
 
 
 class Window:
-    """The latest values of something that comes with the messages.
+    """The latest values of a measurement.
 
     Args:
-        size: How many to keep.
+        size: Number of values to keep.
     """
 
     def __init__(self, size: int) -> None:
@@ -47,7 +45,7 @@ class Window:
         self.total = 0
 
     def add(self, value: float) -> None:
-        """Keep one value, and the moment it came."""
+        """Add a value with the current time."""
         self.total += 1
         self.values.append((time.monotonic(), value))
 
@@ -64,7 +62,7 @@ def statistics(values: list[float]) -> tuple[float, float, float, float]:
 
 
 def hz(args: Namespace) -> str | None:
-    """Print how often messages come."""
+    """Print the rate of messages."""
     if args.filter_expr is not None:
         raise Usage('ros2 topic hz: --filter takes Python code, and %ros2 runs none.')
     window = Window(args.window_size)
@@ -87,7 +85,7 @@ def hz(args: Namespace) -> str | None:
 
 
 def bandwidth(args: Namespace) -> str | None:
-    """Print how many bytes a second come."""
+    """Print the bandwidth of messages."""
     window = Window(args.window_size)
 
     def report() -> str:
@@ -118,7 +116,7 @@ def bandwidth(args: Namespace) -> str | None:
 
 
 def delay(args: Namespace) -> str | None:
-    """Print how old the messages are when they come, by the time stamp in their header."""
+    """Print the age of messages on arrival, by the time stamp in their header."""
     from rclpy.time import Time
 
     node = asking_node(args)
@@ -149,11 +147,10 @@ def _measure(
     begin: str = '',
     needs_header: bool = False,
 ) -> str | None:
-    """Listen to a topic, and print a report each second in which something came."""
+    """Subscribe to a topic, and print a report in each second with new messages."""
     stop = Stop(args.count, args.timeout)
     node = asking_node(args)
     topic = full_name(topic, node)
-    soon(lambda: topic_types(node, topic))
     name = wait_for_type(node, topic, stop, typed=args.topic_name)
     if name is None:
         return f'No message came: {topic} has not appeared.'
@@ -164,7 +161,7 @@ def _measure(
             todo=f'{type_name(msg_type)} carries no time stamp, so its delay is not known.',
         )
     if begin:
-        print(begin.format(topic), flush=True)
+        print(begin.format(args.topic_name), flush=True)
     due = time.monotonic() + REPORT_SEC
     reported = 0
 

@@ -1,4 +1,4 @@
-"""The text of interface types, with that of the types within them."""
+"""The text of interface types, including nested ones."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ def definition(
 
     Args:
         name: Full name of the type.
-        comments: Whether comments and empty lines are kept. Of a comment behind a field or a
-            constant its sign stays, with all that stands before the text.
+        comments: Whether to keep comments and empty lines. Without them, a trailing comment keeps
+            its sign, with everything before its text.
         nested_comments: The same for types within this one.
-        indent: What stands before each line.
+        indent: Prefix of each line.
     """
     package, _, word = name.split('/')
     for raw in interfaces.path_of(name).read_text(encoding='utf-8').splitlines():
@@ -46,7 +46,7 @@ def definition(
 
 
 def _without_comment(text: str, parsed: Any) -> str:
-    """Return a line without its comment; '' if it is nothing else."""
+    """Return a line without its comment; '' if nothing is left."""
     if parsed.annotations['comment']:
         return ''
     for element in [*parsed.fields, *parsed.constants]:

@@ -1,4 +1,8 @@
-"""Interface types: which are installed, their classes, their text. Read from the ament index."""
+"""Interface types, their classes and their text.
+
+Those that are installed are found in the ament index. The types of a few packages that no wheel
+has, and tutorials need, are built when their class is first asked for: their text is in `library`.
+"""
 
 from __future__ import annotations
 
@@ -11,58 +15,81 @@ from typing import Any
 
 from ament_index_python import get_resource, get_resources, has_resource
 
-from labkit.errors import LabError, nearest
+from labkit.errors import LabError, nearest, quoted
 from labkit.rosgraph.refusals import Refusal, Refused
 
 __all__ = [
     'KINDS',
     'action_class',
+    'buildable',
     'check_exists',
     'check_package',
-    'is_part_of_action',
+    'is_part',
+    'listed_in',
     'message_class',
     'names',
     'names_in',
     'packages',
     'path_of',
     'service_class',
+    'slot_class',
+    'slots',
     'type_name',
 ]
 
 KINDS = {'msg': 'message', 'srv': 'service', 'action': 'action'}
-# The messages that an action consists of, by what follows its name.
-_PARTS = ('Goal', 'Result', 'Feedback', 'FeedbackMessage')
+# Messages that an action or a service consists of, by the suffix of their names.
+_PARTS = {
+    'action': ('Goal', 'Result', 'Feedback', 'FeedbackMessage'),
+    'srv': ('Request', 'Response', 'Event'),
+}
+# package/kind/Type.kind, written from the documented fields.
+_LIBRARY = Path(__file__).parent / 'library'
 
 
-def _know_environment() -> None:
-    """Let the ament index be found: wheels put it below the environment's own folder."""
+def _extend_ament_path() -> None:
+    """Make the ament index findable: wheels put it below the environment's own folder."""
     paths = os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep)
     if sys.prefix not in paths:
         os.environ['AMENT_PREFIX_PATH'] = os.pathsep.join([*filter(None, paths), sys.prefix])
 
 
-_know_environment()
+_extend_ament_path()
 
 
 def names(kind: str = '') -> list[str]:
     """Return the full names of all interface types, sorted.
 
     Args:
-        kind: `'msg'`, `'srv'` or `'action'`; all of them if empty.
+        kind: `'msg'`, `'srv'` or `'action'`; all if empty.
     """
     return [name for package in packages() for name in names_in(package, kind)]
 
 
 def packages(kind: str = '') -> list[str]:
-    """Return the packages that have interface types, sorted; only those of a kind if given."""
+    """Return the packages with interface types, sorted; of one kind if given."""
     found = sorted(get_resources('rosidl_interfaces'))
     return [package for package in found if not kind or names_in(package, kind)]
 
 
+def buildable(package: str = '*') -> list[str]:
+    """Return the full names of the types that can be built, of one package or all, sorted."""
+    return sorted(
+        str(path.relative_to(_LIBRARY).with_suffix(''))
+        for path in _LIBRARY.glob(f'{package}/*/*.*')
+    )
+
+
 def names_in(package: str, kind: str = '') -> list[str]:
-    """Return the full names of the interface types of one package, sorted."""
-    content = _listed(package, os.environ['AMENT_PREFIX_PATH']) if _is_word(package) else []
-    return [name for name in content if not kind or name.split('/')[1] == kind]
+    """Return the full names of a package's interface types, sorted."""
+    return sorted(name for name in listed_in(package) if not kind or name.split('/')[1] == kind)
+
+
+def listed_in(package: str) -> list[str]:
+    """Return the full names of a package's interface types, as its list has them."""
+    if not _is_word(package):
+        return []
+    return _listed(package, os.environ['AMENT_PREFIX_PATH']) or buildable(package)
 
 
 @functools.cache
@@ -72,13 +99,15 @@ def _listed(package: str, _search_path: str) -> list[str]:
     except LookupError:
         return []
     # Names with `_` are parts of services and actions.
-    stems = {line.rsplit('.', 1)[0] for line in content.splitlines() if '_' not in line}
-    return sorted(f'{package}/{stem}' for stem in stems if stem.split('/')[0] in KINDS)
+    stems = dict.fromkeys(
+        line.rsplit('.', 1)[0] for line in content.splitlines() if '_' not in line
+    )
+    return [f'{package}/{stem}' for stem in stems if stem.split('/')[0] in KINDS]
 
 
 def check_package(package: str) -> None:
     """Raise a LabError unless a package is installed."""
-    if not _is_word(package) or not has_resource('packages', package):
+    if not listed_in(package) and (not _is_word(package) or not has_resource('packages', package)):
         near = nearest(package, get_resources('packages'))
         raise LabError(
             f"Unknown package '{package}'", todo=f'Did you mean {near!r}?' if near else ''
@@ -86,15 +115,15 @@ def check_package(package: str) -> None:
 
 
 def check_exists(name: str, kind: str = '') -> str:
-    """Return the full name of an interface type that is installed.
+    """Return the full name of an installed interface type.
 
     Args:
         name: `std_msgs/msg/String`, or `std_msgs/String` if `kind` is given.
-        kind: `'msg'`, `'srv'` or `'action'`; any of them if empty. The parts of an action, such
+        kind: `'msg'`, `'srv'` or `'action'`; any if empty. Parts of an action or a service, such
             as `test_msgs/action/Fibonacci_FeedbackMessage`, are messages.
 
     Raises:
-        Refused: There is none of that name. It says which one is near.
+        Refused: There is no such type. Suggests a similar name.
     """
     parts = name.split('/')
     if kind and len(parts) == 2:
@@ -102,9 +131,10 @@ def check_exists(name: str, kind: str = '') -> str:
     full_name = '/'.join(parts)
     if len(parts) == 3 and full_name in names_in(parts[0], kind):
         return full_name
-    if kind == 'msg' and is_part_of_action(full_name):
+    if kind == 'msg' and is_part(full_name):
         return full_name
     known = names(kind)
+    known += [name for name in buildable() if kind in ('', name.split('/')[1])]
     last = parts[-1].lower()
     same = [other for other in known if last and other.rsplit('/', 1)[-1].lower() == last]
     near = same[0] if same else nearest(full_name, known)
@@ -114,7 +144,7 @@ def check_exists(name: str, kind: str = '') -> str:
     else:
         todo = f'Did you mean {near!r}?' if near else 'ros2 interface list shows all of them.'
     raise Refused(
-        f'The passed {what} is invalid: {name!r} is not known.',
+        f'The passed {what} is invalid: {quoted(name)} is not known.',
         todo=todo,
         reason=Refusal.UNKNOWN_TYPE,
     )
@@ -124,7 +154,7 @@ def message_class(name: str) -> Any:
     """Return the class of a message type, such as `std_msgs/msg/String` or `std_msgs/String`.
 
     Raises:
-        Refused: There is none of that name.
+        Refused: There is no such type.
     """
     return _class(check_exists(name, 'msg'))
 
@@ -133,7 +163,7 @@ def service_class(name: str) -> Any:
     """Return the class of a service type, such as `std_srvs/srv/Trigger`.
 
     Raises:
-        Refused: There is none of that name.
+        Refused: There is no such type.
     """
     return _class(check_exists(name, 'srv'))
 
@@ -142,17 +172,16 @@ def action_class(name: str) -> Any:
     """Return the class of an action type, such as `test_msgs/action/Fibonacci`.
 
     Raises:
-        Refused: There is none of that name.
+        Refused: There is no such type.
     """
     return _class(check_exists(name, 'action'))
 
 
-def is_part_of_action(name: str) -> bool:
-    """Tell whether a name is that of a message which belongs to an action that is installed."""
+def is_part(name: str) -> bool:
+    """Return whether a name is that of a message of an installed action or service."""
     package, kind, word, *_ = [*name.split('/'), '', '', '']
-    action, _, part = word.rpartition('_')
-    whole = f'{package}/action/{action}'
-    return kind == 'action' and part in _PARTS and whole in names_in(package, 'action')
+    whole, _, part = word.rpartition('_')
+    return part in _PARTS.get(kind, ()) and f'{package}/{kind}/{whole}' in names_in(package, kind)
 
 
 def type_name(msg_type: Any) -> str:
@@ -161,20 +190,31 @@ def type_name(msg_type: Any) -> str:
     return f'{package}/{kind}/{msg_type.__name__}'
 
 
+def slots(msg_type: Any) -> dict[str, Any]:
+    """Return the fields of a message class with their types as `rosidl_parser` defines them."""
+    return dict(zip(msg_type.get_fields_and_field_types(), msg_type.SLOT_TYPES, strict=True))
+
+
+def slot_class(slot: Any) -> Any:
+    """Return the class of a field that is a message, None for others."""
+    names = getattr(slot, 'namespaced_name', None)
+    return message_class('/'.join(names())) if names is not None else None
+
+
 def path_of(name: str) -> Path:
-    """Return the file that defines an interface type, given its full name."""
+    """Return the file that defines an interface type."""
     package, kind, word = name.split('/')
-    prefix = has_resource('packages', package)
-    return Path(str(prefix)) / 'share' / package / kind / f'{word}.{kind}'
+    prefix = has_resource('rosidl_interfaces', package)
+    return (Path(prefix, 'share') if prefix else _LIBRARY) / package / kind / f'{word}.{kind}'
 
 
 def _class(full_name: str) -> Any:
     package, kind, word = full_name.split('/')
     module = importlib.import_module(f'{package}.{kind}')
-    if not is_part_of_action(full_name):
+    if not is_part(full_name):
         return getattr(module, word)
-    action, _, part = word.rpartition('_')
-    whole = getattr(module, action)
+    name, _, part = word.rpartition('_')
+    whole = getattr(module, name)
     return getattr(whole.Impl if part == 'FeedbackMessage' else whole, part)
 
 

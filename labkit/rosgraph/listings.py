@@ -1,4 +1,4 @@
-"""Topics and services by name and type, and what one node has of them, actions included."""
+"""Topics, services and actions by name and type, and those of one node."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from rclpy.action.graph import (
 from rclpy.node import Node, NodeNameNonExistentError
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
+from labkit.errors import printable
 from labkit.rosgraph.names import EVERY_NODE_HAS, full_node_name, is_hidden, split_node_name
 
 __all__ = [
@@ -30,16 +31,16 @@ __all__ = [
 ]
 
 NamesAndTypes = list[tuple[str, list[str]]]
-"""Full names, each with the types that are in use there."""
+"""Full names, each with the types in use."""
 
-# What an action's topic of feedback and its type are called after those of the action.
+# Suffixes of an action's feedback topic and of its type.
 _FEEDBACK = '/_action/feedback'
 _FEEDBACK_TYPE = '_FeedbackMessage'
 
 
 @dataclass(frozen=True)
 class NodeEnds:
-    """What a node publishes, subscribes to, offers and calls, sorted by name."""
+    """The endpoints of a node, sorted by name."""
 
     subscribers: NamesAndTypes
     publishers: NamesAndTypes
@@ -49,28 +50,23 @@ class NodeEnds:
     action_clients: NamesAndTypes
 
     def names(self) -> dict[str, list[str]]:
-        """Return the names alone, by what they are names of."""
+        """Return the names, by kind."""
         return {kind: [name for name, _types in found] for kind, found in vars(self).items()}
 
 
 def topics(node: Node, *, include_hidden: bool = False) -> NamesAndTypes:
-    """Return the topics, sorted by name.
-
-    Args:
-        node: The node to ask with.
-        include_hidden: Whether to include hidden topics.
-    """
+    """Return the topics, sorted by name."""
     return _sorted(node.get_topic_names_and_types(), include_hidden)
 
 
 def own_topics(node: Node) -> list[str]:
-    """Return the names of the topics that somebody has made on purpose."""
+    """Return the names of the topics that were created on purpose."""
     return [name for name, _ in topics(node) if name not in EVERY_NODE_HAS]
 
 
 def topic_types(node: Node, topic: str) -> list[str]:
-    """Return the types of a topic, given its full name; none if there is no such topic."""
-    return dict(node.get_topic_names_and_types()).get(topic, [])
+    """Return the types of a topic; none if there is no such topic."""
+    return _printable(dict(node.get_topic_names_and_types()).get(topic, []))
 
 
 def services(node: Node, *, include_hidden: bool = False) -> NamesAndTypes:
@@ -79,8 +75,8 @@ def services(node: Node, *, include_hidden: bool = False) -> NamesAndTypes:
 
 
 def service_types(node: Node, service: str) -> list[str]:
-    """Return the types of a service, given its full name; none if there is no such service."""
-    return dict(node.get_service_names_and_types()).get(service, [])
+    """Return the types of a service; none if there is no such service."""
+    return _printable(dict(node.get_service_names_and_types()).get(service, []))
 
 
 def actions(node: Node, *, include_hidden: bool = False) -> NamesAndTypes:
@@ -89,42 +85,42 @@ def actions(node: Node, *, include_hidden: bool = False) -> NamesAndTypes:
 
 
 def action_types(node: Node, action: str) -> list[str]:
-    """Return the types of an action, given its full name; none if there is no such action."""
-    return dict(get_action_names_and_types(node)).get(action, [])
+    """Return the types of an action; none if there is no such action."""
+    return _printable(dict(get_action_names_and_types(node)).get(action, []))
 
 
 def ends_of_node(node: Node, full_name: str, *, include_hidden: bool = False) -> NodeEnds:
-    """Return what a node publishes, subscribes to, offers and calls.
+    """Return the endpoints of a node.
 
     Args:
-        node: The node to ask with. Of its own process it knows all, of others what has come.
-        full_name: Full name of the node that is asked about.
+        node: The node to ask with. Its knowledge of other processes may lag.
+        full_name: Full name of the node in question.
         include_hidden: Whether to include hidden topics, services and actions.
 
     Returns:
-        All of it; nothing if there is no such node, or no more.
+        The endpoints; none if the node does not exist, or has ended.
     """
     found = _ends_as_listed(node, full_name)
     if not any(found):
-        # The one that ROS speaks of may have ended, while another one of that name lives.
+        # ROS may mean one that has ended, while another one of the same name lives.
         found = _ends_as_seen(node, full_name)
     return NodeEnds(*(_sorted(ends, include_hidden) for ends in found))
 
 
 def has_ends(node: Node, full_name: str) -> bool:
-    """Tell whether ROS lists anything that a node has, hidden or not.
+    """Return whether ROS lists any endpoint of a node, hidden or not.
 
     Args:
         node: The node to ask with.
-        full_name: Full name of the node that is asked about.
+        full_name: Full name of the node in question.
     """
     return any(_ends_as_listed(node, full_name))
 
 
 def _ends_as_listed(node: Node, full_name: str) -> tuple[NamesAndTypes, ...]:
-    """Return what ROS lists of a node, in the order of `NodeEnds`.
+    """Return the endpoints that ROS lists of a node, in the order of `NodeEnds`.
 
-    Of nodes of one name it speaks of one, and that may be one that has ended: see `node_names`.
+    Of several nodes with one name it picks one, possibly one that has ended: see `node_names`.
     """
     whose = split_node_name(full_name)
     try:
@@ -141,10 +137,10 @@ def _ends_as_listed(node: Node, full_name: str) -> tuple[NamesAndTypes, ...]:
 
 
 def _ends_as_seen(node: Node, full_name: str) -> tuple[NamesAndTypes, ...]:
-    """Return what is found of a node by looking at all ends in the graph, which takes longer.
+    """Return the endpoints of a node from a scan of the whole graph, which takes longer.
 
-    A service is a topic of requests and one of answers (design.ros2.org, "Topic and Service name
-    mapping to DDS"); an action has a topic of feedback, among others.
+    A service is a topic of requests and one of responses (design.ros2.org, "Topic and Service name
+    mapping to DDS"); an action has, among others, a feedback topic.
     """
     heard, sent = node.get_subscriptions_info_by_topic, node.get_publishers_info_by_topic
 
@@ -181,5 +177,12 @@ def _ends_as_seen(node: Node, full_name: str) -> tuple[NamesAndTypes, ...]:
 
 def _sorted(found: NamesAndTypes, include_hidden: bool) -> NamesAndTypes:
     return [
-        (name, types) for name, types in sorted(found) if include_hidden or not is_hidden(name)
+        (printable(name), _printable(types))
+        for name, types in sorted(found)
+        if include_hidden or not is_hidden(name)
     ]
+
+
+def _printable(types: Iterable[str]) -> list[str]:
+    """Return names of types without what moves a terminal: others may announce any text."""
+    return [printable(name) for name in types]

@@ -1,12 +1,13 @@
-"""Why two ends of a topic do not match, and why a subscription hears nothing.
+"""Why two endpoints of a topic do not match, and why a subscription gets nothing.
 
-A topic that nobody publishes, another type, a QoS profile that does not match, a name that
-differs by a letter: ROS says nothing in any of these cases, and each looks the same from inside.
+A topic without publishers, another type, an incompatible QoS profile, a name that differs by one
+letter: ROS is silent in all of these cases, and they all look the same from inside.
 """
 
 from __future__ import annotations
 
 import copy
+from collections.abc import Sequence
 from typing import Any
 
 from rclpy.duration import Duration
@@ -33,23 +34,25 @@ __all__ = [
     'qos_mismatch',
     'who_subscribes',
     'why_apart',
-    'why_silent',
+    'why_deaf',
 ]
 
-# From here on a duration means that there is none: the largest one is 2^63 - 1 ns, and what goes
-# through the middleware may come back a little smaller.
-_ENDLESS_NS = 2**62
+# From here on a duration means infinity: the largest one is 2^63 - 1 ns, and the middleware may
+# return a slightly smaller one.
+_INFINITE_NS = 2**62
 
 
 def qos_mismatch(offered: QoSProfile, requested: QoSProfile) -> str:
-    """Return why two QoS profiles do not match, as half a sentence; '' if they do.
+    """Return why two QoS profiles are incompatible, as half a sentence; '' if they match.
 
     Args:
-        offered: That of a publisher.
-        requested: That of a subscription. An endpoint of the graph reports history and depth as
-            unknown; they play no part in matching.
+        offered: Profile of a publisher.
+        requested: Profile of a subscription. History and depth, which the graph does not report,
+            play no part.
     """
-    compatibility, reason = qos_check_compatible(_as_set(offered), _as_set(requested))
+    compatibility, reason = qos_check_compatible(
+        _without_infinity(offered), _without_infinity(requested)
+    )
     if compatibility != QoSCompatibility.ERROR:
         return ''
     parts = [part.removeprefix('ERROR: ').strip(' .') for part in str(reason).split(';')]
@@ -58,16 +61,16 @@ def qos_mismatch(offered: QoSProfile, requested: QoSProfile) -> str:
 
 
 def why_apart(publisher: Endpoint, subscription: Endpoint) -> str:
-    """Return why two ends of a topic do not match, as half a sentence; '' if they do."""
+    """Return why two endpoints of a topic do not match, as half a sentence; '' if they do."""
     if publisher.msg_type != subscription.msg_type:
         return f'{publisher.msg_type} is not {subscription.msg_type}'
     return qos_mismatch(publisher.qos, subscription.qos)
 
 
 def how_to_match(publisher: Endpoint, subscription: Endpoint) -> str:
-    """Say what to change at one end or the other so that the two match, '' if they do.
+    """Return what to change at either end so that the two match, '' if they do.
 
-    A subscription asks, and a publisher offers: so each policy can be mended at either end.
+    A subscription requests, a publisher offers: each policy can be fixed at either end.
     """
     mine, yours = f'the subscription of {subscription.node}', f'the publisher of {publisher.node}'
     if publisher.msg_type != subscription.msg_type:
@@ -83,49 +86,46 @@ def how_to_match(publisher: Endpoint, subscription: Endpoint) -> str:
             said += [f'Give {mine} {policy} {weak.name}, or {yours} {strong.name}.']
     for policy in ('deadline', 'liveliness_lease_duration'):
         wanted, given = getattr(asked, policy), getattr(offered, policy)
-        if not _is_endless(wanted) and (_is_endless(given) or wanted < given):
+        if not _is_infinite(wanted) and (_is_infinite(given) or wanted < given):
             limit = f'{yours} one of {_seconds(wanted)} at most'
             name = policy.replace('_', ' ')
             said += [
                 f'Take the {name} of {mine} away, or give {limit}.'
-                if _is_endless(given)
+                if _is_infinite(given)
                 else f'Give {mine} a {name} of {_seconds(given)} at least, or {limit}.'
             ]
     return ' '.join(said)
 
 
-def _as_set(profile: QoSProfile) -> QoSProfile:
-    """Return a profile in which a time without an end is one that was not set.
+def _without_infinity(profile: QoSProfile) -> QoSProfile:
+    """Return a profile in which infinite durations are unset.
 
-    The graph reports both as endless, and that would be told as a deadline that is too long.
+    The graph reports unset ones as infinite, which would be described as a deadline that is too
+    long.
     """
     plain = copy.copy(profile)
     for policy in ('deadline', 'liveliness_lease_duration'):
-        if _is_endless(getattr(plain, policy)):
+        if _is_infinite(getattr(plain, policy)):
             setattr(plain, policy, Duration())
     return plain
 
 
-def _is_endless(duration: Duration) -> bool:
-    return not 0 < duration.nanoseconds < _ENDLESS_NS
+def _is_infinite(duration: Duration) -> bool:
+    return not 0 < duration.nanoseconds < _INFINITE_NS
 
 
 def _seconds(duration: Duration) -> str:
     return f'{duration.nanoseconds * 1e-9:g} s'
 
 
-def why_silent(node: Node, topic: str, msg_type: Any, qos_profile: QoSProfile) -> str:
-    """Say in a sentence or two why no message of a topic arrives.
+def why_deaf(node: Node, topic: str, msg_type: Any, qos_profile: QoSProfile) -> str:
+    """Return in a sentence or two why a subscription hears no publisher, '' if it hears one.
 
     Args:
         node: The node to ask the graph with.
-        topic: The topic that is subscribed to, as a full name.
-        msg_type: The type that is subscribed to.
-        qos_profile: The QoS profile of the subscription.
-
-    Returns:
-        The likeliest cause and what to do. When all is well with the topic: that its publishers
-        have published nothing.
+        topic: Full name of the subscribed topic.
+        msg_type: Type of the subscription.
+        qos_profile: QoS profile of the subscription.
     """
     found = publishers(node, topic)
     if not found:
@@ -144,21 +144,34 @@ def why_silent(node: Node, topic: str, msg_type: Any, qos_profile: QoSProfile) -
                 f'{end.node} publishes on {topic}, but its QoS profile does not match the '
                 f'subscription: {reason[:1].upper()}{reason[1:]}. Give both the same qos_profile.'
             )
-    names = ', '.join(sorted({end.node for end in same_type}))
-    return (
-        f'{names} has a publisher on {topic} with the right type and QoS, but published nothing '
-        'in that time. Is its timer running, and is publish() reached?'
-    )
+    return _hears_nothing_earlier(same_type, qos_profile)
+
+
+def _hears_nothing_earlier(found: Sequence[Endpoint], qos_profile: QoSProfile) -> str:
+    """Return why a subscription that asks for earlier messages gets none, '' if it would."""
+    keeping = ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL
+    for end in found:
+        if (
+            qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
+            and qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT
+            and (end.qos.reliability, end.qos.durability) == keeping
+        ):
+            return (
+                f'{end.node} publishes on {end.topic} and keeps its last messages, but a '
+                'subscription that is BEST_EFFORT gets only new ones, and none came in that time. '
+                'Ask for the reliability RELIABLE, too.'
+            )
+    return ''
 
 
 def who_subscribes(node: Node, topic: str, msg_type: Any, qos_profile: QoSProfile) -> str:
-    """Say why a publisher has too few subscribers.
+    """Return why a publisher has too few subscribers.
 
     Args:
         node: The node to ask the graph with.
-        topic: The topic that is published on, as a full name.
-        msg_type: The type that is published.
-        qos_profile: The QoS profile of the publisher.
+        topic: Full name of the topic.
+        msg_type: Type of the publisher.
+        qos_profile: QoS profile of the publisher.
     """
     found = subscriptions(node, topic)
     wanted = type_name(msg_type)
@@ -182,20 +195,20 @@ def who_subscribes(node: Node, topic: str, msg_type: Any, qos_profile: QoSProfil
 
 
 def other_type_here(node: Node, topic: str, msg_type: Any) -> str:
-    """Say who in this process uses a topic with another type, '' if nobody does.
+    """Return who in this process uses a topic with another type, '' if nobody does.
 
-    In one process Fast DDS refuses a second type on a topic, with the words "invalid allocator".
-    Between processes the same mistake is silent.
+    Within one process Fast DDS refuses a second type on a topic with the words "invalid
+    allocator". Between processes the same mistake is silent.
 
     Args:
         node: A node of this process, to ask the graph with.
-        topic: The topic, as a full name.
-        msg_type: The type that was asked for.
+        topic: Full name of the topic.
+        msg_type: The requested type.
     """
     wanted = type_name(msg_type)
     for end in (*publishers(node, topic), *subscriptions(node, topic)):
         if end.msg_type != wanted and is_own(end.gid, node):
-            # A check of an exercise may listen from the start of the lesson.
+            # A check of an exercise may be subscribed from the start of the lesson.
             user = 'labkit' if is_hidden(end.node) else end.node
             return (
                 f'{user} uses {topic} with messages of another type: {end.msg_type}, not {wanted}.'
@@ -204,12 +217,7 @@ def other_type_here(node: Node, topic: str, msg_type: Any) -> str:
 
 
 def nobody_publishes(node: Node, topic: str) -> str:
-    """Say that a topic has no publisher, and which topic may be meant instead.
-
-    Args:
-        node: The node to ask the graph with.
-        topic: The topic, as a full name.
-    """
+    """Return that a topic has no publisher, and which similar topic has one."""
     others = [
         name
         for name, _ in node.get_topic_names_and_types()

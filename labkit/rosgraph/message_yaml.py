@@ -1,7 +1,7 @@
-"""Messages as text and back: YAML, comma-separated values, and filling one from YAML.
+"""Messages as YAML and comma-separated values, and filling a message from YAML.
 
-The text is that of the real `ros2` (`rosidl_runtime_py`). Filling is stricter: what would be
-bent silently there, such as 1.5 into an integer, is refused here.
+The text is that of the real `ros2` (`rosidl_runtime_py`). Filling is stricter: values that it
+would silently convert, such as 1.5 for an integer, are refused here.
 """
 
 from __future__ import annotations
@@ -23,9 +23,10 @@ from rosidl_parser.definition import (  # type: ignore[import-untyped]
     NamespacedType,
 )
 
-from labkit.errors import nearest
-from labkit.rosgraph.interfaces import message_class, type_name
+from labkit.errors import nearest, quoted
+from labkit.rosgraph.interfaces import slot_class, slots, type_name
 from labkit.rosgraph.refusals import Refusal, Refused
+from labkit.rosgraph.yaml_loading import load_yaml
 
 __all__ = ['field_paths', 'fill', 'no_dictionary', 'prototype', 'read_yaml', 'to_csv', 'to_yaml']
 
@@ -44,9 +45,9 @@ def to_yaml(
 
     Args:
         message: The message.
-        truncate_length: How much to show of arrays and strings; all of it if None.
-        no_arr: Whether to show type and length of arrays only.
-        no_str: Whether to show the length of strings only.
+        truncate_length: Length limit of arrays and strings; None for no limit.
+        no_arr: Whether to show only type and length of arrays.
+        no_str: Whether to show only the length of strings.
         flow_style: Whether to show each list on one line.
     """
     plain = _plain(message, None, truncate_length, no_arr, no_str)
@@ -66,7 +67,7 @@ def _dump(plain: Any, dumper: type[yaml.SafeDumper], flow_style: bool) -> str:
 
 
 class _InLines(yaml.SafeDumper):
-    """Writes each field on a line of its own, also in flow style."""
+    """Writes each field on its own line, even in flow style."""
 
     def represent_mapping(self, *args: Any, **options: Any) -> yaml.MappingNode:
         node: yaml.MappingNode = super().represent_mapping(*args, **options)
@@ -81,32 +82,31 @@ def to_csv(
     no_arr: bool = False,
     no_str: bool = False,
 ) -> str:
-    """Return the values of a message, separated by commas. Arguments as for `to_yaml`."""
-    return _cells(_plain(message, None, truncate_length, no_arr, no_str))
+    """Return the values of a message separated by commas. Arguments as for `to_yaml`."""
+    return _cells(_plain(message, None, truncate_length, no_arr, no_str, octets=str))
 
 
 def read_yaml(text: str) -> Any:
-    """Return what a text in YAML says: for a message, a dictionary of fields and their values.
+    """Parse YAML: for a message, a dictionary of fields and values.
 
     Raises:
         Refused: It is not YAML.
     """
     try:
-        return yaml.safe_load(text)
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        problem = getattr(error, 'problem', None) or str(error).splitlines()[0]
+        return load_yaml(text)
+    except ValueError as error:
         raise Refused(
-            f'The values can not be read as YAML: {problem}: {text!r}',
+            f'The values can not be read as YAML: {error}: {quoted(text)}',
             todo='Write the name of the field, a colon, a space and the value: "{data: 1}"',
             reason=Refusal.NOT_YAML,
         ) from error
 
 
 def no_dictionary(values: Any, complaint: str) -> Refused:
-    """Return what to raise when values are not fields and what they hold.
+    """Return the error for values that are not a dictionary of fields.
 
     Args:
-        values: What was given, as `read_yaml` has read it.
+        values: The values, as `read_yaml` returned them.
         complaint: The first sentence.
     """
     spaceless = isinstance(values, str) and ':' in values
@@ -122,11 +122,11 @@ def fill(message: Any, values: Any) -> list[Setter]:
 
     Args:
         message: The message.
-        values: Field -> value, as `read_yaml` gives it; anything else is refused in the words of
-            the real one. A header may be `auto`, a time `now`.
+        values: Field -> value, from `read_yaml`; anything else is refused in the words of the real
+            command. A header may be `auto`, a time `now`.
 
     Returns:
-        Functions that set the time fields that are to hold the present time, given that time.
+        Functions that set the time fields to a given present time.
 
     Raises:
         Refused: A field does not exist, or can't hold its value.
@@ -136,7 +136,8 @@ def fill(message: Any, values: Any) -> list[Setter]:
         if not isinstance(values, dict):
             kind = type(values).__name__
             raise no_dictionary(
-                values, f"Value '{values}' is expected to be a dictionary but is a {kind}"
+                values,
+                f'Value {quoted(str(values))} is expected to be a dictionary but is a {kind}',
             )
         _fill(message, values, setters, '')
     except Refused as error:
@@ -147,32 +148,33 @@ def fill(message: Any, values: Any) -> list[Setter]:
 
 
 def prototype(msg_type: Any) -> str:
-    """Return the values of a new message as YAML on one line, to be edited."""
+    """Return the default values of a message as editable YAML on one line."""
     plain = _plain(msg_type(), None, None, False, False)
     return _dump(plain, yaml.SafeDumper, flow_style=True).strip()
 
 
 def field_paths(msg_type: Any, start: str = '') -> Iterator[str]:
-    """Yield the fields of a message class by their paths, such as `pose.pose.position.x`."""
-    for (name, _), slot in zip(
-        msg_type.get_fields_and_field_types().items(), msg_type.SLOT_TYPES, strict=True
-    ):
+    """Yield the paths of a message class's fields, such as `pose.pose.position.x`."""
+    for name, slot in slots(msg_type).items():
         yield f'{start}{name}'
         if isinstance(slot, NamespacedType):
-            yield from field_paths(_class_of(slot), f'{start}{name}.')
-
-
-def _class_of(slot: NamespacedType) -> Any:
-    return message_class('/'.join(slot.namespaced_name()))
+            yield from field_paths(slot_class(slot), f'{start}{name}.')
 
 
 # -- showing ------------------------------------------------------------------------------------
 
 
-def _plain(value: Any, slot: Any, limit: int | None, no_arr: bool, no_str: bool) -> Any:
-    """Return a message, or a value of a field, as what YAML can show."""
+def _plain(
+    value: Any,
+    slot: Any,
+    limit: int | None,
+    no_arr: bool,
+    no_str: bool,
+    octets: Callable[[bytes], str] = lambda value: ''.join(map(chr, value)),
+) -> Any:
+    """Return a message, or a field value, as plain data for YAML."""
     if isinstance(value, bytes):
-        text = ''.join(map(chr, value))
+        text = octets(value)
         return text if limit is None or len(text) <= limit else text[:limit] + '...'
     if isinstance(value, str):
         if no_str:
@@ -182,15 +184,15 @@ def _plain(value: Any, slot: Any, limit: int | None, no_arr: bool, no_str: bool)
         if no_arr and slot is not None:
             return _array_in_words(value, slot)
         shown = value if limit is None or len(value) <= limit else value[:limit]
-        items = [_plain(item, None, limit, no_arr, no_str) for item in shown]
+        items = [_plain(item, None, limit, no_arr, no_str, octets) for item in shown]
         return items if len(shown) == len(value) else [*items, '...']
     if isinstance(value, (numpy.number, numpy.bool_)):
         return value.item()
     if isinstance(value, (bool, int, float)):
         return value
     return {
-        name: _plain(getattr(value, name), slot, limit, no_arr, no_str)
-        for name, slot in zip(value.get_fields_and_field_types(), value.SLOT_TYPES, strict=True)
+        name: _plain(getattr(value, name), slot, limit, no_arr, no_str, octets)
+        for name, slot in slots(type(value)).items()
     }
 
 
@@ -223,11 +225,10 @@ def _cells(plain: Any) -> str:
 
 
 def _fill(message: Any, values: Any, setters: list[Setter], start: str) -> None:
-    fields = dict(zip(message.get_fields_and_field_types(), message.SLOT_TYPES, strict=True))
-    msg_type = type_name(type(message))
+    fields, msg_type = slots(type(message)), type_name(type(message))
     if not isinstance(values, dict):
         raise Refused(
-            f'{_field(start)}a {msg_type} needs a value for each field, but got {values!r}.',
+            f'{_field(start)}a {msg_type} needs a value for each field, but got {quoted(values)}.',
             todo=f'Its fields: {", ".join(fields)}. Write {{{next(iter(fields), "data")}: ...}}',
             reason=Refusal.FIELDS_WANTED,
         )
@@ -240,10 +241,10 @@ def _fill(message: Any, values: Any, setters: list[Setter], start: str) -> None:
 
 
 def _no_field(owner: str, name: str, fields: Collection[str]) -> Refused:
-    message, reason = f'{owner} has no field {name!r}.', Refusal.NO_SUCH_FIELD
+    message, reason = f'{owner} has no field {quoted(name)}.', Refusal.NO_SUCH_FIELD
     if name.partition(':')[0] in fields:
         spaced = name.replace(':', ': ')
-        hint = f'A space is missing after the colon. Write {spaced!r}.'
+        hint = f'A space is missing after the colon. Write {quoted(spaced)}.'
         reason = Refusal.SPACE_AFTER_COLON
     else:
         near = nearest(name, fields)
@@ -252,7 +253,7 @@ def _no_field(owner: str, name: str, fields: Collection[str]) -> Refused:
 
 
 def _fill_time(message: Any, name: str, value: Any, setters: list[Setter]) -> bool:
-    """Arrange for the present time, where `auto` or `now` asks for it."""
+    """Arrange for the present time if the value is `auto` or `now`."""
     field = getattr(message, name)
     kind = f'{type(field).__module__}.{type(field).__name__}'
     if kind == 'std_msgs.msg._header.Header' and value == 'auto':
@@ -265,11 +266,11 @@ def _fill_time(message: Any, name: str, value: Any, setters: list[Setter]) -> bo
 
 
 def _value(slot: Any, value: Any, setters: list[Setter], path: str) -> Any:
-    """Return a value as a field of a type takes it."""
+    """Return a value converted for a field of a type."""
     if isinstance(slot, AbstractNestedType):
         return _sequence(slot, value, setters, path)
     if isinstance(slot, NamespacedType):
-        message = _class_of(slot)()
+        message = slot_class(slot)()
         _fill(message, value, setters, f'{path}.')
         return message
     if isinstance(slot, AbstractGenericString):
@@ -295,7 +296,7 @@ def _sequence(slot: AbstractNestedType, value: Any, setters: list[Setter], path:
 def _string(slot: AbstractGenericString, value: Any, path: str) -> str:
     if isinstance(value, (dict, list)) or value is None:
         raise _refused(path, 'a text', value, Refusal.NOT_A_TEXT)
-    # YAML reads 5 as a number and yes as a truth value; in a text field they are what was typed.
+    # YAML reads 5 as a number and yes as a boolean; a text field gets what was typed.
     text = str(value)
     most = getattr(slot, 'maximum_size', None)
     if most is not None and len(text) > most:
@@ -334,11 +335,11 @@ _MAX_FLOAT = float(numpy.finfo(numpy.float32).max)
 
 
 def _number(value: Any, kind: type) -> Any:
-    """Return a value as a number, None if it is none. Quotation marks around it are allowed."""
+    """Return a value as a number, None if it is not one. Quotes around it are allowed."""
     if isinstance(value, bool):
         return None
     if isinstance(value, str):
-        # 1e3 is a text for YAML, which wants 1.0e+3.
+        # YAML reads 1e3 as text: it wants 1.0e+3.
         try:
             return kind(value)
         except ValueError:
@@ -363,7 +364,7 @@ def _range(typename: str) -> tuple[int, int]:
 def _refused(path: str, wanted: str, value: Any, reason: Refusal) -> Refused:
     if isinstance(value, list) and reason in (Refusal.NOT_A_NUMBER, Refusal.NOT_A_WHOLE_NUMBER):
         reason = Refusal.LIST_FOR_NUMBER
-    return Refused(f'The {path!r} field must be {wanted}, but got {value!r}.', reason=reason)
+    return Refused(f'The {path!r} field must be {wanted}, but got {quoted(value)}.', reason=reason)
 
 
 def _field(start: str) -> str:

@@ -1,4 +1,4 @@
-"""Packages, their executables, and what to start to run one."""
+"""Packages, their executables, and the commands that start them."""
 
 from __future__ import annotations
 
@@ -9,41 +9,67 @@ from pathlib import Path
 
 from ament_index_python import get_packages_with_prefixes
 
-from labkit.errors import LabError, nearest
+from labkit.errors import LabError, nearest, quoted
 from labkit.rosgraph import interfaces
 
-__all__ = ['DEMO', 'Executable', 'executable', 'executables', 'package_names', 'prefix_of']
+__all__ = [
+    'DEMO',
+    'Executable',
+    'executable',
+    'executables',
+    'package_names',
+    'prefix_of',
+    'with_executables',
+]
 
-# The package that labkit has stand-ins for.
+# The package that labkit can stand in for.
 DEMO = 'demo_nodes_py'
-_STAND_INS = ('listener', 'talker')
-assert interfaces  # has told the ament index where to look
+# Modules and their programs, by the package in which `ros2 run` finds them.
+_OWN: dict[str, dict[str, tuple[str, ...]]] = {
+    DEMO: {name: ('labkit.programs.demo_nodes', name) for name in ('listener', 'talker')},
+    'labkit': {'turtlebot': ('labkit.sim.turtlebot_program',)},
+}
+# Packages of the tutorials that no wheel has, and what to use here.
+_INSTEAD = {
+    'turtlesim': 'It comes with an installed ROS 2, not with wheels. Here is a robot: '
+    'ros2 run labkit turtlebot starts it, lab.arena() shows it, lab.teleop() drives it.',
+}
+assert interfaces  # imported for its side effect on the ament index
 
 
 @dataclass(frozen=True)
 class Executable:
-    """Something that `ros2 run` can start.
+    """A program that `ros2 run` can start.
 
     Attributes:
-        package: Name of its package.
-        path: The file; of labkit's own, one that does not exist as such.
-        command: What to start.
-        stand_in: Whether it is labkit's own, because the package is not installed.
+        path: The file; of one of labkit's own, only its name.
+        command: The command line.
+        own: Whether it is labkit's own, which announces its nodes.
     """
 
     package: str
     path: Path
     command: tuple[str, ...]
-    stand_in: bool = False
+    own: bool = False
+
+    @property
+    def stand_in(self) -> bool:
+        """Whether it stands in for that of a package that is not installed."""
+        return self.own and self.package == DEMO
 
 
 def package_names() -> list[str]:
-    """Return the names of all packages that are installed."""
+    """Return the names of all installed packages."""
     return sorted(get_packages_with_prefixes())
 
 
+def with_executables() -> list[str]:
+    """Return the names of all packages in which `ros2 run` finds something."""
+    return sorted({*package_names(), *_OWN})
+
+
 def prefix_of(package: str) -> Path:
-    """Return the folder that a package is installed in.
+    """Return the folder in which a package is installed.
 
     Raises:
         LabError: There is no such package.
@@ -51,10 +77,10 @@ def prefix_of(package: str) -> Path:
     packages = get_packages_with_prefixes()
     if package in packages:
         return Path(packages[package])
-    if package == DEMO:
+    if package in _OWN:
         raise LabError(
             f"Package '{package}' not found",
-            todo='It is not installed here; labkit has its talker and listener.',
+            todo=f'It has no files here. labkit runs its {" and ".join(_OWN[package])}.',
         )
     if Path('install', package, 'share', package).is_dir():
         raise LabError(
@@ -62,7 +88,9 @@ def prefix_of(package: str) -> Path:
             todo='It is built in this folder, but this terminal does not know it yet: '
             'source install/setup.bash',
         )
-    near = nearest(package, [*packages, DEMO])
+    if package in _INSTEAD:
+        raise LabError(f"Package '{package}' not found", todo=_INSTEAD[package])
+    near = nearest(package, [*packages, *_OWN])
     raise LabError(
         f"Package '{package}' not found",
         todo=f'Did you mean {near!r}?' if near else 'ros2 pkg list shows all that are installed.',
@@ -70,16 +98,15 @@ def prefix_of(package: str) -> Path:
 
 
 def executables(package: str) -> list[Executable]:
-    """Return what a package has to run, sorted by name.
+    """Return the executables of a package, sorted by name.
 
     Raises:
         LabError: There is no such package.
     """
-    if package == DEMO and package not in package_names():
-        module = ('-m', 'labkit.background.demo_nodes')
+    if package in _OWN and package not in package_names():
         return [
-            Executable(DEMO, Path(name), (sys.executable, *module, name), stand_in=True)
-            for name in _STAND_INS
+            Executable(package, Path(name), (sys.executable, '-m', *words), own=True)
+            for name, words in _OWN[package].items()
         ]
     found = []
     for folder, folders, files in os.walk(prefix_of(package) / 'lib' / package):
@@ -112,4 +139,4 @@ def executable(package: str, name: str) -> Executable:
         todo = f'{package} has: {", ".join(names)}.'
     else:
         todo = f'{package} has none.'
-    raise LabError(f'No executable found: {package} has no {name!r}.', todo=todo)
+    raise LabError(f'No executable found: {package} has no {quoted(name)}.', todo=todo)

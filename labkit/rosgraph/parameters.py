@@ -1,9 +1,9 @@
-"""Parameters as data: the names of their types, values from text, files of parameters."""
+"""Parameters as data: type names, values from text, parameter files."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
-from pathlib import Path
 from typing import Any
 
 import yaml
@@ -11,7 +11,8 @@ from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rclpy.parameter import Parameter as NodeParameter
 from rclpy.parameter import get_parameter_value, parameter_value_to_python
 
-from labkit.errors import LabError
+from labkit.errors import LabError, nearest, quoted
+from labkit.rosgraph.yaml_loading import load_yaml_file
 
 __all__ = ['NOT_SET', 'parameters_in', 'python_value', 'to_yaml', 'type_word', 'value_from']
 
@@ -31,17 +32,17 @@ _WORDS = {
 
 
 def type_word(kind: int) -> str:
-    """Return the name of a type of parameters, such as `'integer'`, given its number."""
+    """Return the name of a parameter type, such as `'integer'`."""
     return _WORDS[kind]
 
 
 def python_value(value: ParameterValue) -> Any:
-    """Return the value of a parameter as Python has it, None if it is not set."""
+    """Return the value of a parameter in Python, None if it is not set."""
     return parameter_value_to_python(value)
 
 
 def value_from(text: str) -> ParameterValue:
-    """Return a value of the type that a text looks like; a text that is not YAML is a string."""
+    """Return a value of the type that a text looks like; a string if it is not YAML."""
     try:
         return get_parameter_value(text)
     except (yaml.YAMLError, AssertionError, ValueError, RecursionError):
@@ -49,11 +50,11 @@ def value_from(text: str) -> ParameterValue:
 
 
 def to_yaml(node_name: str, values: Mapping[str, ParameterValue]) -> str:
-    """Return the parameters of a node as a file of parameters.
+    """Return the parameters of a node as a parameter file.
 
     Args:
         node_name: Full name of the node.
-        values: Name -> value. A point in a name begins a group.
+        values: Name -> value. Dots in names separate groups.
     """
     tree: dict[str, Any] = {}
     for name, value in values.items():
@@ -67,15 +68,15 @@ def to_yaml(node_name: str, values: Mapping[str, ParameterValue]) -> str:
 
 
 def parameters_in(path: str, node_name: str, *, wildcard: bool = True) -> dict[str, Parameter]:
-    """Return the parameters that a file has for a node, by their names.
+    """Return the parameters that a file has for a node, by name.
 
     Args:
         path: The file.
         node_name: Full name of the node.
-        wildcard: Whether those that are for every node count too.
+        wildcard: Whether to include those for every node.
 
     Raises:
-        LabError: It can't be read, is no file of parameters, or has none for this node.
+        LabError: The file can't be read, is not a parameter file, or has none for this node.
     """
     try:
         values = _values_in(path, node_name, wildcard)
@@ -83,32 +84,59 @@ def parameters_in(path: str, node_name: str, *, wildcard: bool = True) -> dict[s
         return {key: make(key, value=value).to_parameter_msg() for key, value in values.items()}
     except OSError as error:
         raise LabError(f'{path} can not be read: {error.strerror}') from error
-    except (yaml.YAMLError, AttributeError, TypeError, ValueError, RecursionError) as error:
+    except (AttributeError, TypeError, ValueError) as error:
         raise LabError(
-            f'{path} is no file of parameters: {str(error).splitlines()[0]}',
+            f'{path} is no file of parameters: {error}',
             todo=f'ros2 param dump {node_name} shows what such a file looks like.',
         ) from error
 
 
 def _values_in(path: str, node_name: str, wildcard: bool) -> dict[str, Any]:
-    nodes = yaml.safe_load(Path(path).read_text(encoding='utf-8')) or {}
+    nodes = load_yaml_file(path) or {}
     if not isinstance(nodes, dict):
-        raise ValueError(f'it has no names of nodes, but {nodes!r}')
-    keys = [key for key in ('/**', node_name) if key in nodes and (wildcard or key == node_name)]
-    # The words of rclpy's own reader, which is not strict enough: it takes what is for any node.
+        raise ValueError(f'it has no names of nodes, but {quoted(nodes)}')
+    # The wording of rclpy's own reader, which is not strict enough: it takes those for any node.
     if not nodes:
         raise LabError('Param file does not contain selected parameters')
-    if not keys:
+    sections = list(_sections(nodes))
+    found = [(name, tree) for name, tree in sections if re.fullmatch(_pattern(name), node_name)]
+    if not wildcard:
+        found = [(name, tree) for name, tree in found if '*' not in name]
+    if not found:
+        near = nearest(node_name, [name for name, _ in sections])
         raise LabError(
             f'Param file does not contain parameters for {node_name}, only for nodes: '
-            f'{list(nodes)}'
+            f'{quoted(list(nodes))}',
+            todo=f'Did you mean {near!r}?' if near else '',
         )
     values: dict[str, Any] = {}
-    for key in keys:
-        if not isinstance(nodes[key], dict) or 'ros__parameters' not in nodes[key]:
-            raise LabError(f'YAML file is not a valid ROS parameter file for node {key}')
-        values.update(_flat(nodes[key]['ros__parameters']))
+    for name, tree in sorted(found, key=lambda section: '*' not in section[0]):
+        if tree is None:
+            raise LabError(f'YAML file is not a valid ROS parameter file for node {name}')
+        values.update(_flat(tree))
     return values
+
+
+def _sections(tree: dict[Any, Any], start: str = '') -> Iterator[tuple[str, Any]]:
+    """Yield the full name of each node, which may have wildcards, and its parameters.
+
+    As in rcl, a slash at the beginning may be left out, and namespaces may be groups. The
+    parameters are None where there are none.
+    """
+    for key, value in tree.items():
+        name = f'{start}/{str(key).strip("/")}'
+        inner = value if isinstance(value, dict) else {}
+        is_group = bool(inner) and all(isinstance(each, dict) for each in inner.values())
+        if is_group and 'ros__parameters' not in inner:
+            yield from _sections(inner, name)
+        else:
+            yield name, inner.get('ros__parameters')
+
+
+def _pattern(name: str) -> str:
+    """Return a regular expression for a name in which * is one part, and ** any number."""
+    parts = {'**': r'(/\w+)*', '*': r'/\w+'}
+    return ''.join(parts.get(part, f'/{re.escape(part)}') for part in name.split('/')[1:])
 
 
 def _flat(tree: dict[str, Any], start: str = '') -> Iterator[tuple[str, Any]]:

@@ -1,4 +1,4 @@
-"""QoS profiles from the short names of the command line, and one that hears all publishers."""
+"""QoS profiles from the short names of the command line, and one that matches all publishers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ from rclpy.qos import (
     ReliabilityPolicy,
 )
 
-__all__ = ['POLICIES', 'PRESETS', 'make_profile', 'match_all']
+from labkit.errors import LabError, quoted
+from labkit.rosgraph.yaml_loading import load_yaml_file
+
+__all__ = ['POLICIES', 'PRESETS', 'make_profile', 'match_all', 'read_overrides']
 
 _PRESETS: Any = QoSPresetProfiles
 _POLICIES: dict[str, Any] = {
@@ -26,13 +29,16 @@ _POLICIES: dict[str, Any] = {
     'liveliness': LivelinessPolicy,
 }
 
+_TIMES = ('deadline', 'lifespan', 'liveliness_lease_duration')
+_PLAIN: dict[str, type[int]] = {'depth': int, 'avoid_ros_namespace_conventions': bool}
+
 PRESETS: tuple[str, ...] = tuple(_PRESETS.short_keys())
 """Short names of the preset profiles, such as `'sensor_data'`."""
 
 POLICIES: dict[str, tuple[str, ...]] = {
     name: tuple(policy.short_keys()) for name, policy in _POLICIES.items()
 }
-"""Policy -> the short names of its kinds: `'reliability'` -> `'best_effort'`, ..."""
+"""Policy -> short names of its kinds: `'reliability'` -> `'best_effort'`, ..."""
 
 
 def make_profile(
@@ -45,10 +51,10 @@ def make_profile(
     """Return a new QoS profile.
 
     Args:
-        preset: Short name of the profile that it differs from, one of `PRESETS`.
+        preset: Short name of the preset to start from, one of `PRESETS`.
         policies: Policy -> short name of its kind, as in `POLICIES`.
-        depth: How many messages are kept; that of the preset if None or 0.
-        lease_duration_sec: Lease duration of liveliness, in seconds; that of the preset if None.
+        depth: Queue depth; that of the preset if None or 0.
+        lease_duration_sec: Lease duration of liveliness, s; that of the preset if None.
     """
     profile: QoSProfile = copy.copy(_PRESETS.get_from_short_key(preset))
     for name, kind in (policies or {}).items():
@@ -62,15 +68,47 @@ def make_profile(
     return profile
 
 
+def read_overrides(path: str) -> dict[str, QoSProfile]:
+    """Return the QoS profiles by topic of a file of overrides, in the form of `ros2 bag`.
+
+    Raises:
+        LabError: It can't be read, or has another form.
+    """
+    try:
+        topics = load_yaml_file(path) or {}
+        return {str(name): _profile_from(policies) for name, policies in topics.items()}
+    except OSError as error:
+        raise LabError(f'{quoted(path)} can not be read: {error.strerror}.') from error
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        raise LabError(
+            f'{quoted(path)} is no file of QoS profiles: {error}.',
+            todo='Such as: /scan: {reliability: best_effort, history: keep_last, depth: 5}',
+        ) from error
+
+
+def _profile_from(policies: Mapping[str, Any]) -> QoSProfile:
+    profile: Any = copy.copy(_PRESETS.get_from_short_key('default'))
+    for name, value in policies.items():
+        if name in POLICIES and value in POLICIES[name]:
+            setattr(profile, name, _POLICIES[name].get_from_short_key(value))
+        elif name in _TIMES:
+            setattr(profile, name, Duration(seconds=value['sec'], nanoseconds=value['nsec']))
+        elif name in _PLAIN and isinstance(value, _PLAIN[name]) and value >= 0:
+            setattr(profile, name, value)
+        else:
+            raise ValueError(f'{name} can not be {quoted(value)}')
+    return profile  # type: ignore[no-any-return]
+
+
 def match_all(profile: QoSProfile, offered: Sequence[QoSProfile]) -> list[str]:
-    """Let a subscription's profile ask for the most that all publishers offer.
+    """Make a subscription's profile request the most that all publishers offer.
 
     Args:
         profile: The profile, which is changed.
         offered: The profiles of the publishers, at least one.
 
     Returns:
-        Lines that say so when publishers differ, in the words of the real `ros2`.
+        Notes about publishers that differ, in the words of the real `ros2`.
     """
     notes = []
     for name, strong, weak in (

@@ -1,4 +1,4 @@
-"""Why something that was typed was refused, as data: for who explains it in words of a lesson."""
+"""Reasons for refusing input, as data: for lessons that explain them in their own words."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ __all__ = ['Refusal', 'Refused']
 
 
 class Refusal(enum.Enum):
-    """The mistake behind a refusal. The value says it in words, for a debugger and for tests.
+    """The mistake behind a refusal. The value describes it for a debugger and for tests.
 
-    A judge looks this up, and never reads the complaint, whose wording may change.
+    Checks use this and never parse the message, whose wording may change.
     """
 
-    # The line.
+    # Command line.
     QUOTE_NOT_CLOSED = 'a quotation mark has no second one'
     TERMINAL_SIGN = 'a sign that only a terminal understands, such as |'
     UNKNOWN_COMMAND = 'there is no such command'
@@ -42,12 +42,12 @@ class Refusal(enum.Enum):
     NOT_A_NUMBER = 'a field that holds a number got something else'
     NOT_TRUE_OR_FALSE = 'a field that holds true or false got something else'
     NOT_A_TEXT = 'a field that holds a text got something else, or a text that is too long'
-    # All else: a node that is not there, a parameter that can not be set, ...
+    # Everything else: a node that does not exist, a parameter that can't be set, ...
     OTHER = 'something else'
 
 
 class Refused(LabError):
-    """Refuse what was typed, and say as data why.
+    """An error in the input, with its reason as data.
 
     Args:
         message: As for `LabError`.

@@ -1,9 +1,9 @@
-"""One number out of a serialized message, without making the message.
+"""Read one number from a serialized message, without deserializing it.
 
-A Python object of a large message takes tens of microseconds, a number of it two. Messages are
-serialized as plain CDR: fields one after the other, each at a multiple of its own size, counted
-behind a header of four bytes. Source: OMG, "DDS Interoperability Wire Protocol", 2.5, section 10,
-with the encoding version 1 of "DDS-XTYPES", 1.3, section 7.4.3.
+Deserializing a large message takes tens of microseconds, reading a number takes two. Messages are
+serialized as plain CDR: one field after the other, each aligned to its own size, counted after a
+header of four bytes. Source: OMG, "DDS Interoperability Wire Protocol", 2.5, section 10, with
+encoding version 1 of "DDS-XTYPES", 1.3, section 7.4.3.
 """
 
 from __future__ import annotations
@@ -12,13 +12,13 @@ import struct
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from labkit.rosgraph.interfaces import message_class
+from labkit.rosgraph.interfaces import slot_class, slots
 
 __all__ = ['number_reader']
 
 _HEADER = 4
 _LITTLE_ENDIAN = b'\x00\x01'
-# Basic types as `struct` names them. The others (long double, wchar) have no equal there.
+# Basic types and their `struct` codes. The others (long double, wchar) have none.
 _FORMATS = {
     'boolean': '?',
     'octet': 'B',
@@ -36,40 +36,39 @@ _FORMATS = {
 }
 _LENGTH = struct.Struct('<I')
 
-# Goes past a field: from the message's bytes and where it begins to where the next one does.
+# Takes a message and the offset of a field; returns the offset behind the field.
 _Skip = Callable[[memoryview, int], int]
 
 
 class _Unknown(Exception):
-    """A type whose size is not known here."""
+    """The type has no known size."""
 
 
 def number_reader(
-    msg_type: Any, path: Sequence[tuple[str, int | None]], otherwise: Callable[[bytes], Any]
+    msg_type: Any, path: Sequence[tuple[str, int | None]], fallback: Callable[[bytes], Any]
 ) -> Callable[[bytes], Any]:
-    """Return a function that reads one field out of serialized messages.
+    """Return a function that reads one field of serialized messages.
 
     Args:
         msg_type: Class of the messages.
-        path: Names of the fields on the way to it, each with the index of the element if it is an
-            array, else None.
-        otherwise: Reads what can't be read here, by making the message: the way leads past a type
-            whose size is not known, or the message has another order of bytes.
+        path: Names of the nested fields, each with an index if it is an array, else None.
+        fallback: Fallback that deserializes the message: if a type on the path has no known size,
+            or the message is big-endian.
 
     Returns:
-        The function. It raises an IndexError if an array is shorter than the index asks for.
+        The function. It raises an IndexError if an array is too short.
     """
     skips: list[_Skip] = []
     try:
-        slot = _lead_to(path, msg_type, skips)
+        slot = _skips_before(path, msg_type, skips)
         size, unpack = _basic(slot)
     except _Unknown:
-        return otherwise
+        return fallback
     mask = size - 1
 
     def read(data: bytes) -> Any:
         if data[:2] != _LITTLE_ENDIAN:
-            return otherwise(data)
+            return fallback(data)
         body, at = memoryview(data)[_HEADER:], 0
         for skip in skips:
             at = skip(body, at)
@@ -78,10 +77,12 @@ def number_reader(
     return read
 
 
-def _lead_to(path: Sequence[tuple[str, int | None]], msg_type: Any, skips: list[_Skip]) -> Any:
-    """Collect what goes past all before a field; return the field's type."""
+def _skips_before(
+    path: Sequence[tuple[str, int | None]], msg_type: Any, skips: list[_Skip]
+) -> Any:
+    """Collect functions that skip everything before a field; return the field's type."""
     (name, index), *rest = path
-    for before, slot in _slots(msg_type):
+    for before, slot in slots(msg_type).items():
         if before == name:
             break
         skips.append(_skip(slot))
@@ -90,11 +91,11 @@ def _lead_to(path: Sequence[tuple[str, int | None]], msg_type: Any, skips: list[
     if index is not None:
         skips.append(_skip_to(slot, index))
         slot = slot.value_type
-    return _lead_to(rest, _class_of(slot), skips) if rest else slot
+    return _skips_before(rest, slot_class(slot), skips) if rest else slot
 
 
 def _skip(slot: Any) -> _Skip:
-    """Return what goes past a field of a type."""
+    """Return a function that skips a field of a type."""
     if hasattr(slot, 'value_type'):
         past = _skip_elements(slot.value_type)
         size: int = getattr(slot, 'size', -1)
@@ -108,8 +109,8 @@ def _skip(slot: Any) -> _Skip:
 
         return skip_sequence
     if hasattr(slot, 'namespaced_name'):
-        skips = [_skip(inner) for _, inner in _slots(_class_of(slot))]
-        # A message without fields is a byte.
+        skips = [_skip(inner) for inner in slots(slot_class(slot)).values()]
+        # A message without fields takes one byte.
         if not skips:
             return lambda data, at: at + 1
 
@@ -127,7 +128,7 @@ def _skip(slot: Any) -> _Skip:
 
 
 def _skip_to(slot: Any, index: int) -> _Skip:
-    """Return what goes to the element of an array."""
+    """Return a function that skips to an element of an array."""
     past = _skip_elements(slot.value_type)
     if hasattr(slot, 'size'):
         return lambda data, at: past(data, at, index)
@@ -143,11 +144,11 @@ def _skip_to(slot: Any, index: int) -> _Skip:
 
 
 def _skip_elements(slot: Any) -> Callable[[memoryview, int, int], int]:
-    """Return what goes past so many elements of a type."""
+    """Return a function that skips a number of elements of a type."""
     if hasattr(slot, 'typename'):
         size, _ = _basic(slot)
         mask = size - 1
-        # Before no element at all, nothing is aligned.
+        # An empty sequence is not aligned.
         return lambda data, at, count: at + (-at & mask) + size * count if count else at
     skip = _skip(slot)
 
@@ -171,11 +172,3 @@ def _basic(slot: Any) -> tuple[int, Callable[[memoryview, int], tuple[Any, ...]]
         raise _Unknown(slot)
     form = struct.Struct(f'<{code}')
     return form.size, form.unpack_from
-
-
-def _slots(msg_type: Any) -> list[tuple[str, Any]]:
-    return list(zip(msg_type.get_fields_and_field_types(), msg_type.SLOT_TYPES, strict=True))
-
-
-def _class_of(slot: Any) -> Any:
-    return message_class('/'.join(slot.namespaced_name()))

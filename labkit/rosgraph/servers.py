@@ -1,4 +1,4 @@
-"""Services and actions by the nodes that offer them, as the graph knows them."""
+"""Services and actions by server node, and the nodes at both ends of an action."""
 
 from __future__ import annotations
 
@@ -6,22 +6,11 @@ from dataclasses import dataclass
 
 from rclpy.node import Node
 
-from labkit.rosgraph.listings import ends_of_node
+from labkit.rosgraph.listings import NamesAndTypes, ends_of_node
+from labkit.rosgraph.names import EVERY_NODE_OFFERS
 from labkit.rosgraph.snapshot import node_names
 
-__all__ = ['Server', 'servers']
-
-# What rclpy gives every node, under its name (rclpy/parameter_service.py and
-# rclpy/type_description_service.py).
-_OF_EVERY_NODE = (
-    'describe_parameters',
-    'get_parameter_types',
-    'get_parameters',
-    'get_type_description',
-    'list_parameters',
-    'set_parameters',
-    'set_parameters_atomically',
-)
+__all__ = ['ActionEnds', 'Server', 'action_ends', 'servers']
 
 
 @dataclass(frozen=True)
@@ -40,26 +29,40 @@ class Server:
 
     @property
     def is_action(self) -> bool:
-        """Tell whether it is an action."""
+        """Whether it is an action."""
         return '/action/' in self.srv_type
 
 
 def servers(node: Node) -> list[Server]:
-    """Return the services and actions that nodes offer, in order of names.
+    """Return the services and actions of all nodes, sorted by name.
 
-    Without the services that every node has. A service comes into the graph after the name of
-    its node.
-
-    Args:
-        node: The node to ask with.
+    Services that every node has are left out. A service appears in the graph after its node.
     """
     found = []
     for name in sorted({*node_names(node)}):
         ends = ends_of_node(node, name)
-        every = {f'{name}/{service}' for service in _OF_EVERY_NODE}
+        every = {f'{name}/{service}' for service in EVERY_NODE_OFFERS}
         found += [
             Server(name, service, types[0])
             for service, types in sorted([*ends.service_servers, *ends.action_servers])
             if service not in every
         ]
     return found
+
+
+@dataclass(frozen=True)
+class ActionEnds:
+    """The nodes at both ends of an action: full names, each with the types it uses."""
+
+    servers: NamesAndTypes
+    clients: NamesAndTypes
+
+
+def action_ends(node: Node, action: str) -> ActionEnds:
+    """Return the nodes that have a server or a client of an action."""
+    servers, clients = [], []
+    for name in sorted({*node_names(node)}):
+        ends = ends_of_node(node, name, include_hidden=True)
+        servers += [(name, types) for other, types in ends.action_servers if other == action]
+        clients += [(name, types) for other, types in ends.action_clients if other == action]
+    return ActionEnds(servers, clients)

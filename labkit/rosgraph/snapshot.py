@@ -1,7 +1,6 @@
-"""The computation graph as data: nodes, topics, services, and where they do not fit together.
+"""A snapshot of the computation graph: nodes, topics, services, and mismatches.
 
-`read_graph` takes a picture of the moment; two pictures compare equal when nothing has changed.
-Nothing here prints.
+Two snapshots are equal if nothing has changed.
 """
 
 from __future__ import annotations
@@ -17,6 +16,7 @@ from labkit.rosgraph.listings import actions, ends_of_node, has_ends
 from labkit.rosgraph.matching import how_to_match, why_apart
 from labkit.rosgraph.names import (
     EVERY_NODE_HAS,
+    EVERY_NODE_OFFERS,
     UNKNOWN_NODE,
     full_node_name,
     is_hidden,
@@ -35,8 +35,6 @@ __all__ = [
     'read_graph',
 ]
 
-_EVERY_NODE_OFFERS = ('rcl_interfaces/srv/', 'type_description_interfaces/srv/')
-
 
 @dataclass(frozen=True)
 class GraphNode:
@@ -44,8 +42,8 @@ class GraphNode:
 
     Attributes:
         name: Full name, such as `/talker`.
-        own: Whether it lives in this process; the others belong to other processes.
-        count: How many nodes have this name. It should be 1.
+        own: Whether it lives in this process.
+        count: Number of nodes with this name. It should be 1.
     """
 
     name: str
@@ -55,14 +53,14 @@ class GraphNode:
 
 @dataclass(frozen=True)
 class Mismatch:
-    """A publisher and a subscription of one topic that will never exchange a message.
+    """A publisher and a subscription of one topic that can't communicate.
 
     Attributes:
         topic: Full name of the topic.
         publisher: Full name of the publishing node.
         subscription: Full name of the subscribing node.
-        reason: Why, as half a sentence.
-        todo: What to change at one end or the other.
+        reason: The cause, as half a sentence.
+        todo: The fix at either end.
     """
 
     topic: str
@@ -74,7 +72,7 @@ class Mismatch:
 
 @dataclass(frozen=True)
 class GraphTopic:
-    """A topic, and who is at either end of it."""
+    """A topic with its publishers and subscriptions."""
 
     name: str
     types: tuple[str, ...]
@@ -82,7 +80,7 @@ class GraphTopic:
     subscriptions: tuple[Endpoint, ...]
 
     def mismatches(self) -> Iterator[Mismatch]:
-        """Yield the pairs that can't hear each other; a pair of nodes once for each reason."""
+        """Yield the pairs that can't communicate; a pair of nodes once for each reason."""
         seen = set()
         for publisher in self.publishers:
             for subscription in self.subscriptions:
@@ -96,7 +94,7 @@ class GraphTopic:
 
 @dataclass(frozen=True)
 class GraphService:
-    """A service, the nodes that offer it and those that have a client for it."""
+    """A service, with the nodes that offer it and those that have a client."""
 
     name: str
     types: tuple[str, ...]
@@ -106,7 +104,7 @@ class GraphService:
 
 @dataclass(frozen=True)
 class GraphAction:
-    """An action, the nodes that serve it and those that send it goals."""
+    """An action, with the nodes that serve it and those that have a client."""
 
     name: str
     types: tuple[str, ...]
@@ -116,11 +114,10 @@ class GraphAction:
 
 @dataclass(frozen=True)
 class Graph:
-    """Nodes, topics, services and actions of a domain at one moment, each sorted by name.
+    """The nodes, topics, services and actions of a domain at one moment, each sorted by name.
 
-    The topics and services that an action consists of are hidden; it is shown as one thing.
-
-    `str(graph)` tells it in words.
+    The topics and services that an action consists of are hidden. `str(graph)` is the graph in
+    words.
     """
 
     nodes: tuple[GraphNode, ...]
@@ -130,11 +127,11 @@ class Graph:
 
     @property
     def mismatches(self) -> tuple[Mismatch, ...]:
-        """Return all pairs of a publisher and a subscription that can't hear each other."""
+        """All pairs of a publisher and a subscription that can't communicate."""
         return tuple(mismatch for topic in self.topics for mismatch in topic.mismatches())
 
     def __str__(self) -> str:
-        lines = ['Nodes:', *(f'  {_told(node)}' for node in self.nodes), 'Topics:']
+        lines = ['Nodes:', *(f'  {_in_words(node)}' for node in self.nodes), 'Topics:']
         for topic in self.topics:
             lines += [f'  {topic.name} [{", ".join(topic.types)}]']
             lines += _line('published by', [end.node for end in topic.publishers])
@@ -164,19 +161,16 @@ def read_graph(
     include_services: bool = False,
     include_actions: bool = True,
 ) -> Graph:
-    """Take a picture of the graph.
+    """Take a snapshot of the graph.
 
     Args:
         node: The node to ask with.
-        include_hidden: Whether to include hidden nodes and topics (a part of the name starts with
-            `_`), and the two topics and the parameter services that every node has.
+        include_hidden: Whether to include hidden nodes and topics, and the topics and parameter
+            services that every node has.
         include_services: Whether to include services.
         include_actions: Whether to include actions.
-
-    Returns:
-        The graph, sorted by name.
     """
-    # A node of another process comes into the graph a moment before what it has.
+    # A node of another process appears in the graph a moment before its endpoints.
     own = own_nodes(node) - foreign_nodes(node)
     names = [name for name in node_names(node) if include_hidden or not is_hidden(name)]
     nodes = tuple(GraphNode(name, name in own, names.count(name)) for name in sorted(set(names)))
@@ -193,13 +187,13 @@ def read_graph(
 
 
 def node_names(node: Node) -> list[str]:
-    """Return the full names of all nodes, hidden ones too; two of one name appear twice.
+    """Return the full names of all nodes, hidden ones too; a name appears once per node.
 
-    ROS's own list can keep a node for ever that has ended: a participant says which nodes it has
-    (topic `ros_discovery_info`), and where the last of these messages is read after its goodbye,
-    it is taken for a new participant. Such a node has no ends, and is left out here. A living one
-    has some from its first moment, mostly a publisher on `/parameter_events`. So is one of a
-    process that is known to have been killed.
+    ROS's own list can keep an ended node for ever: a participant announces its nodes (topic
+    `ros_discovery_info`), and if the last of these messages is read after its goodbye, it is taken
+    for a new participant. Such a node has no endpoints and is left out here, as are nodes of
+    processes known to have been killed. A live node has endpoints from the start, usually a
+    publisher on `/parameter_events`.
     """
     named = Counter(full_node_name(*pair) for pair in node.get_node_names_and_namespaces())
     infos = node.get_publishers_info_by_topic('/parameter_events')
@@ -216,9 +210,9 @@ def node_names(node: Node) -> list[str]:
 
 
 def is_whole(node: Node) -> bool:
-    """Tell whether it is known of every publisher and subscription to which node it belongs.
+    """Return whether the graph knows the node of every publisher and subscription.
 
-    That comes a moment after the publisher or subscription of another process itself.
+    For other processes that takes a moment longer than the endpoint itself.
     """
     return not any(
         info.node_name == UNKNOWN_NODE
@@ -244,7 +238,8 @@ def _services(node: Node, names: list[str], include_hidden: bool) -> tuple[Graph
             tuple(sorted(clients.get(service, ()))),
         )
         for service, types in sorted(node.get_service_names_and_types())
-        if include_hidden or not (is_hidden(service) or types[0].startswith(_EVERY_NODE_OFFERS))
+        if include_hidden
+        or not (is_hidden(service) or service.rpartition('/')[2] in EVERY_NODE_OFFERS)
     )
 
 
@@ -262,7 +257,7 @@ def _actions(node: Node, names: list[str], include_hidden: bool) -> tuple[GraphA
     return tuple(found)
 
 
-def _told(node: GraphNode) -> str:
+def _in_words(node: GraphNode) -> str:
     notes = [] if node.own else ['another process']
     if node.count > 1:
         notes += [f'{node.count} nodes of this name']

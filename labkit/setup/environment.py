@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from labkit.errors import SetupError
-from labkit.files import write_atomically
+from labkit.files import read_json, write_atomically
 from labkit.setup.installer import Progress, install
 from labkit.setup.machine import VERSIONS, check_platform, clean_environment, find_interpreter
 from labkit.setup.requirements import applicable
@@ -97,7 +97,7 @@ def environment_variables() -> dict[str, str]:
 def _read_stamp() -> dict[str, Any] | None:
     """Return what the stamp says, None if there is none, {} if it says nothing to rely on."""
     try:
-        stamp = json.loads(STAMP.read_text(encoding='utf-8'))
+        stamp = read_json(STAMP)
     except FileNotFoundError:
         return None
     except (OSError, ValueError):

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import ast
-import contextlib
 import os
 import re
 import shutil
+import ssl
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from labkit.errors import SetupError
 from labkit.setup.machine import clean_environment
@@ -34,6 +35,7 @@ _FETCHED = re.compile(
     r' *(?:Collecting|Requirement already satisfied:|Obtaining|Downloaded) (\S+)'
 )
 _NO_SPACE = re.compile(r'No space left on device|Disk quota exceeded', re.IGNORECASE)
+_UNTRUSTED = re.compile(r'invalid peer certificate|certificate.verify.failed', re.IGNORECASE)
 _WRONG_HASH = re.compile(r'hash mismatch|DO NOT MATCH THE HASHES', re.IGNORECASE)
 # The same versions as in the file of the requirements, with the hashes of the packages' files.
 LOCKED = 'environment.txt'
@@ -114,6 +116,7 @@ def install(
     requirements: Sequence[str],
     progress: Progress,
     count_installed: Callable[[], int],
+    options: Sequence[str] = (),
 ) -> None:
     """Install what the files ask for: with uv, which takes seconds, or else with pip.
 
@@ -125,6 +128,7 @@ def install(
         requirements: Names of the files.
         progress: Where to show how far it is.
         count_installed: Tells how many packages are installed.
+        options: Further ones that uv and pip both know, such as `--no-deps`.
 
     Raises:
         SetupError: It did not work, with the reason and what to do.
@@ -136,9 +140,12 @@ def install(
     variables.update(PIP_USER='0', PIP_NO_INPUT='1', UV_NO_PROGRESS='1')
     progress.show('Preparing', 0)
     pip = _pip(python)
-    uv = shutil.which('uv') or (_fetch_uv(pip, python, root, variables, progress) if pip else None)
-    if uv:
-        variables = {**_sources(pip, root, variables), **variables}
+    variables = {**_sources(pip, root, variables), **variables}
+
+    def follow(command: Sequence[str], stdin: IO[str] | None = None) -> tuple[int, list[str]]:
+        return _follow(command, root, variables, progress, count_installed, stdin)
+
+    uv = shutil.which('uv') or (_fetch_uv(pip, python, root, follow) if pip else None)
     # pip does the last by itself. uv looks at the version and at pyproject.toml, not at the files
     # that are copied into the environment.
     own = ['--python', str(python), '--reinstall-package', 'labkit']
@@ -149,9 +156,7 @@ def install(
     for installer in installers:
         try:
             for step in _steps(root, requirements):
-                code, output = _follow(
-                    [*installer, *step], root, variables, progress, count_installed
-                )
+                code, output = follow([*installer, *options, *step])
                 if code != 0:
                     break
             else:
@@ -193,42 +198,36 @@ def _pip(python: Path) -> list[str]:
 
 
 def _fetch_uv(
-    pip: Sequence[str],
-    python: Path,
-    root: Path,
-    variables: dict[str, str],
-    progress: Progress,
+    pip: Sequence[str], python: Path, root: Path, follow: Callable[..., tuple[int, list[str]]]
 ) -> str | None:
-    """Let pip install the course's uv. Return its path, None if that is not possible here."""
+    """Let pip install the course's uv.
+
+    Returns:
+        Its path, None if the course names none.
+
+    Raises:
+        SetupError: It did not work. pip could not install the others either.
+    """
     lock = root / LOCK
     found = _LOCKED_UV.search(lock.read_text(encoding='utf-8')) if lock.is_file() else None
     if found is None:
         return None
     command = [*pip, 'install', '--quiet', '--no-deps', '--require-hashes', '-r', '/dev/stdin']
-    process = subprocess.Popen(
-        command,
-        cwd=root,
-        env=variables,
-        stdin=subprocess.PIPE,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        close_fds=False,  # it keeps the lock: see environment
-    )
-    wanted: bytes | None = found[0].encode()
-    try:
-        while process.returncode is None:
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                process.communicate(wanted, timeout=TICK_SEC)
-            wanted = None
-            progress.show('Preparing', 0)
-    finally:
-        _end(process)
-    uv = python.parent / 'uv'
-    return str(uv) if process.returncode == 0 and uv.exists() else None
+    with tempfile.TemporaryFile('w+') as wanted:
+        wanted.write(found[0])
+        wanted.seek(0)
+        code, output = follow(command, wanted)
+    if code != 0:
+        raise explain(output, root)
+    return str(python.parent / 'uv')
 
 
 def _sources(pip: Sequence[str], root: Path, variables: dict[str, str]) -> dict[str, str]:
-    """Return the variables that let uv take packages from where pip takes them."""
+    """Return the variables that let uv take packages from where pip takes them.
+
+    Both trust the certificates that pip is told to, or else those of the system: a school's proxy
+    has one of its own, which the lists that come with uv and with an older pip do not know.
+    """
     # One that is installed answers at once, one that is run out of its wheel after a second.
     installed = [sys.executable, '-I', '-m', 'pip']
     output = ''
@@ -254,7 +253,19 @@ def _sources(pip: Sequence[str], root: Path, variables: dict[str, str]) -> dict[
                 # uv wants several paths with commas between, several addresses with spaces.
                 between = ',' if name == 'find-links' else ' '
                 found[_OF_UV[name]] = between.join(ast.literal_eval(value).split())
+    if 'SSL_CERT_FILE' not in found and (trusted := _system_certificates()):
+        found.update(UV_SYSTEM_CERTS='1', PIP_CERT=trusted)
     return found
+
+
+def _system_certificates() -> str:
+    """Return the file or folder with the certificates that the system trusts, '' if it has none.
+
+    In a small container it may have none. uv would then refuse to start.
+    """
+    paths = ssl.get_default_verify_paths()
+    hashed = Path(paths.capath or os.devnull).glob('*.0')  # as OpenSSL looks for them in a folder
+    return paths.cafile or (str(paths.capath) if any(hashed) else '')
 
 
 def _steps(root: Path, requirements: Sequence[str]) -> list[list[str]]:
@@ -285,13 +296,14 @@ def _follow(
     variables: dict[str, str],
     progress: Progress,
     count_installed: Callable[[], int],
+    stdin: IO[str] | None,
 ) -> tuple[int, list[str]]:
     """Run the installer and show its progress. Return its exit code and its last lines."""
     process = subprocess.Popen(
         command,
         cwd=root,
         env=variables,
-        stdin=subprocess.DEVNULL,
+        stdin=stdin or subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
@@ -365,6 +377,14 @@ def explain(output: Sequence[str], root: Path) -> SetupError:
             + '\n  '.join(output[-15:]),
         )
     last = _last_error(output)
+    if _UNTRUSTED.search(text):
+        return SetupError(
+            'The package index, or a proxy on the way to it, shows a certificate that is not '
+            'trusted here.',
+            todo="Ask who runs this network for its certificate, and add it to the system's, or "
+            'name its file in SSL_CERT_FILE. Then repeat the command. The installer said: '
+            f'{last}',
+        )
     if _NO_NETWORK.search(text):
         return SetupError(
             'Packages could not be fetched: the network, or the package index, does not answer.',
@@ -378,6 +398,9 @@ def explain(output: Sequence[str], root: Path) -> SetupError:
 
 
 def _last_error(output: Sequence[str]) -> str:
-    """Return the line of an installer's output that says most likely why it failed."""
-    errors = [line for line in output if re.match(r'\s*(ERROR|error|×)', line)]
-    return (errors or [line for line in output if line.strip()] or ['no output'])[-1].strip()
+    """Return what of an installer's output says most likely why it failed."""
+    lines = [line.strip() for line in output if line.strip()] or ['no output']
+    errors = [line for line in lines if re.match(r'ERROR|error|×', line)]
+    # uv goes on with the cause of the error, the cause of that, and so on.
+    causes = [line for line in lines if re.match(r'cause:|[├╰]─▶', line)]
+    return ', '.join([*(errors or lines)[-1:], *causes[-1:]])

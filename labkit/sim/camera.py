@@ -1,7 +1,7 @@
-"""What the camera of the simulated robot sees: rays through each column of a picture.
+"""The camera of the simulated robot, by one ray per column.
 
-Walls, posts and robots are upright, so one ray a column finds where they are, and how high each
-pixel looks at them follows. NumPy does it for all columns at once: 320 by 240 pixels take a few
+Walls, posts and robots are upright, so one ray per column finds them, and what each pixel shows
+follows from their height. NumPy does it for all columns at once: 320 by 240 pixels take a few
 milliseconds.
 """
 
@@ -28,12 +28,12 @@ class Camera:
     """A pinhole camera that looks ahead.
 
     Attributes:
-        width: Pixels in a row.
-        height: Rows.
+        width: Width of the image, px.
+        height: Height of the image, px.
         view: Horizontal field of view, rad.
-        x: Its place ahead of the middle of the axle, m.
-        z: Its place above the floor, m.
-        rate: Pictures in a second, Hz.
+        x: Distance ahead of the middle of the axle, m.
+        z: Height above the floor, m.
+        rate: Frame rate, Hz.
     """
 
     width: int
@@ -54,14 +54,14 @@ class Camera:
 # - view: Raspberry Pi documentation, "Camera hardware", Camera Module v2: 62.2 degrees across;
 # - place: ROBOTIS-GIT/turtlebot3_simulations, turtlebot3_gazebo/models/turtlebot3_burger_cam/
 #   model.sdf: camera_joint 0.040 m ahead and 0.110 m above base_link, which is 0.010 m up.
-# The real one makes up to 90 pictures in a second; 10 are enough to drive by, and light.
+# The real one makes up to 90 images a second; 10 are enough to drive by, and cheap.
 PI_CAMERA = Camera(width=320, height=240, view=math.radians(62.2), x=0.04, z=0.12, rate=10.0)
 
-# How high things are, m. A Burger: 0.192 m (e-manual, "Features > Specifications").
+# Heights, m. A Burger: 0.192 m (e-manual, "Features > Specifications").
 WALL_HEIGHT, POST_HEIGHT, ROBOT_HEIGHT = 0.5, 0.4, 0.192
-# Walls are made of panels, the floor of tiles, posts of rings, m.
+# Sizes of wall panels, their joints, floor tiles and rings of posts, m.
 PANEL, JOINT, TILE, RING = 0.5, 0.02, 0.5, 0.1
-# Walls differ in colour, so that a picture tells which one it is; red, green and blue, 0 to 255.
+# Walls differ in colour, so that an image tells them apart; red, green and blue, 0 to 255.
 WALLS = np.array(
     [(201, 120, 96), (104, 150, 190), (126, 168, 108), (205, 172, 96), (160, 128, 184)],
     np.float32,
@@ -72,19 +72,19 @@ POST, POST_RING, ROBOT, ROBOT_RING = np.array(
 LIGHT_TILE, DARK_TILE, CEILING, HORIZON = np.array(
     [(198, 196, 190), (160, 158, 154), (226, 232, 238), (190, 198, 206)], np.float32
 )
-# Nothing is nearer than this, m.
+# Nearer things are not seen, m.
 NEAREST = 1e-3
 
 
 class _Things(NamedTuple):
-    """What each column meets first of one kind of things.
+    """The first thing of one kind that each column meets.
 
     Attributes:
-        depth: How far ahead, m; infinity where there is nothing.
-        light: How bright it is, 0 to 1.
+        depth: Distance ahead, m; infinity where there is nothing.
+        light: Brightness, 0 to 1.
         colours: Its colour, and that of its rings.
-        height: How high it is, m.
-        ring: Height of a ring, m; infinity if there are none.
+        height: Its height, m.
+        ring: Height of a ring, m; infinity without rings.
     """
 
     depth: Floats
@@ -95,7 +95,7 @@ class _Things(NamedTuple):
 
 
 class _Rays(NamedTuple):
-    """The rays of a camera: where they begin, and how far they go in x and y for each m ahead."""
+    """The rays of a camera: their origin, and their x and y per metre ahead."""
 
     x: float
     y: float
@@ -106,13 +106,13 @@ class _Rays(NamedTuple):
 def picture(
     world: World, pose: Pose, *, camera: Camera = PI_CAMERA, but: str = ''
 ) -> NDArray[np.uint8]:
-    """Return what a camera sees, as rows of pixels with red, green and blue.
+    """Return a camera image, as rows of pixels with red, green and blue.
 
     Args:
-        world: What surrounds it.
-        pose: Where the robot is that carries it.
+        world: The surroundings.
+        pose: Pose of the robot that carries it.
         camera: The camera.
-        but: Name of a robot that is left out: the one that looks.
+        but: Name of a robot to leave out: the one with the camera.
     """
     across, down = _pixels(camera)
     cos, sin = math.cos(pose.yaw), math.sin(pose.yaw)
@@ -149,14 +149,14 @@ def picture(
 
 @functools.cache
 def _pixels(camera: Camera) -> tuple[Floats, Floats]:
-    """Return how far right each column and how far down each row looks, for each m ahead."""
+    """Return how far right each column and how far down each row looks, per metre ahead."""
     across = (np.arange(camera.width) + 0.5 - camera.width / 2) / camera.focal_length
     down = (np.arange(camera.height) + 0.5 - camera.height / 2) / camera.focal_length
     return across.astype(np.float32), down.astype(np.float32)[:, None]
 
 
 def _background(camera: Camera, rays: _Rays) -> Floats:
-    """Return floor and ceiling, as far as one can see."""
+    """Return floor and ceiling up to the horizon."""
     _, down = _pixels(camera)
     half = camera.height // 2
     colours = np.empty((camera.height, camera.width, 3), np.float32)
@@ -166,7 +166,7 @@ def _background(camera: Camera, rays: _Rays) -> Floats:
     tiles = np.floor((rays.x + ahead * rays.along_x) / TILE) + np.floor(
         (rays.y + ahead * rays.along_y) / TILE
     )
-    # Far away the tiles flow into one.
+    # Distant tiles blur into one.
     clear = (np.exp(-ahead / 3) * (tiles % 2 - 0.5))[..., None]
     colours[half:] = (LIGHT_TILE + DARK_TILE) / 2 + clear * (LIGHT_TILE - DARK_TILE)
     return colours
@@ -189,7 +189,7 @@ def _walls(rays: _Rays, world: World) -> _Things | None:
     columns = np.arange(depth.shape[1])
     length = np.hypot(along_x, along_y)[first, 0]
     place = np.where(hit[first, columns], share[first, columns], 0.0) * length
-    # Squarely seen it is brightest; each other panel is a little darker, and so is each joint.
+    # Brightest when seen head-on; every other panel is a little darker, and so is each joint.
     square = np.abs(cross[first, columns]) / length / np.hypot(rays.along_x, rays.along_y)
     light = (0.7 + 0.3 * square) * np.where(place / PANEL % 2 < 1, 1.0, 0.93)
     light = np.where(place % PANEL < JOINT, 0.6, light).astype(np.float32)
@@ -214,6 +214,6 @@ def _posts(
     depth = np.where((np.abs(aside) <= 1) & (distance >= NEAREST), distance / long, np.inf)
     first = depth.argmin(axis=0)
     columns = np.arange(depth.shape[1])
-    # Round: dark at its edges.
+    # Round things are darker at their edges.
     light = (0.45 + 0.55 * inward[first, columns]).astype(np.float32)
     return _Things(depth[first, columns].astype(np.float32), light, colours, height, RING)

@@ -1,9 +1,9 @@
-"""How a robot with two driven wheels moves: pure math in SI units, without ROS.
+"""The motion of a robot with two driven wheels: pure mathematics in SI units, without ROS.
 
 The robot is a unicycle: it drives along its own heading with v (m/s) and turns with w (rad/s).
 Both are piecewise linear in time, since motors need time to speed up. While they are constant the
-path is an arc and has a closed form; while they change it is integrated to the last digit. So
-where the robot ends does not depend on the steps in which it is taken there.
+path is an arc with a closed form; while they change it is integrated to full precision. So the
+result does not depend on the size of the time steps.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ __all__ = [
 
 
 class Pose(NamedTuple):
-    """Where the robot is.
+    """A pose in the plane.
 
     Attributes:
         x: Position along the x axis, m.
@@ -44,7 +44,7 @@ class Pose(NamedTuple):
 
 
 class Twist2(NamedTuple):
-    """How fast the robot moves in the plane, or how fast that changes.
+    """A velocity in the plane, or its rate of change.
 
     Attributes:
         v: Speed along the heading, m/s (or m/s²); negative is backwards.
@@ -59,13 +59,13 @@ STANDING = Twist2()
 
 
 class DriveLimits(NamedTuple):
-    """The most that the drive can do, forwards and backwards, to the left and to the right.
+    """The limits of the drive, the same in both directions.
 
     Attributes:
         v: Speed, m/s.
         w: Turning rate, rad/s.
         v_rate: Acceleration, m/s².
-        w_rate: Acceleration of the turning, rad/s².
+        w_rate: Angular acceleration, rad/s².
     """
 
     v: float
@@ -74,7 +74,7 @@ class DriveLimits(NamedTuple):
     w_rate: float
 
     def clip(self, target: Twist2) -> Twist2:
-        """Return what the drive makes of a command: each component cut to its limit."""
+        """Return a command clipped to the limits."""
         if abs(target.v) <= self.v and abs(target.w) <= self.w:
             return target
         return Twist2(
@@ -85,18 +85,17 @@ class DriveLimits(NamedTuple):
 
 @dataclass(frozen=True)
 class Robot:
-    """The measures of a robot.
+    """The dimensions of a robot.
 
     Attributes:
-        radius: Radius of the disc around the middle of the axle that holds the robot, m.
+        radius: Radius of the disc around the middle of the axle that encloses the robot, m.
         wheel_radius: m.
         wheel_separation: Distance between the wheels, m.
-        limits: What the drive can do.
-        scan_x: Place of the laser scanner along the heading, from the middle of the axle, m.
-        scan_beams: Rays in one turn of the scanner; the first looks ahead, the next to its left.
-        scan_rate: Turns of the scanner in a second, Hz.
-        range_min: Shortest distance that the scanner measures, m.
-        range_max: Longest distance that the scanner measures, m.
+        scan_x: Position of the laser scanner along the heading, from the middle of the axle, m.
+        scan_beams: Beams per turn of the scanner; the first looks ahead, the next to its left.
+        scan_rate: Turns of the scanner per second, Hz.
+        range_min: Minimum range of the scanner, m.
+        range_max: Maximum range of the scanner, m.
     """
 
     radius: float
@@ -135,7 +134,7 @@ BURGER = Robot(
 
 
 def wrap_angle(angle: float) -> float:
-    """Return the same direction as an angle in (-pi, pi], rad."""
+    """Return an angle wrapped to (-pi, pi], rad."""
     if -math.pi < angle <= math.pi:
         return angle
     wrapped = math.remainder(angle, math.tau)
@@ -150,31 +149,31 @@ def yaw_to_quaternion(yaw: float) -> tuple[float, float, float, float]:
 def yaw_from_quaternion(x: float, y: float, z: float, w: float) -> float:
     """Return the heading of a quaternion, rad, in (-pi, pi].
 
-    The quaternion need not have length 1; tilt (roll and pitch) is left out.
+    The quaternion need not be normalized; roll and pitch are ignored.
     Source: Diebel, "Representing Attitude" (2006), equation 290.
     """
     return math.atan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z)
 
 
 def wheel_speeds(twist: Twist2, robot: Robot = BURGER) -> tuple[float, float]:
-    """Return how fast the left and the right wheel turn, rad/s."""
+    """Return the speeds of the left and the right wheel, rad/s."""
     (v, w), radius = twist, robot.wheel_radius
     half = w * robot.wheel_separation / 2
     return (v - half) / radius, (v + half) / radius
 
 
 def believed(twist: Twist2, mismatch: float, robot: Robot = BURGER) -> Twist2:
-    """Return the twist that odometry reads off wheels whose radii differ.
+    """Return the twist that odometry computes when the wheels' radii differ.
 
-    The left wheel is smaller than it should be, so it turns more often, and odometry believes
-    that it came further; the right wheel the other way round. This is the most common
+    The left wheel is smaller than it should be, so it turns more often, and odometry overestimates
+    its way; the right wheel is the opposite. This is the most common
     systematic error of odometry. Source: Borenstein and Feng, "Measurement and correction of
     systematic odometry errors in mobile robots", IEEE Trans. Robotics and Automation 12 (1996).
 
     Args:
         twist: The true twist, or the true acceleration.
-        mismatch: Difference of the radii by their mean, without unit; 0 for perfect wheels.
-        robot: The robot's measures.
+        mismatch: Difference of the radii relative to their mean; 0 for perfect wheels.
+        robot: The robot's dimensions.
     """
     if not mismatch:
         return twist
@@ -186,16 +185,15 @@ def believed(twist: Twist2, mismatch: float, robot: Robot = BURGER) -> Twist2:
 
 
 def ramp(twist: Twist2, target: Twist2, limits: DriveLimits) -> tuple[Twist2, float]:
-    """Return the acceleration towards `target`, and for how many seconds it stays the same.
+    """Return the acceleration towards `target`, and how long it stays constant, s.
 
     Args:
-        twist: The present twist.
-        target: The twist wanted.
-        limits: What the drive can do.
+        twist: The current twist.
+        target: The wanted twist.
+        limits: Limits of the drive.
 
     Returns:
-        The acceleration, and the time until a component reaches its target; infinity if both
-        are there.
+        The acceleration, and the time until a component reaches its target; infinity if both have.
     """
     if twist == target:
         return STANDING, math.inf
@@ -215,7 +213,7 @@ class Motion(NamedTuple):
     Attributes:
         start: Pose at time 0.
         twist: Twist at time 0.
-        acceleration: How fast the twist changes.
+        acceleration: Rate of change of the twist.
     """
 
     start: Pose
@@ -230,8 +228,8 @@ class Motion(NamedTuple):
         )
 
     def fastest(self, time: float) -> Twist2:
-        """Return the largest speeds, either way, within the first `time` seconds."""
-        # They are linear in time, so the largest ones are at an end.
+        """Return the greatest absolute speeds within the first `time` seconds."""
+        # They are linear in time, so the greatest ones are at an end.
         (v, w), (v_rate, w_rate) = self.twist, self.acceleration
         return Twist2(
             max(abs(v), abs(v + v_rate * time)),
@@ -239,7 +237,7 @@ class Motion(NamedTuple):
         )
 
     def turned(self, time: float) -> float:
-        """Return how far the heading has turned after `time` seconds, rad, not wrapped."""
+        """Return the change of heading after `time` seconds, rad, not wrapped."""
         return (self.twist.w + self.acceleration.w * time / 2) * time
 
     def pose_at(self, time: float) -> Pose:
@@ -270,9 +268,9 @@ class Motion(NamedTuple):
         )
 
     def _integrate(self, time: float) -> tuple[float, float]:
-        """Return the way made ahead and to the left, seen from the start, m."""
-        # The way is a Fresnel integral. Gauss-Legendre quadrature with 6 points is exact to
-        # rounding as long as the heading turns by no more than half a radian in a panel.
+        """Return the displacement ahead and to the left, relative to the start, m."""
+        # This is a Fresnel integral. Gauss-Legendre quadrature with 6 points is exact to rounding
+        # as long as the heading turns by no more than half a radian per panel.
         panels = max(1, math.ceil(2 * self.fastest(time).w * time))
         half = time / panels / 2
         ahead = aside = 0.0

@@ -1,4 +1,4 @@
-"""What a TurtleBot3 Burger publishes, as ROS messages made from the simulation.
+"""The messages of a TurtleBot3 Burger, made from the simulation.
 
 Frames, fields and units are those of the real robot. Sources: ROBOTIS-GIT/turtlebot3,
 turtlebot3_node/src: odometry.cpp and, in sensors/, joint_state.cpp, imu.cpp, battery_state.cpp;
@@ -33,7 +33,7 @@ __all__ = [
 
 # Standard gravity, m/s². Source: BIPM, "The International System of Units" (3rd CGPM, 1901).
 GRAVITY = 9.80665
-# A full battery drives the robot for this long, s. Source: ROBOTIS e-manual, TurtleBot3,
+# Time for which a full battery drives the robot, s. Source: ROBOTIS e-manual, TurtleBot3,
 # "Features > Specifications": 2 h 30 min.
 BATTERY_TIME = 2.5 * 3600
 # Its capacity, Ah. Source: battery_state.cpp.
@@ -41,7 +41,7 @@ BATTERY_CAPACITY = 1.8
 # Voltage of the full and of the empty battery, V. Source: ROBOTIS-GIT/OpenCR, turtlebot3_ros2/src/
 # turtlebot3/turtlebot3.cpp, update_battery_status_to_table: three cells of 4.1 V and of 3.5 V.
 BATTERY_FULL, BATTERY_EMPTY = 12.3, 10.5
-# The frame of pictures: x to the right, y down, z ahead (REP 103, "Suffix Frames"). Source:
+# The frame of images: x to the right, y down, z ahead (REP 103, "Suffix Frames"). Source:
 # ROBOTIS-GIT/turtlebot3, turtlebot3_description/urdf/turtlebot3_waffle_pi.urdf.
 CAMERA_FRAME = 'camera_rgb_optical_frame'
 
@@ -50,30 +50,20 @@ def _diagonal(*values: float) -> NDArray[np.float64]:
     return np.diag(np.array(values)).flatten()
 
 
-# How sure the robot is of x, y, z, roll, pitch and yaw, m² and rad². Source: the values that
-# ROBOTIS proposes in odometry.cpp. What can't change on a floor is certain.
+# Covariance of x, y, z, roll, pitch and yaw, m² and rad². Source: the values that ROBOTIS proposes
+# in odometry.cpp. What can't change on a floor is certain.
 POSE_COVARIANCE = _diagonal(0.05, 0.05, 1e-9, 1e-9, 1e-9, 0.0872665)
 TWIST_COVARIANCE = _diagonal(0.001, 1e-9, 1e-9, 1e-9, 1e-9, 0.001)
 
 
 def time_message(seconds: float) -> Time:
-    """Return a simulated time as a time stamp.
-
-    Args:
-        seconds: Time since the start of the simulation, s.
-    """
+    """Return a simulated time, s since the start, as a time stamp."""
     sec, nanosec = divmod(round(seconds * 1e9), 10**9)
     return Time(sec=sec, nanosec=nanosec)
 
 
 def odometry_message(robot: Simulator, stamp: Time, prefix: str = '') -> Odometry:
-    """Return where the robot believes to be and how fast it believes to move.
-
-    Args:
-        robot: The robot.
-        stamp: When.
-        prefix: What comes before the names of its frames, such as `'robot1/'`.
-    """
+    """Return the estimated pose and velocity; `prefix` is that of the frames, e.g. `'robot1/'`."""
     message = Odometry()
     message.header.stamp = stamp
     message.header.frame_id = f'{prefix}odom'
@@ -89,13 +79,7 @@ def odometry_message(robot: Simulator, stamp: Time, prefix: str = '') -> Odometr
 
 
 def joint_state_message(robot: Simulator, stamp: Time, prefix: str = '') -> JointState:
-    """Return how far and how fast the wheels have turned, in rad and rad/s.
-
-    Args:
-        robot: The robot.
-        stamp: When.
-        prefix: What comes before the name of its frame.
-    """
+    """Return angles and speeds of the wheels, rad and rad/s; `prefix` is that of the frame."""
     message = JointState()
     message.header.stamp = stamp
     message.header.frame_id = f'{prefix}base_link'
@@ -106,16 +90,11 @@ def joint_state_message(robot: Simulator, stamp: Time, prefix: str = '') -> Join
 
 
 def imu_message(robot: Simulator, stamp: Time, prefix: str = '') -> Imu:
-    """Return what the inertial sensor in the middle of the axle measures.
+    """Return the measurements of the inertial sensor in the middle of the axle.
 
-    Orientation, rad/s and m/s² are those of the robot in truth, whatever its odometry believes.
-    A sensor at rest measures an acceleration of 1 g upwards; in a curve it measures the one
-    towards the middle. Covariances are zero, as on the real robot: they are not known.
-
-    Args:
-        robot: The robot.
-        stamp: When.
-        prefix: What comes before the name of its frame.
+    Orientation, angular velocity and acceleration are the true ones, whatever odometry estimates.
+    A sensor at rest measures 1 g upwards; in a curve it measures the centripetal acceleration.
+    Covariances are zero, which means unknown, as on the real robot.
     """
     message = Imu()
     message.header.stamp = stamp
@@ -129,16 +108,12 @@ def imu_message(robot: Simulator, stamp: Time, prefix: str = '') -> Imu:
 
 
 def battery_message(robot: Simulator, stamp: Time) -> BatteryState:
-    """Return how full the battery is: a plain model, not a measurement.
+    """Return the state of the battery: a plain model, not a measurement.
 
-    Charge and voltage fall evenly with simulated time, whatever the robot does, until the battery
-    is empty after 2.5 h. The robot drives on then. As the real one does, it fills in the charge
-    in percent (the message would have it from 0 to 1), the voltage, the design capacity, and
-    that there is a battery; the frame is empty.
-
-    Args:
-        robot: The robot.
-        stamp: When.
+    Charge and voltage fall linearly with simulated time, whatever the robot does, until the
+    battery is empty after 2.5 h. The robot drives on then. Like the real one, it fills in the
+    charge in percent (the message specifies 0 to 1), the voltage, the design capacity and the
+    presence of the battery; the frame is empty.
     """
     charge = max(0.0, 1 - robot.time / BATTERY_TIME)
     message = BatteryState()
@@ -151,18 +126,12 @@ def battery_message(robot: Simulator, stamp: Time) -> BatteryState:
 
 
 def scan_message(robot: Simulator, stamp: Time, prefix: str = '') -> LaserScan:
-    """Return what the laser scanner sees.
-
-    Args:
-        robot: The robot.
-        stamp: When.
-        prefix: What comes before the name of its frame.
-    """
+    """Return a laser scan; `prefix` is that of the frame."""
     spec = robot.robot
     message = LaserScan()
     message.header.stamp = stamp
     message.header.frame_id = f'{prefix}base_scan'
-    # The last beam is one increment short of a full turn. All beams are of the same moment.
+    # The last beam is one increment short of a full turn. All beams have the same time.
     message.angle_min = 0.0
     message.angle_increment = math.tau / spec.scan_beams
     message.angle_max = message.angle_increment * (spec.scan_beams - 1)
@@ -174,13 +143,7 @@ def scan_message(robot: Simulator, stamp: Time, prefix: str = '') -> LaserScan:
 
 
 def image_message(robot: Simulator, stamp: Time, prefix: str = '') -> Image:
-    """Return what the camera sees.
-
-    Args:
-        robot: The robot.
-        stamp: When.
-        prefix: What comes before the name of its frame.
-    """
+    """Return a camera image; `prefix` is that of the frame."""
     pixels = picture(robot.world, robot.pose, but=robot.name)
     message = Image()
     message.header.stamp = stamp
@@ -193,12 +156,7 @@ def image_message(robot: Simulator, stamp: Time, prefix: str = '') -> Image:
 
 
 def camera_info_message(stamp: Time, prefix: str = '') -> CameraInfo:
-    """Return how the camera makes a picture: a pinhole without distortion.
-
-    Args:
-        stamp: When.
-        prefix: What comes before the name of its frame.
-    """
+    """Return the camera's calibration: a pinhole without distortion."""
     focal, middle_x, middle_y = PI_CAMERA.focal_length, PI_CAMERA.width / 2, PI_CAMERA.height / 2
     message = CameraInfo()
     message.header.stamp = stamp

@@ -1,4 +1,4 @@
-"""When a node's rounds are due: how much time has passed, and what is to be done in this round."""
+"""Timing of a node's periodic work: elapsed time, and which work is due."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ __all__ = ['Beat', 'Stopwatch']
 
 
 class Beat:
-    """Something that is done again and again in simulated time.
+    """Work that is due periodically in simulated time.
 
     Args:
-        period: So often, s.
-        early: What comes so much early is on time, s: real rounds are a little shorter or longer.
+        period: Period, s.
+        early: Tolerance, s: real timer periods are a little shorter or longer.
     """
 
     def __init__(self, period: float, early: float) -> None:
@@ -23,11 +23,11 @@ class Beat:
         self._due = 0.0
 
     def restart(self, time: float) -> None:
-        """Be due at this time, s."""
+        """Make the work due at a time, s."""
         self._due = time
 
     def is_due(self, time: float) -> bool:
-        """Tell whether it is to be done at this time, s; then it is due a period later."""
+        """Return whether the work is due at a time, s; if so, schedule the next one."""
         if time <= self._due - self._early:
             return False
         self._due += self._period
@@ -37,10 +37,10 @@ class Beat:
 
 
 class Stopwatch:
-    """How much time of a node's clock passes.
+    """Measures elapsed time of a node's clock.
 
-    ROS time may be switched on or off at any moment (the parameter `use_sim_time`). What lies
-    between the times of two sources has not passed.
+    ROS time may be switched on or off at any moment (the parameter `use_sim_time`). The difference
+    between the two clocks does not count as elapsed.
     """
 
     def __init__(self, clock: ROSClock) -> None:
@@ -48,23 +48,23 @@ class Stopwatch:
         self.restart()
 
     def restart(self) -> None:
-        """Count from now."""
-        self._source, self._last = self._look()
+        """Measure from now."""
+        self._source, self._last = self._read_clock()
 
     def passed(self) -> float:
-        """Return the time since this was asked last, s.
+        """Return the time since the last call, s.
 
-        0 if the time comes from another source now, or was set back.
+        0 if the clock was switched or set back.
         """
         source, last = self._source, self._last
         self.restart()
         return max(0, self._last - last) * 1e-9 if self._source == source else 0.0
 
-    def _look(self) -> tuple[tuple[bool, bool], int]:
-        """Return what the time comes from, and the time, ns."""
+    def _read_clock(self) -> tuple[tuple[bool, bool], int]:
+        """Return the source of the clock, and its time, ns."""
         while True:
             active, now = self._clock.ros_time_is_active, self._clock.now().nanoseconds
             # Another thread may switch the source between the two.
             if active == self._clock.ros_time_is_active:
-                # ROS time is 0 until somebody tells it.
+                # ROS time is 0 until the first message on /clock.
                 return (active, now == 0), now

@@ -1,4 +1,4 @@
-"""One simulated robot in a world: takes commands, moves through time, looks around. No ROS."""
+"""A simulated robot in a world: takes commands, moves through time, scans. No ROS."""
 
 from __future__ import annotations
 
@@ -23,47 +23,46 @@ from labkit.sim.world import Contact, Post, World, playground
 
 __all__ = ['COMMAND_TIMEOUT', 'Simulator']
 
-# How long a command holds, s. Source: ROBOTIS-GIT/turtlebot3_simulations,
+# Time for which a command is valid, s. Source: ROBOTIS-GIT/turtlebot3_simulations,
 # turtlebot3_fake_node/src/turtlebot3_fake_node.cpp, cmd_vel_timeout_.
 COMMAND_TIMEOUT = 1.0
-# A command beyond this is a mistake, not a wish to go fast, in m/s or rad/s. Degrees that were
-# meant to be radians are below it, and cut to the limits as on the real robot.
-NONSENSE = 1000.0
-# A contact is sought in pieces of this length, s, so that a day without commands is no long loop.
+# A command beyond this is an error, m/s or rad/s. Degrees instead of radians are below it, and
+# clipped to the limits as on the real robot.
+MAX_SENSIBLE = 1000.0
+# Longest interval of a search for a contact, s, so that a day without commands is one step.
 LONGEST_PIECE = 1.0
-# Speeds nearer than this to the target are there, in m/s or rad/s.
+# Speeds this close to the target have reached it, m/s or rad/s.
 SAME_SPEED = 1e-12
 
 
 class Simulator:
-    """A robot in a world. Time passes in `step`, and in nothing else.
+    """A robot in a world. Time passes only in `step`.
 
-    Where the robot ends does not depend on the steps in which it is taken there.
+    The result does not depend on the size of the steps.
 
     Args:
-        world: What surrounds it; `playground()` if None. Robots in the same world see each other.
-        start: Where it stands at first.
-        robot: Its measures.
-        command_timeout: It stops when no command came for this long, s.
-        drift: Error of its odometry: how much the wheels' radii differ, by their mean.
+        world: The surroundings; `playground()` if None. Robots in the same world see each other.
+        start: Initial pose.
+        robot: Its dimensions.
+        command_timeout: Time without a command after which it stops, s.
+        drift: Odometry error: difference of the wheels' radii relative to their mean.
         noise: Standard deviation of a measured range, m.
-        seed: Of the noise: the same seed, the same noise.
-        scan_nothing: What the scanner gives where it measures nothing, inf or 0.0; see `scan`.
-        name: What it is called in the world; a robot of the same name is replaced.
+        seed: Seed of the noise.
+        scan_nothing: Value of a beam without a measurement, inf or 0.0; see `scan`.
+        name: Its name in the world; a robot of the same name is replaced.
 
     Attributes:
         time: Simulated time since the start, s.
-        pose: Where it is.
-        twist: How fast it moves.
-        acceleration: How fast that changes. A wall stops it at once, which is no acceleration.
-        target: The last command, cut to what the drive can do.
-        odometry: Where it believes to be, from its wheels.
-        wheels: How far the left and the right wheel have turned by their encoders, rad.
-        collisions: All contacts into which it drove since it was placed, with the time in which
-            they happened.
+        pose: True pose.
+        twist: True velocity.
+        acceleration: Its rate of change. Stopping at a wall does not count.
+        target: The last command, clipped to the limits.
+        odometry: Pose estimated from the wheels.
+        wheels: Angles of the left and the right wheel by their encoders, rad.
+        collisions: Contacts it has driven into since it was placed, with their times.
 
     Raises:
-        LabError: An argument makes no sense, or there is no room at `start`.
+        LabError: An argument is invalid, or there is no room at `start`.
     """
 
     def __init__(
@@ -99,14 +98,12 @@ class Simulator:
         return f'<Simulator {self.name!r}: x={x:.3f} y={y:.3f} yaw={yaw:.3f} t={self.time:.3f} s>'
 
     def place(self, start: Pose | tuple[float, float, float]) -> None:
-        """Put the robot somewhere, standing; its odometry agrees.
+        """Move the robot to a pose, at rest; its odometry agrees.
 
-        All but the time is as it was at the very start: what follows does not depend on what the
-        robot did before.
+        Everything but the time is reset: what follows does not depend on earlier motion.
 
         Raises:
-            LabError: It is outside of the room, or too near to a wall or a post, or a number is
-                not finite.
+            LabError: The pose is outside the room, too near to a wall or a post, or not finite.
         """
         x, y, yaw = start
         if not (math.isfinite(x) and math.isfinite(y) and math.isfinite(yaw)):
@@ -118,7 +115,7 @@ class Simulator:
                 f'y={min(ys):.4g} to {max(ys):.4g} m, but x={x}, y={y} is outside of it.',
                 todo=f'Choose a place inside, {self.robot.radius} m or more from walls and posts.',
             )
-        # Another robot may stand there: it is about to be replaced, or they drive apart.
+        # Another robot may be there: it is about to be replaced, or they drive apart.
         spare = min((t.away(x, y)[0] for t in self.world.fixed), default=math.inf)
         if spare < self.robot.radius:
             raise LabError(
@@ -131,41 +128,44 @@ class Simulator:
         self.wheels = (0.0, 0.0)
         self.collisions: list[Contact] = []
         self._command_left = math.inf
-        # The command with which it pushes against a wall or a post, which will not give way.
-        self._pushes: Twist2 | None = None
+        # The command with which it pushes against a fixed thing, in vain.
+        self._blocked_command: Twist2 | None = None
         self._random = np.random.default_rng(self._seed)
-        self._show()
+        self._update_world()
+
+    def enter(self, world: World) -> None:
+        """Take the robot, as it is, out of its world and into another one."""
+        self.close()
+        self.world = world
+        self._blocked_command = None
+        self._update_world()
 
     def close(self) -> None:
-        """Take the robot out of its world, unless another of its name has replaced it."""
+        """Remove the robot from its world, unless another of its name has replaced it."""
         if self.world.robots.get(self.name) is self._post:
             del self.world.robots[self.name]
 
     def command(self, v: float, w: float) -> bool:
-        """Set the speeds to be reached as fast as the drive can, until the next command.
+        """Set the target speeds until the next command.
 
         Args:
             v: Speed along the heading, m/s.
             w: Turning rate, rad/s.
 
         Returns:
-            Whether the command makes sense. If it does not (not finite, or beyond all reason) the
-            robot stops.
+            Whether the command is valid. If it is not finite, or absurdly large, the robot stops.
         """
-        # Written so that NaN, for which every comparison is false, is refused too.
-        sensible = abs(v) <= NONSENSE and abs(w) <= NONSENSE
+        # In this form NaN, for which every comparison is false, is refused too.
+        sensible = abs(v) <= MAX_SENSIBLE and abs(w) <= MAX_SENSIBLE
         self.target = self.robot.limits.clip(Twist2(v, w)) if sensible else STANDING
         self._command_left = self.command_timeout
         return sensible
 
     def step(self, dt: float) -> None:
-        """Let time pass.
-
-        Args:
-            dt: How much, s.
+        """Advance the simulation by `dt` seconds.
 
         Raises:
-            LabError: It is negative or not finite.
+            LabError: `dt` is negative or not finite.
         """
         if not 0 <= dt < math.inf:
             raise LabError(f'dt must be a time in seconds, 0 or more, but it is {dt!r}.')
@@ -173,12 +173,12 @@ class Simulator:
             dt -= self._advance(dt)
 
     def scan(self) -> list[float]:
-        """Return what the laser scanner sees now, beam after beam to the left, m.
+        """Return the ranges of a laser scan, m, beam by beam to the left.
 
-        With `scan_nothing=inf` nothing within the range gives +inf, and something nearer than the
-        range -inf. With 0.0 both give 0.0, as the LDS-01 of a real TurtleBot3 does.
+        With `scan_nothing=inf` nothing in range is +inf, and something too near -inf. With 0.0
+        both are 0.0, as on the LDS-01 of a real TurtleBot3.
         Sources: REP 117, "Informational Distance Measurements" (ros.org/reps/rep-0117.html);
-        hlds_laser_publisher.cpp (millimetres in whole numbers), and a scan of a real one in
+        hlds_laser_publisher.cpp (whole millimetres), and a scan of a real one in
         github.com/ROBOTIS-GIT/turtlebot3/issues/404.
         """
         if not self.world.things(self.name):
@@ -188,29 +188,29 @@ class Simulator:
             ranges += self._random.normal(0.0, self.noise, len(ranges))
         ranges[ranges > self.robot.range_max] = math.inf
         ranges[ranges < self.robot.range_min] = -math.inf
-        if not self.scan_nothing:
-            ranges[np.isinf(ranges)] = 0.0
+        if self.scan_nothing != math.inf:
+            ranges[np.isinf(ranges)] = self.scan_nothing
         numbers: list[float] = ranges.tolist()
         return numbers
 
     @property
     def odometry_twist(self) -> Twist2:
-        """How fast it believes to move, from its wheels."""
+        """Velocity estimated from the wheels."""
         return believed(self.twist, self.drift, self.robot)
 
     @property
     def wheel_rates(self) -> tuple[float, float]:
-        """How fast the left and the right wheel turn by their encoders, rad/s."""
+        """Speeds of the left and the right wheel by their encoders, rad/s."""
         return wheel_speeds(self.odometry_twist, self.robot)
 
     def _advance(self, dt: float) -> float:
-        """Move until something changes: a speed is reached, a contact, the command ends."""
+        """Move until something changes: a target speed, a contact, the end of the command."""
         if self.twist == self.target == STANDING:
-            # However long it stands, this is one piece.
+            # At rest, any duration is one step.
             self.acceleration = STANDING
             self._pass(dt)
             return dt
-        if self.target == self._pushes:
+        if self.target == self._blocked_command:
             used = min(dt, self._command_left)
             self._pass(used)
             return used
@@ -221,11 +221,11 @@ class Simulator:
         if contact is None:
             self._move(motion, used)
         elif contact.time == 0 and self.twist == STANDING:
-            # It pushes against what it touches: time passes, the robot stands.
+            # It pushes against something: time passes, the robot does not move.
             used = min(dt, self._command_left, LONGEST_PIECE)
             self.acceleration = STANDING
             if contact.thing in self.world.fixed:
-                self._pushes = self.target
+                self._blocked_command = self.target
             self._pass(used)
         else:
             used = contact.time
@@ -236,7 +236,7 @@ class Simulator:
         return used
 
     def _move(self, motion: Motion, time: float) -> None:
-        self._pushes = None
+        self._blocked_command = None
         acceleration = motion.acceleration
         steady = acceleration == STANDING
         mean = motion.twist if steady else motion.twist_at(time / 2)
@@ -244,7 +244,7 @@ class Simulator:
         self.wheels = (self.wheels[0] + left * time, self.wheels[1] + right * time)
         self.pose = motion.pose_at(time)
         if self.drift:
-            # Seen from the wheels it is the same kind of motion, with other numbers.
+            # For the wheels it is the same kind of motion, with other numbers.
             seen = believed(self.twist, self.drift, self.robot)
             change = believed(acceleration, self.drift, self.robot)
             self.odometry = Motion(self.odometry, seen, change).pose_at(time)
@@ -257,7 +257,7 @@ class Simulator:
                 self.target.v if abs(self.target.v - v) < SAME_SPEED else v,
                 self.target.w if abs(self.target.w - w) < SAME_SPEED else w,
             )
-        self._show()
+        self._update_world()
         self._pass(time)
 
     def _pass(self, time: float) -> None:
@@ -267,8 +267,8 @@ class Simulator:
             self.target = STANDING
             self._command_left = math.inf
 
-    def _show(self) -> None:
-        """Let the other robots in the world see where this one is."""
+    def _update_world(self) -> None:
+        """Update the robot's position in the world, for the other robots."""
         x, y, _ = self.pose
         self._post = Post(x, y, self.robot.radius)
         self.world.robots[self.name] = self._post

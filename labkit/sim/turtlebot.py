@@ -1,11 +1,11 @@
 """The simulated robot as a ROS node, with the topics of a TurtleBot3 Burger.
 
-Names, types, frames and QoS are those of the real one, so what is written against this node runs
-unchanged there. Sources: ROBOTIS-GIT/turtlebot3, turtlebot3_node: src/turtlebot3.cpp, and
+Names, types, frames and QoS are those of the real robot, so programs for this node run there
+unchanged. Sources: ROBOTIS-GIT/turtlebot3, turtlebot3_node: src/turtlebot3.cpp, and
 include/turtlebot3_node/sensors/sensors.hpp (KeepLast(10), reliable); ROBOTIS-GIT/
 hls_lfcd_lds_driver, src/hlds_laser_publisher.cpp (SensorDataQoS).
 
-Left out are `/tf`, since there is no wheel of tf2_msgs for ROS 2 Jazzy, `/magnetic_field`, and
+Missing are `/tf`, since there is no wheel of tf2_msgs for ROS 2 Jazzy, `/magnetic_field`, and
 `/sensor_state`, whose type is ROBOTIS's own.
 """
 
@@ -17,7 +17,7 @@ from collections.abc import Callable
 from typing import Any, cast
 
 import rclpy.utilities
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import Twist, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.clock import ROSClock
 from rclpy.event_handler import PublisherEventCallbacks
@@ -30,6 +30,8 @@ from sensor_msgs.msg import BatteryState, CameraInfo, Image, Imu, JointState, La
 
 from labkit.background.runtime import runtime
 from labkit.errors import LabError
+from labkit.rosgraph.endpoints import publishers
+from labkit.rosgraph.interfaces import type_name
 from labkit.sim.camera import PI_CAMERA
 from labkit.sim.kinematics import Pose, Twist2
 from labkit.sim.messages import (
@@ -48,64 +50,69 @@ from labkit.sim.world import Contact, Wall, World
 
 __all__ = ['ODOM_RATE', 'Turtlebot']
 
-# How often /odom, /joint_states, /imu and /battery_state are published, Hz, in simulated time. The
-# real robot, too, publishes them in one round; it has 20 of them in a second.
+# Rate of /odom, /joint_states, /imu and /battery_state in simulated time, Hz. The real robot also
+# publishes them together, at 20 Hz.
 ODOM_RATE = 30.0
 QUEUE_DEPTH = 10
-# Only the newest picture is of use, as the driver of the real camera has it (camera_ros).
+# Queue depth of images, as in the driver of the real camera (camera_ros): only the newest is of
+# use.
 PICTURES = 1
-# Beyond this rclpy can't keep up with the messages, simulated seconds in a second.
+# Beyond this speed rclpy can't keep up with the messages, simulated seconds per second.
 MAX_SPEED = 100.0
-# A timer is not called more often than this, s: when time runs fast, a call does several rounds.
+# Shortest timer period, s: when time runs fast, a call does several rounds.
 SHORTEST_PERIOD = 0.004
-# When the whole machine has paused, no more than this is made up for, s.
-MOST_OWED = 0.25
+# Most time that is made up for after the whole machine has paused, s.
+MAX_LAG_SEC = 0.25
 
 
 class Turtlebot(Node):
     """A simulated TurtleBot3 Burger on real topics.
 
-    It hears `cmd_vel` (geometry_msgs/msg/Twist) and publishes `odom` (nav_msgs/msg/Odometry) and
-    `joint_states` (sensor_msgs/msg/JointState) 30 times a second, and `scan`
-    (sensor_msgs/msg/LaserScan) 5 times a second. To whoever subscribes it publishes `imu`
-    (sensor_msgs/msg/Imu) and `battery_state` (sensor_msgs/msg/BatteryState) 30 times a second;
-    the battery is a plain model, which falls from 100 % to 0 % in 2.5 h of simulated time. Its
-    camera, a Raspberry Pi camera v2 that looks ahead, publishes `camera/image_raw`
-    (sensor_msgs/msg/Image: rgb8, 320 by 240 pixels, 62.2 degrees wide) and `camera/camera_info`
-    (sensor_msgs/msg/CameraInfo) 10 times a second, to whoever subscribes. There is no `/tf`. The
-    robot stops when commands stop coming, and where it touches a wall. The origin of the frame
-    `odom` is that of the world, wherever it starts.
+    It subscribes to `cmd_vel` (geometry_msgs/msg/Twist) and publishes `odom`
+    (nav_msgs/msg/Odometry) and `joint_states` (sensor_msgs/msg/JointState) at 30 Hz, and `scan`
+    (sensor_msgs/msg/LaserScan) at 5 Hz. If anyone subscribes, it publishes `imu`
+    (sensor_msgs/msg/Imu) and `battery_state` (sensor_msgs/msg/BatteryState) at 30 Hz; the battery
+    is a plain model, which falls from 100 % to 0 % in 2.5 h of simulated time. Its camera, a
+    Raspberry Pi camera v2 that looks ahead, publishes `camera/image_raw` (sensor_msgs/msg/Image:
+    rgb8, 320 by 240 pixels, 62.2 degrees wide) and `camera/camera_info`
+    (sensor_msgs/msg/CameraInfo) at 10 Hz, if anyone subscribes. There is no `/tf`. The robot stops
+    when commands stop coming, and when it touches a wall. The frame `odom` has the origin of the
+    world, wherever the robot starts.
 
-    There are three ways for time to pass. By default it is real time. With `speed` it runs faster
-    or slower, and `/clock` tells it to nodes that have the parameter `use_sim_time`. With
-    `lockstep` it stands still until a command comes, and then that many seconds pass: the same
-    commands lead to the same numbers, however busy the machine is.
+    Time can pass in three ways. By default it is real time. With `speed` it runs faster or slower,
+    and `/clock` publishes it for nodes with the parameter `use_sim_time`. With `lockstep` it
+    stands still until a command comes, and then advances by that many seconds: the same commands
+    give the same numbers, however busy the machine is.
 
     Args:
         name: The node's name.
-        namespace: For several robots: `namespace='robot1'` gives `/robot1/cmd_vel` and so on.
-        world: What surrounds the robot, `playground()` by default. Robots that are given the same
-            world see each other.
-        x: Where it starts, m.
-        y: Where it starts, m.
-        yaw: Where it looks at the start, rad.
-        speed: Simulated seconds in a second.
-        lockstep: Simulated seconds that pass with each command; None if time passes by itself.
-        command_timeout: It stops when no command came for this long, s.
-        drift: Error of its odometry: the difference of the wheels' radii by their mean.
+        namespace: One of several robots: `namespace='robot1'` gives `/robot1/cmd_vel` and so on.
+        world: The surroundings, `playground()` by default. Robots in the same world see each
+            other.
+        x: Start position, m.
+        y: Start position, m.
+        yaw: Start heading, rad.
+        speed: Simulated seconds per second.
+        lockstep: Simulated seconds per command; None if time passes by itself.
+        command_timeout: Time without a command after which it stops, s.
+        drift: Odometry error: difference of the wheels' radii relative to their mean.
         noise: Standard deviation of a measured range, m. The real sensor has about 0.01.
-        seed: Of the noise: the same seed, the same noise.
-        scan_nothing: What the scanner says where it measures nothing: inf, as the rules of ROS
-            have it (REP 117; -inf where something is too near), or 0.0, as that of a real
-            TurtleBot3 does in both cases.
-        use_sim_time: Follow the `/clock` of another node, such as that of a robot with `speed`.
+        seed: Seed of the noise.
+        stamped: Whether it takes `geometry_msgs/msg/TwistStamped` instead of `Twist`, as the
+            TurtleBot3 packages of Jazzy do by default.
+        scan_nothing: Value of a beam without a measurement: inf, as REP 117 has it (-inf if
+            something is too near), or 0.0 in both cases, as on a real TurtleBot3.
+        use_sim_time: Whether to follow the `/clock` of another node, such as a robot with `speed`.
 
     Attributes:
         simulator: The robot itself, without ROS.
 
     Raises:
-        LabError: An argument makes no sense, or there is no room where it should start.
+        LabError: An argument is invalid, or there is no room at the start.
     """
+
+    # Services cost time at every wake-up, and it has no parameters to set.
+    _has_services = False
 
     def __init__(
         self,
@@ -122,6 +129,7 @@ class Turtlebot(Node):
         drift: float = 0.0,
         noise: float = 0.0,
         seed: int = 0,
+        stamped: bool = False,
         scan_nothing: float = math.inf,
         use_sim_time: bool = False,
     ) -> None:
@@ -130,7 +138,7 @@ class Turtlebot(Node):
         self.simulator = Simulator(
             world,
             start=Pose(x, y, yaw),
-            # In lock-step a command holds for its step, however long that is.
+            # In lock-step a command is valid for its step, however long that is.
             command_timeout=command_timeout if lockstep is None else math.inf,
             drift=drift,
             noise=noise,
@@ -140,8 +148,10 @@ class Turtlebot(Node):
         )
         if not rclpy.utilities.ok():
             runtime.start()
-        # It has no parameters for others to set, and services cost time at every wake-up.
-        overrides = {'use_sim_time': use_sim_time, 'start_type_description_service': False}
+        overrides = {
+            'use_sim_time': use_sim_time,
+            'start_type_description_service': self._has_services,
+        }
         super().__init__(
             name,
             namespace=namespace,
@@ -149,29 +159,31 @@ class Turtlebot(Node):
                 Parameter(key, value=value)  # type: ignore[no-untyped-call]
                 for key, value in overrides.items()
             ],
-            start_parameter_services=False,
+            start_parameter_services=self._has_services,
         )
+        # Arguments of the program may have changed it.
+        space = self.get_namespace().strip('/')
         self._prefix = f'{space}/' if space else ''
         self._lock = threading.RLock()
         early = 0.5 / ODOM_RATE
         self._scan_beat = Beat(1 / self.simulator.robot.scan_rate, early)
-        # However fast time runs, no more pictures are made in a real second.
+        # However fast time runs, the number of images per real second stays the same.
         self._camera_beat = Beat(max(1.0, speed) / PI_CAMERA.rate, early)
-        self._owed = 0.0
-        self._said: set[str] = set()
+        self._due_rounds = 0.0
+        self._warned: set[str] = set()
         self._reported = 0
         self._lockstep = lockstep
         self._clock_publisher = None
         if lockstep is not None or speed != 1.0:
             self._clock_publisher = self.create_publisher(Clock, '/clock', QUEUE_DEPTH)
-        self._open_topics()
+        self._open_topics(TwistStamped if stamped else Twist)
         self._stopwatch = Stopwatch(cast(ROSClock, self.get_clock()))
         self._speed = speed
         self._timer: Timer | None = None
         if lockstep is None:
             self._start_timer()
 
-    def _open_topics(self) -> None:
+    def _open_topics(self, command_type: type[Twist | TwistStamped]) -> None:
         self._odom = self.create_publisher(
             Odometry, 'odom', QUEUE_DEPTH, event_callbacks=self._on_join(self._publish_odometry)
         )
@@ -186,16 +198,18 @@ class Turtlebot(Node):
         self._battery = self.create_publisher(BatteryState, 'battery_state', QUEUE_DEPTH)
         self._image = self.create_publisher(Image, 'camera/image_raw', PICTURES)
         self._camera_info = self.create_publisher(CameraInfo, 'camera/camera_info', PICTURES)
-        self.create_subscription(Twist, 'cmd_vel', self._on_command, QUEUE_DEPTH)
+        self._commands = self.create_subscription(
+            command_type, 'cmd_vel', self._on_command, QUEUE_DEPTH
+        )
 
     def _on_join(self, publish: Callable[[], None]) -> PublisherEventCallbacks | None:
-        # In lock-step nothing is published before the first command, yet a controller may have to
-        # know where the robot is before it can give one. So whoever joins is told.
+        # In lock-step nothing is published before the first command, yet a controller may need to
+        # know the pose before it can send one. So new subscribers get a message at once.
         if self._lockstep is None:
             return None
 
         def matched(info: Any) -> None:
-            if info.total_count_change > 0:  # in all: another one may have gone meanwhile
+            if info.total_count_change > 0:  # a new subscriber, even if another has left meanwhile
                 publish()
 
         return PublisherEventCallbacks(matched=matched)
@@ -204,24 +218,24 @@ class Turtlebot(Node):
 
     @property
     def pose(self) -> Pose:
-        """Where the robot is in truth. A program for a robot can't know it: use `/odom`."""
+        """The true pose. A program for a robot can't know it: use `/odom`."""
         return self.simulator.pose
 
     @property
     def twist(self) -> Twist2:
-        """How fast the robot moves in truth."""
+        """The true velocity."""
         return self.simulator.twist
 
     @property
     def collisions(self) -> list[Contact]:
-        """All contacts into which the robot drove since it was placed."""
+        """Contacts the robot has driven into since it was placed."""
         return list(self.simulator.collisions)
 
     def place(self, x: float = 0.0, y: float = 0.0, yaw: float = 0.0) -> None:
-        """Put the robot somewhere, standing, and `restart` its rounds. Its odometry agrees.
+        """Move the robot to a pose, at rest, and `restart` its timers. Its odometry agrees.
 
-        Where it drives from there depends on the commands and their times alone, not on what it
-        did before. Only simulated time goes on.
+        Its motion from there depends only on the commands and their times, not on earlier motion.
+        Only simulated time goes on.
 
         Args:
             x: m.
@@ -229,8 +243,7 @@ class Turtlebot(Node):
             yaw: rad.
 
         Raises:
-            LabError: It is outside of the room, or too near to a wall or a post, or a number is
-                not finite.
+            LabError: The pose is outside the room, too near to a wall or a post, or not finite.
         """
         with self._lock:
             self.simulator.place((x, y, yaw))
@@ -238,23 +251,23 @@ class Turtlebot(Node):
             self.restart()
 
     def restart(self) -> None:
-        """Begin the rounds anew: the next one is a full period from now, and has a scan.
+        """Restart the timers: the next messages, with a scan, come a full period from now.
 
-        The robot does not move for the time since its last round. Its speed and its command stay.
+        The robot does not move for the time since the last period. Its speed and its command stay.
         """
         with self._lock:
             for beat in (self._scan_beat, self._camera_beat):
                 beat.restart(self.simulator.time)
-            self._owed = 0.0
+            self._due_rounds = 0.0
             self._stopwatch.restart()
             if self._timer is not None:
-                # Not `reset`: that keeps the time of the last call, and if this lies ahead, since
-                # the clock was set back, the next step of the clock would shift the rounds.
+                # Not `reset`: that keeps the time of the last call, and if this is in the future,
+                # since the clock was set back, the next step of the clock would shift the timer.
                 self.destroy_timer(self._timer)
                 self._start_timer()
 
     def destroy_node(self) -> None:
-        """Destroy the node, and take the robot out of its world."""
+        """Destroy the node, and remove the robot from its world."""
         self._timer = None
         self.simulator.close()
         super().destroy_node()  # type: ignore[no-untyped-call]
@@ -269,20 +282,20 @@ class Turtlebot(Node):
         self._timer = self.create_timer(period, self._on_fast_timer)
 
     def _on_timer(self) -> None:
-        """Real time: catch up with the clock, then tell."""
+        """Real time: catch up with the clock, then publish."""
         with self._lock:
             self._step(self._stopwatch.passed())
             self._publish_all()
 
     def _on_fast_timer(self) -> None:
-        """Simulated time: rounds of equal length, so the numbers don't depend on the machine."""
+        """Simulated time: steps of equal length, so the numbers don't depend on the machine."""
         with self._lock:
-            # By the clock and not by the calls: a timer leaves out those that it is late for.
-            passed = min(self._stopwatch.passed(), MOST_OWED)
-            self._owed += passed * self._speed * ODOM_RATE
-            # The margin keeps a round from being late because 0.1 * 10 is not quite 1.
-            while self._owed > 1 - 1e-9:
-                self._owed -= 1
+            # By the clock, not by the calls: a late timer skips calls.
+            passed = min(self._stopwatch.passed(), MAX_LAG_SEC)
+            self._due_rounds += passed * self._speed * ODOM_RATE
+            # The tolerance keeps a step from being late because 0.1 * 10 is not quite 1.
+            while self._due_rounds > 1 - 1e-9:
+                self._due_rounds -= 1
                 self._step(1 / ODOM_RATE)
                 self._publish_all()
 
@@ -299,17 +312,18 @@ class Turtlebot(Node):
 
     # -- commands -------------------------------------------------------------------------------
 
-    def _on_command(self, message: Twist) -> None:
+    def _on_command(self, message: Twist | TwistStamped) -> None:
+        command = message.twist if isinstance(message, TwistStamped) else message
         with self._lock:
             if self._clock_publisher is None:
-                # What was commanded before holds until this moment.
+                # The previous command is valid until now.
                 self._step(self._stopwatch.passed())
-            self._obey(message)
+            self._set_command(command)
             if self._lockstep is not None:
                 self._step(self._lockstep)
                 self._publish_all()
 
-    def _obey(self, message: Twist) -> None:
+    def _set_command(self, message: Twist) -> None:
         v, w = message.linear.x, message.angular.z
         others = {
             'linear.y': message.linear.y,
@@ -317,14 +331,14 @@ class Turtlebot(Node):
             'angular.x': message.angular.x,
             'angular.y': message.angular.y,
         }
-        # A number that is none makes the whole command doubtful, wherever it stands.
+        # One invalid number makes the whole command doubtful.
         sensible = all(math.isfinite(value) for value in others.values())
         if not self.simulator.command(v if sensible else math.nan, w):
             fields = {'linear.x': v, **others, 'angular.z': w}
             text = ', '.join(f'{name}={value!r}' for name, value in fields.items() if value)
             self._warn_once('refused', f'Refused a command without sense: {text}. Stopping.')
             return
-        self._said.discard('refused')
+        self._warned.discard('refused')
         ignored = ', '.join(name for name, value in others.items() if value)
         if ignored:
             self._warn_once(
@@ -340,10 +354,24 @@ class Turtlebot(Node):
                 'Commands beyond that are cut.',
             )
 
+    def _warn_of_other_commands(self) -> None:
+        """Say which commands can't be heard: those of another type reach nobody."""
+        here = type_name(self._commands.msg_type)
+        found = publishers(self, self._commands.topic_name)
+        others = {end.node: end.msg_type for end in found if end.is_known and end.msg_type != here}
+        for name, msg_type in others.items():
+            pair = ('geometry_msgs/msg/Twist', 'geometry_msgs/msg/TwistStamped')
+            todo = f' Make the robot with stamped={msg_type == pair[1]}.' * (msg_type in pair)
+            self._warn_once(
+                f'{name} {msg_type}',
+                f"Can't hear {name} on {self._commands.topic_name}: it publishes {msg_type}, and "
+                f'this robot takes {here}.{todo}',
+            )
+
     def _warn_once(self, what: str, text: str) -> None:
-        """Warn, but not again of the same: commands come ten times a second."""
-        if what not in self._said:
-            self._said.add(what)
+        """Warn, but not twice about the same: commands come ten times a second."""
+        if what not in self._warned:
+            self._warned.add(what)
             self._warn(text)
 
     def _warn(self, text: str) -> None:
@@ -356,7 +384,7 @@ class Turtlebot(Node):
             self._clock_publisher.publish(Clock(clock=self._stamp()))
         self._publish_odometry()
         stamp = self._stamp()
-        # These are seldom heard, and not made for nobody.
+        # These rarely have subscribers; making them would be a waste.
         if self._joints.get_subscription_count():
             self._joints.publish(joint_state_message(self.simulator, stamp, self._prefix))
         if self._imu.get_subscription_count():
@@ -365,6 +393,7 @@ class Turtlebot(Node):
             self._battery.publish(battery_message(self.simulator, stamp))
         if self._scan_beat.is_due(self.simulator.time):
             self._publish_scan()
+            self._warn_of_other_commands()
         if self._camera_beat.is_due(self.simulator.time):
             self._publish_picture()
 

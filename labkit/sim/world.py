@@ -1,4 +1,4 @@
-"""What surrounds the robot: walls, round posts, other robots. Contact and laser scan."""
+"""The robot's surroundings: walls, round posts, other robots. Contacts and laser scans."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from labkit.sim.rays import TOUCH, Convex, see_posts, see_walls
 
 __all__ = ['Contact', 'Post', 'Wall', 'World', 'open_field', 'pillars', 'playground', 'room']
 
-# Approaching more slowly than this is rounding, m/s.
+# Slower approach than this is rounding, m/s.
 STILL = 1e-12
-# A row of steps towards a contact converges in about 5; more means a graze, where it stops short.
+# Most iterations towards a contact. It converges in about 5; more means a graze.
 MAX_STEPS = 1000
-# A robot remembers what is around it, so far beyond its way, m.
+# Margin around a robot within which it remembers things, m.
 AROUND = 0.3
 
 
@@ -33,7 +33,7 @@ class Wall(NamedTuple):
     y2: float
 
     def away(self, x: float, y: float) -> tuple[float, float, float]:
-        """Return the distance of (x, y) from the wall, m, and the direction that leads away."""
+        """Return the distance of (x, y) from the wall, m, and the direction away from it."""
         along_x, along_y = self.x2 - self.x1, self.y2 - self.y1
         share = ((x - self.x1) * along_x + (y - self.y1) * along_y) / (along_x**2 + along_y**2)
         share = min(max(share, 0.0), 1.0)
@@ -43,29 +43,26 @@ class Wall(NamedTuple):
 
 
 class Post(NamedTuple):
-    """A round obstacle with its middle at (x, y) and a radius, m."""
+    """A round obstacle with its centre at (x, y), m."""
 
     x: float
     y: float
     radius: float
 
     def away(self, x: float, y: float) -> tuple[float, float, float]:
-        """Return the distance of (x, y) from the post, m, and the direction that leads away.
-
-        The distance is negative inside.
-        """
+        """Return the distance of (x, y), negative inside, m, and the direction away from it."""
         off_x, off_y = x - self.x, y - self.y
         distance = math.hypot(off_x, off_y)
         return distance - self.radius, off_x / (distance or 1.0), off_y / (distance or 1.0)
 
 
 class Contact(NamedTuple):
-    """The robot touches something.
+    """A contact of the robot.
 
     Attributes:
-        time: When, s.
-        x: Where they touch, m.
-        y: Where they touch, m.
+        time: Time, s.
+        x: Point of contact, m.
+        y: Point of contact, m.
         thing: What it touches: a `Wall`, or a `Post`, which may be another robot.
     """
 
@@ -79,18 +76,18 @@ class World:
     """Walls and posts, and the robots among them.
 
     Args:
-        walls: Walls that stand free.
+        walls: Free-standing walls.
         posts: Round obstacles.
-        corners: Corners of a convex room around all of it, one after the other, m. Its sides are
-            walls. Without corners the world has no outside.
+        corners: Corners of a convex room around everything, in order, m. Its sides are walls.
+            Without corners the world has no outside.
 
     Attributes:
         corners: The corners of the room.
         walls: The walls, those of the room first.
         posts: The round obstacles.
-        fixed: All of these.
-        robots: The robots in this world by name, as posts where they are now. Robots that are
-            given the same world see each other, and stop when they meet.
+        fixed: All walls and posts.
+        robots: The robots in this world by name, as posts at their current positions. Robots in
+            the same world see each other, and stop when they meet.
     """
 
     def __init__(
@@ -111,18 +108,18 @@ class World:
         self._room = Convex(self.corners) if len(self.corners) > 2 else None
         self._lines = np.array(self.walls, dtype=float).reshape(-1, 4)
         self._rounds = np.array(self.posts, dtype=float).reshape(-1, 3)
-        self._looks: dict[str, _Look] = {}
+        self._known: dict[str, _Surroundings] = {}
 
     def __repr__(self) -> str:
         return f'<World: {len(self.walls)} walls, {len(self.posts)} posts>'
 
     def things(self, but: str = '') -> list[Wall | Post]:
-        """Return all that can be met, except the robot named `but`."""
+        """Return everything in the world, except the robot named `but`."""
         return [*self.fixed, *self._others(but)]
 
     def is_outside(self, x: float, y: float) -> bool:
-        """Tell whether (x, y), m, is outside of the room."""
-        # Seen along the sides, what is inside is always on the same hand.
+        """Return whether (x, y), m, is outside the room."""
+        # Following the sides, the inside is always on the same hand.
         turns = [
             (side.x2 - side.x1) * (y - side.y1) - (side.y2 - side.y1) * (x - side.x1)
             for side in self._sides
@@ -130,29 +127,29 @@ class World:
         return any(turn < 0 for turn in turns) and any(turn > 0 for turn in turns)
 
     def clearance(self, x: float, y: float, *, but: str = '') -> float:
-        """Return the distance of (x, y) from the nearest thing, m; infinity if there is none.
+        """Return the distance of (x, y) to the nearest thing, m; infinity if there is none.
 
         Args:
             x: m.
             y: m.
-            but: Name of a robot that is left out.
+            but: Name of a robot to leave out.
         """
         return min((thing.away(x, y)[0] for thing in self.things(but)), default=math.inf)
 
     def first_contact(
         self, motion: Motion, duration: float, radius: float, *, but: str = ''
     ) -> Contact | None:
-        """Return where a disc first touches something on its way.
+        """Return the first contact of a moving disc.
 
         Args:
-            motion: How the middle of the disc moves.
-            duration: How long, s.
+            motion: Motion of its centre.
+            duration: Duration, s.
             radius: Radius of the disc, m.
-            but: Name of a robot that is left out: the disc itself.
+            but: Name of a robot to leave out: the disc itself.
 
         Returns:
-            The first contact, its time counted from the start of the motion. None if there is
-            none: the disc does not come near anything, or moves away from what it touches.
+            The first contact, with its time from the start of the motion. None if the disc comes
+            near nothing, or moves away from what it touches.
         """
         others = self._others(but)
         if not self.fixed and not others:
@@ -174,36 +171,33 @@ class World:
 
     def _others(self, but: str) -> list[Post]:
         if len(self.robots) == (but in self.robots):
-            return []  # it is alone, as it mostly is
+            return []  # the usual case
         return [post for name, post in list(self.robots.items()) if name != but]
 
     def _near(self, x: float, y: float, distance: float, who: str) -> tuple[Wall | Post, ...]:
-        """Return the fixed things that may be nearer to (x, y) than a distance.
-
-        Who has looked further than that looks again only when it is used up.
-        """
-        look = self._looks.get(who, _Look(x, y, 0.0, 0.0, ()))
-        moved = math.hypot(x - look.x, y - look.y)
-        if moved + distance <= look.free:
+        """Return fixed things that may be within a distance of (x, y), from a robot's cache."""
+        known = self._known.get(who, _Surroundings(x, y, 0.0, 0.0, ()))
+        moved = math.hypot(x - known.x, y - known.y)
+        if moved + distance <= known.free:
             return ()
-        limit, near = look.limit - moved, look.near
+        limit, near = known.limit - moved, known.near
         if distance > limit:
             limit = distance + AROUND
             near = tuple(thing for thing in self.fixed if thing.away(x, y)[0] <= limit)
         free = min((thing.away(x, y)[0] for thing in near), default=limit)
-        self._looks[who] = _Look(x, y, min(free, limit), limit, near)
+        self._known[who] = _Surroundings(x, y, min(free, limit), limit, near)
         return near
 
     def ranges(self, pose: Pose, *, robot: Robot = BURGER, but: str = '') -> NDArray[np.float64]:
-        """Return what the robot's laser scanner sees, beam after beam to the left, m.
+        """Return the ranges of the robot's laser scanner, beam by beam to the left, m.
 
         Args:
             pose: The robot's pose.
-            robot: The robot's measures, its scanner among them.
-            but: Name of a robot that is left out: the one that looks.
+            robot: The robot's dimensions.
+            but: Name of a robot to leave out: the one with the scanner.
 
         Returns:
-            Distances from the scanner, not cut to its range; infinity where nothing is.
+            Distances from the scanner, not clipped to its range; infinity where nothing is.
         """
         eye_x = pose.x + robot.scan_x * math.cos(pose.yaw)
         eye_y = pose.y + robot.scan_x * math.sin(pose.yaw)
@@ -219,7 +213,7 @@ class World:
 
     def _see_walls(self, x: float, y: float, rays: NDArray[np.float64]) -> NDArray[np.float64]:
         nearest = self._room.see(np.array((x, y)), rays) if self._room else None
-        lines = self._lines
+        lines: NDArray[np.float64] = self._lines
         if nearest is not None:
             lines = lines[len(self._sides) :]
         if nearest is None:
@@ -229,15 +223,15 @@ class World:
         return nearest
 
 
-class _Look(NamedTuple):
-    """What a robot knows of the fixed things around a place.
+class _Surroundings(NamedTuple):
+    """A robot's cached knowledge of the fixed things around a place.
 
     Attributes:
         x: The place, m.
         y: The place, m.
-        free: Nothing is nearer to it than that, m.
-        limit: How far it has looked, m.
-        near: What it has found within that.
+        free: Distance within which there is nothing, m.
+        limit: Distance within which it knows everything, m.
+        near: The things within that distance.
     """
 
     x: float
@@ -249,18 +243,17 @@ class _Look(NamedTuple):
 
 @functools.cache
 def _fan(count: int) -> NDArray[np.float64]:
-    """Return the directions of so many beams of a scanner that looks along the x axis."""
+    """Return the directions of a scanner's beams, relative to the x axis."""
     angles = np.arange(count) * (math.tau / count)
     return np.vstack((np.cos(angles), np.sin(angles)))
 
 
 class _Path(NamedTuple):
-    """A motion with what bounds it, for the search for a contact.
+    """A motion with its bounds, for the search for a contact.
 
     Attributes:
-        motion: The motion.
-        fastest: Its largest speeds.
-        duration: How long it takes, s.
+        fastest: Its greatest speeds.
+        duration: Its duration, s.
     """
 
     motion: Motion
@@ -269,28 +262,28 @@ class _Path(NamedTuple):
 
     @property
     def reach(self) -> float:
-        """The longest way that it can come, m."""
+        """The greatest distance it can cover, m."""
         return self.fastest.v * self.duration
 
     def bend(self, share: float) -> float:
-        """Return the largest acceleration in a direction, m/s².
+        """Return the greatest acceleration in a direction, m/s².
 
         Args:
-            share: Cosine of the angle between the direction and the heading at some time.
+            share: Cosine of the angle between the direction and the current heading.
         """
-        # Along its way the disc speeds up, across its way it follows the curve.
+        # Along its path the disc speeds up, across its path it follows the curve.
         turn = self.fastest.w * self.duration
         along = abs(self.motion.acceleration.v) * min(1.0, abs(share) + turn)
         return along + self.fastest.v * self.fastest.w
 
 
 def _touch_time(path: _Path, thing: Wall | Post, radius: float, until: float) -> float | None:
-    """Return when the disc first touches one thing, None if it does not before `until`.
+    """Return the time when the disc first touches a thing, None if not before `until`.
 
-    Things are convex, so the gap g to one of them is a convex function of place. With g' its
-    rate of change now and A the largest acceleration away from it, after h seconds it is still
-    at least g + g' h - A h²/2. Where this bound becomes 0 is reached safely; from there, again.
-    On a straight line this is Newton's method. Nothing is stepped over, however long the way.
+    Things are convex, so the gap g to one of them is a convex function of position. With g' its
+    current rate of change and A the greatest acceleration towards it, the gap after h seconds is
+    at least g + g' h - A h²/2. It is safe to advance to the zero of this bound; repeat from there.
+    On a straight line this is Newton's method. Nothing is stepped over, however long the path.
     """
     motion = path.motion
     time = 0.0
@@ -298,14 +291,14 @@ def _touch_time(path: _Path, thing: Wall | Post, radius: float, until: float) ->
         pose = motion.pose_at(time)
         distance, away_x, away_y = thing.away(pose.x, pose.y)
         gap = distance - radius
-        # How much of a way along the heading leads away from the thing.
+        # Share of a movement along the heading that leads away from the thing.
         share = away_x * math.cos(pose.yaw) + away_y * math.sin(pose.yaw)
         rate = share * motion.twist_at(time).v
         if gap <= TOUCH:
             start = rate if abs(rate) > STILL else share * motion.acceleration.v
             if start < -STILL:
                 return time
-        # A disc that touches and slips along, or away, may come closer by no more than TOUCH.
+        # A disc that slides along a thing, or leaves it, may come closer by no more than TOUCH.
         time += _safe_step(max(gap, TOUCH), rate, path.bend(share))
         if time >= until:
             return None
@@ -313,7 +306,7 @@ def _touch_time(path: _Path, thing: Wall | Post, radius: float, until: float) ->
 
 
 def _safe_step(gap: float, rate: float, bend: float) -> float:
-    """Return for how long `gap + rate h - bend h²/2` stays positive, s."""
+    """Return how long `gap + rate h - bend h²/2` stays positive, s."""
     root = math.sqrt(rate * rate + 2 * bend * gap)
     if rate < 0:
         return 2 * gap / (root - rate)
@@ -333,12 +326,12 @@ def _check(thing: Wall | Post) -> None:
 
 
 def open_field() -> World:
-    """Return a world without anything in it."""
+    """Return an empty world."""
     return World()
 
 
 def room(width: float = 5.0, height: float = 5.0, posts: Iterable[Post] = ()) -> World:
-    """Return a room with its middle in the origin.
+    """Return a room centred on the origin.
 
     Args:
         width: Size along x, m.
@@ -350,9 +343,9 @@ def room(width: float = 5.0, height: float = 5.0, posts: Iterable[Post] = ()) ->
 
 
 def playground() -> World:
-    """Return a room of 5 m by 5 m with a post in three of its corners.
+    """Return a room of 5 m by 5 m with posts in three of its corners.
 
-    One metre around the origin is free, and no two views of it are alike.
+    One metre around the origin is free, and no two views of the room are alike.
     """
     return room(posts=[Post(1.6, 1.6, 0.2), Post(-1.7, 1.3, 0.15), Post(-1.2, -1.7, 0.25)])
 
@@ -361,8 +354,8 @@ def pillars() -> World:
     """Return nine pillars within six walls, like the world that ROBOTIS ships for Gazebo.
 
     Source: ROBOTIS-GIT/turtlebot3_simulations, turtlebot3_gazebo/models/turtlebot3_world/
-    model.sdf: pillars of radius 0.15 m, 1.1 m apart. The six walls stand 2.5 m from the middle
-    here. A robot starts well at x=-1.65, y=-0.55.
+        model.sdf: pillars of radius 0.15 m, 1.1 m apart. Here the six walls are 2.5 m from the
+        centre. x=-1.65, y=-0.55 is a good start for a robot.
     """
     far = 2.5 / math.cos(math.pi / 6)
     angles = [corner * math.tau / 6 for corner in range(6)]

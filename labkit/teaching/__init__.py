@@ -1,5 +1,5 @@
-"""The teacher's view of a class that shares its progress. docs/classroom.md says how.
+"""The teacher's view of a class that shares its progress; see docs/classroom.md.
 
-`class_folder` reads what learners have sent and takes nothing for granted, `counting` makes of it
-what is shown, `classroom` keeps that up to date, `export` writes tables for marking.
+`class_folder` reads what learners have sent and trusts nothing, `counting` evaluates it,
+`classroom` shows it live, `export` writes tables for marking.
 """

@@ -1,9 +1,9 @@
-"""What the learners of a class have sent: read with limits, whatever lies there.
+"""Reading the files that the learners of a class have sent, within limits.
 
-A folder for each learner, with one file of a fixed name. A learner may put anything into their own
-folder, and in a folder that is everybody's anything beside it. So at most so many names are looked
-at and so many bytes read, links are not followed, what is no ordinary file is not opened for
-waiting, and a file counts only if all of it has the form that the course writes.
+Each learner has a folder with one file of a fixed name. A learner may put anything into their own
+folder, and into a shared folder anything beside it. So the number of names and bytes is limited,
+links are not followed, opening never blocks on special files, and a file counts only if all of it
+has the form that the course writes.
 """
 
 from __future__ import annotations
@@ -21,29 +21,29 @@ from labkit.exercises.class_sheet import FILE_NAME, MOST_BYTES, Sheet, catalogue
 
 __all__ = ['ClassFolder', 'Learner', 'Reading', 'chosen_folder']
 
-# Of more learners than that it is no class.
-MOST_LEARNERS = 300
-# So many names in the folder are looked at, a hundredth of a second of work.
-MOST_NAMES = 20_000
-LONGEST_NAME = 40
+# More learners than this are not a class.
+MAX_LEARNERS = 300
+# Most names looked at in the folder, which takes a hundredth of a second.
+MAX_NAMES = 20_000
+MAX_NAME_LENGTH = 40
 _VARIABLE = 'LABKIT_CLASS_FOLDER'
 _UNKNOWN_SIGN = '\N{REPLACEMENT CHARACTER}'
 _TROUBLES = {errno.ELOOP: 'a link', errno.ENXIO: 'no ordinary file', errno.ENOTDIR: 'a link'}
 
-# By it a file is known to be the same as before.
+# Identifies an unchanged file.
 _Stamp = tuple[int, ...]
 
 
 @dataclass(frozen=True)
 class Learner:
-    """Somebody who shares, or tries to.
+    """A learner who shares progress, or tries to.
 
     Attributes:
-        name: The name of their folder, as it may be shown.
-        sheet: What they have sent; None if it can't be used.
-        trouble: Why it can't be used, in words of this module.
-        certain: Whether the machine vouches for the name: their folder was given to one account,
-            and only that one can write in it.
+        name: The name of their folder, made printable.
+        sheet: What they have sent; None if it is unusable.
+        trouble: Why it is unusable, in words of this module.
+        certain: Whether the name is reliable: the folder belongs to one account, and only that one
+            can write in it.
     """
 
     name: str
@@ -54,13 +54,13 @@ class Learner:
 
 @dataclass(frozen=True)
 class Reading:
-    """What lies in the folder of a class.
+    """The content of a class's folder.
 
     Attributes:
-        learners: Who shares, by name; those whose file can't be used included.
-        silent: How many learners' folders are empty: they share nothing.
-        certain: Whether nobody but who keeps the folder gives names in it.
-        note: What is wrong with the whole, `''` if nothing is.
+        learners: The learners who share, by name; also those with unusable files.
+        silent: Number of learners with empty folders: they share nothing.
+        certain: Whether only the owner of the folder can create names in it.
+        note: Any general problem, `''` if there is none.
     """
 
     learners: tuple[Learner, ...] = ()
@@ -70,20 +70,16 @@ class Reading:
 
 
 class ClassFolder:
-    """The folder of a class, to be read again and again.
-
-    Args:
-        path: The folder.
-    """
+    """The folder of a class, to be read repeatedly."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self._known = catalogue()
-        # By name of a folder: what was read there, and of which file.
-        self._kept: dict[str, tuple[_Stamp, Learner]] = {}
+        # By folder name: the learner, and the file it was read from.
+        self._cache: dict[str, tuple[_Stamp, Learner]] = {}
 
     def read(self) -> Reading:
-        """Return what lies there now. It never raises."""
+        """Read the folder. It never raises."""
         try:
             with _opened(self.path, os.O_DIRECTORY) as folder:
                 return self._read(folder)
@@ -92,7 +88,7 @@ class ClassFolder:
 
     def _read(self, folder: int) -> Reading:
         around = os.fstat(folder)
-        vouching = _is_well_kept(around)
+        vouching = _is_protected(around)
         keeper = around.st_uid
         names, others, too_many = self._names(folder)
         learners, silent, kept = [], 0, {}
@@ -103,39 +99,39 @@ class ClassFolder:
                 continue
             kept[name] = (stamp, learner)
             learners.append(learner)
-        self._kept = kept
+        self._cache = kept
         note = _note(others, too_many)
         return Reading(tuple(learners), silent, vouching, note)
 
     def _names(self, folder: int) -> tuple[list[str], int, bool]:
-        """Return the names of learners' folders, how many other things lie there, if too many."""
+        """Return the names of learners' folders, the number of other entries, and if too many."""
         found, others, count = [], 0, 0
         with os.scandir(folder) as entries:
             for entry in entries:
                 count += 1
-                if count > MOST_NAMES:
+                if count > MAX_NAMES:
                     break
                 if entry.is_dir(follow_symlinks=False):
                     found.append(entry.name)
                 else:
                     others += 1
-        # Who was there before stays, whoever fills the folder with names meanwhile.
-        found.sort(key=lambda name: (name not in self._kept, name))
-        too_many = count > MOST_NAMES or len(found) > MOST_LEARNERS
-        missing = self._kept.keys() - set(found) if too_many else ()
-        chosen = [*missing, *found][:MOST_LEARNERS]
+        # Known learners stay, even if somebody fills the folder with names.
+        found.sort(key=lambda name: (name not in self._cache, name))
+        too_many = count > MAX_NAMES or len(found) > MAX_LEARNERS
+        missing = self._cache.keys() - set(found) if too_many else ()
+        chosen = [*missing, *found][:MAX_LEARNERS]
         return sorted(chosen), others, too_many
 
     def _learner(
         self, folder: int, name: str, keeper: int | None
     ) -> tuple[_Stamp, Learner | None]:
-        shown, certain = _as_shown(name), False
+        shown, certain = _printable(name), False
         try:
             around = os.stat(name, dir_fd=folder, follow_symlinks=False)
-            certain = keeper is not None and _is_ones_own(around, keeper)
+            certain = keeper is not None and _is_private(around, keeper)
             with (
                 _opened(name, os.O_DIRECTORY, folder) as place,
-                # What is a pipe is not waited for.
+                # Never block on a pipe.
                 _opened(FILE_NAME, os.O_NONBLOCK | os.O_NOCTTY, place) as file,
             ):
                 status = os.fstat(file)
@@ -143,19 +139,19 @@ class ClassFolder:
                     *(status.st_dev, status.st_ino, status.st_size),
                     *(status.st_mtime_ns, status.st_ctime_ns, around.st_uid, certain),
                 )
-                if name in self._kept and self._kept[name][0] == stamp:
-                    return self._kept[name]
+                if name in self._cache and self._cache[name][0] == stamp:
+                    return self._cache[name]
                 trouble = _trouble(around, status)
                 if trouble:
                     return stamp, Learner(shown, trouble=trouble, certain=certain)
-                return stamp, self._judged(shown, _content(file), certain)
+                return stamp, self._evaluated(shown, _content(file), certain)
         except FileNotFoundError:
             return (), None
         except OSError as error:
             why = _TROUBLES.get(error.errno or 0, error.strerror or 'not readable')
             return (), Learner(shown, trouble=why, certain=certain)
 
-    def _judged(self, name: str, content: bytes, certain: bool) -> Learner:
+    def _evaluated(self, name: str, content: bytes, certain: bool) -> Learner:
         if len(content) > MOST_BYTES:
             return Learner(name, trouble='too large', certain=certain)
         try:
@@ -165,13 +161,13 @@ class ClassFolder:
 
 
 def chosen_folder(folder: str | os.PathLike[str] | None) -> Path:
-    """Return the folder of the class that is meant.
+    """Return the folder of the class.
 
     Args:
-        folder: What was given. If None, what the hub or the teacher has set.
+        folder: The given folder; if None, the one set by the hub or the teacher.
 
     Raises:
-        LabError: Nothing was given or set, or it is no folder.
+        LabError: There is none, or it is not a folder.
     """
     given = folder if folder is not None else os.environ.get(_VARIABLE)
     if not given:
@@ -191,13 +187,13 @@ def chosen_folder(folder: str | os.PathLike[str] | None) -> Path:
 # --- Whose it is ---------------------------------------------------------------------------------
 
 
-def _is_well_kept(folder: os.stat_result) -> bool:
-    """Tell whether nobody but root, or the one who reads, can make folders in it."""
+def _is_protected(folder: os.stat_result) -> bool:
+    """Return whether only root, or this user, can create folders in it."""
     return folder.st_uid in (0, os.geteuid()) and not folder.st_mode & 0o022
 
 
-def _is_ones_own(place: os.stat_result, keeper: int) -> bool:
-    """Tell whether a learner's folder was given to one account that keeps no folders itself."""
+def _is_private(place: os.stat_result, keeper: int) -> bool:
+    """Return whether a learner's folder belongs to one account other than the keeper's."""
     return place.st_uid not in (0, keeper) and not place.st_mode & 0o022
 
 
@@ -223,7 +219,7 @@ def _opened(path: str | Path, flags: int, folder: int | None = None) -> Iterator
 
 
 def _content(file: int) -> bytes:
-    """Return what is in a file, one byte more than it may have at most."""
+    """Return the content of a file, up to one byte more than allowed."""
     parts, missing = [], MOST_BYTES + 1
     while missing > 0:
         part = os.read(file, missing)
@@ -234,10 +230,10 @@ def _content(file: int) -> bytes:
     return b''.join(parts)
 
 
-def _as_shown(name: str) -> str:
-    """Return a name without signs that can't be seen, or that turn the direction of a line."""
+def _printable(name: str) -> str:
+    """Return a name without invisible characters, or those that change the text direction."""
     shown = ''.join(sign if sign.isprintable() else _UNKNOWN_SIGN for sign in name)
-    return shown if len(shown) <= LONGEST_NAME else f'{shown[: LONGEST_NAME - 1]}…'
+    return shown if len(shown) <= MAX_NAME_LENGTH else f'{shown[: MAX_NAME_LENGTH - 1]}…'
 
 
 def _note(others: int, too_many: bool) -> str:
@@ -245,7 +241,7 @@ def _note(others: int, too_many: bool) -> str:
     if too_many:
         parts.append(
             'There are more names in the folder than a class has; of at most '
-            f'{MOST_LEARNERS} learners something is read.'
+            f'{MAX_LEARNERS} learners something is read.'
         )
     if others:
         what = '1 thing' if others == 1 else f'{others} things'

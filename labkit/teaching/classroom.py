@@ -16,24 +16,23 @@ __all__ = ['classroom']
 def classroom(folder: str | os.PathLike[str] | None = None, *, names: bool = False) -> Classroom:
     """Show your class: who is at which lesson, what is passed, what fails most, who is stuck.
 
-    It is live in a notebook, for as long as it can be seen. By itself it names nobody, for the
-    projector. It knows those who have joined with `lab.join_class()`, and of them what their
-    computers have told.
+    It is live in a notebook while it is visible. By default it shows no names, for the projector.
+    It knows the learners who have joined with `lab.join_class()`, from what their computers have
+    reported.
 
     Args:
-        folder: The folder of the class; on a hub, or where `LABKIT_CLASS_FOLDER` is set, it is
-            known.
-        names: Whether to tell who is who, for you alone. Names are never stored in the notebook.
+        folder: The folder of the class; known on a hub, or if `LABKIT_CLASS_FOLDER` is set.
+        names: Whether to show names, for you alone. Names are never stored in the notebook.
 
     Returns:
-        What a cell shows. `.close()` ends it.
+        A view to show in a cell. `.close()` ends it.
 
     Raises:
         LabError: There is no such folder.
     """
-    place = ClassFolder(chosen_folder(folder))
+    reader = ClassFolder(chosen_folder(folder))
 
-    def look() -> Board:
-        return count(place.read(), datetime.now(timezone.utc))
+    def read() -> Board:
+        return count(reader.read(), datetime.now(timezone.utc))
 
-    return Classroom(look, names=names)
+    return Classroom(read, names=names)

@@ -1,4 +1,4 @@
-"""What the sheets of a class come to: who is where, who is stuck, what fails, what is unlikely."""
+"""Evaluating the sheets of a class: who is where, who is stuck, what fails, what is unlikely."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from labkit.views.class_board import Board, FailRow, LearnerRow, LessonRow
 
 __all__ = ['count', 'remarks']
 
-# Who has not been heard of for so long is not at work.
+# Not at work after this time without news.
 AWAY = timedelta(minutes=20)
-# Who has tried one exercise for so long, and not passed it, is stuck.
+# Stuck after this time with one exercise.
 STUCK = timedelta(minutes=10)
-# Clocks differ so much.
+# Tolerance between clocks.
 CLOCKS = timedelta(minutes=2)
-# Nobody passes so many exercises in so short a time, but a program does.
+# So many exercises in so short a time are passed by a program.
 MANY, SHORT = 4, timedelta(seconds=10)
-MOST_FAILS = 5
+MAX_FAILS = 5
 _RAISED = 'The code raises an error.'
 _NO_WORDS = 'It is not what the task asks for.'
 
 
 def count(reading: Reading, now: datetime) -> Board:
-    """Return what is shown of a class.
+    """Return the state of a class.
 
     Args:
         reading: What the learners have sent.
@@ -56,10 +56,10 @@ def count(reading: Reading, now: datetime) -> Board:
 
 
 def remarks(sheet: Sheet, now: datetime) -> Iterator[str]:
-    """Return what can hardly be true of a sheet.
+    """Return what is implausible about a sheet.
 
-    Nobody can tell a forged sheet from a true one: who writes programs can write any. These are
-    those that are easily told.
+    A forged sheet can't be told from a true one: anybody who programs can write any. These are the
+    obvious cases.
 
     Args:
         sheet: What a learner has sent.
@@ -122,7 +122,7 @@ def _row(
 
 
 def _order(row: LearnerRow) -> tuple[float, str]:
-    """Who has been stuck longest comes first."""
+    """Sort those who have been stuck longest first."""
     return (1.0 if row.stuck_min is None else -row.stuck_min, row.name)
 
 
@@ -144,10 +144,10 @@ def _at_work(sheet: Sheet, now: datetime) -> bool:
 
 
 def _stuck_since(sheet: Sheet, entry: Entry, now: datetime) -> datetime | None:
-    """Return since when a learner tries an exercise in vain, None if it is not for long."""
+    """Return since when a learner has been stuck at an exercise, None if not, or not for long."""
     if entry.first_try is None or entry.passed_at is not None or not _at_work(sheet, now):
         return None
-    # An attempt of last week does not count: it is about the time since the notebook is open.
+    # Attempts of earlier sessions do not count: only since the notebook was opened.
     since = max(entry.first_try, sheet.since or entry.first_try)
     return since if now - since >= STUCK else None
 
@@ -181,5 +181,5 @@ def _fails(sheets: Sequence[Sheet], titles: dict[str, str]) -> list[FailRow]:
             if entry.last in ('FAIL', 'ERROR') and entry.passed_at is None:
                 words = entry.sentence or (_RAISED if entry.last == 'ERROR' else _NO_WORDS)
                 found[f'{titles[lesson]}, {name}', words] += 1
-    most = sorted(found.items(), key=lambda item: (-item[1], item[0]))[:MOST_FAILS]
+    most = sorted(found.items(), key=lambda item: (-item[1], item[0]))[:MAX_FAILS]
     return [FailRow(number, exercise, words) for (exercise, words), number in most]

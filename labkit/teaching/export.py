@@ -1,4 +1,4 @@
-"""A class as tables: all that is known, and a grade book that a learning platform reads."""
+"""A class as tables: all data, and a grade book for learning platforms."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ _COLUMNS = (
     *('learner', 'lesson', 'kind', 'name', 'state', 'tries', 'hints', 'solution_shown'),
     *('first_try', 'passed_at', 'last', 'remark'),
 )
-# A cell that begins with one of these is a formula to a spreadsheet: owasp.org, "CSV Injection".
+# Spreadsheets take a cell that begins with one of these as a formula: owasp.org, "CSV Injection".
 _FORMULA = ('=', '+', '-', '@', '\t', '\r')
 
 
 def table(learners: Sequence[Learner], now: datetime) -> str:
-    """Return all that is known of a class as CSV, one line a learner and exercise or question.
+    """Return all data of a class as CSV, one line per learner and exercise or question.
 
     Args:
-        learners: Those who share. Who has sent nothing usable has one line that says so.
+        learners: The learners. One without a usable sheet gets one line that says so.
         now: The time on the teacher's computer.
     """
     known = catalogue()
@@ -44,14 +44,14 @@ def table(learners: Sequence[Learner], now: datetime) -> str:
 
 
 def gradebook(learners: Sequence[Learner]) -> str:
-    """Return a class as a grade book: a line a learner, a column a lesson, in percent.
+    """Return a class as a grade book: a line per learner, a column per lesson, in percent.
 
-    It is what Moodle's grade import reads (docs.moodle.org, "Grade import"): a header, a column
-    that names the user, a column a grade, which is mapped to an item or makes a new one. Other
-    platforms that let columns be mapped read the same.
+    The format of Moodle's grade import (docs.moodle.org, "Grade import"): a header, a column with
+    the user name, a column per grade, which is mapped to an item or creates one. Other platforms
+    with column mapping read the same.
 
     Args:
-        learners: Those who share. Who has sent nothing usable is left out: no grade is no zero.
+        learners: The learners. One without a usable sheet is left out: no grade is not a zero.
     """
     lessons = [lesson for lesson in all_lessons() if lesson.exercises]
     rows: list[Sequence[object]] = [['username', *(lesson.heading for lesson in lessons)]]
@@ -88,7 +88,7 @@ def _csv(rows: Iterable[Sequence[object]]) -> str:
 
 
 def _safe(value: object) -> object:
-    """Return a cell that no spreadsheet takes for a formula."""
+    """Return a cell value that no spreadsheet takes for a formula."""
     if isinstance(value, str) and value.lstrip().startswith(_FORMULA):
         return f"'{value}"
     return value

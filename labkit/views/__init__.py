@@ -1,1 +1,1 @@
-"""What a person looks at: cards, pictures, tables, forms."""
+"""Show things in a notebook: cards, pictures, tables and forms."""

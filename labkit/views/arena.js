@@ -8,9 +8,10 @@ const PAN = 0.15; // of the width of the map
 const ZOOM = 1.3;
 const SCALES = [4, 3000]; // pixels in a metre
 const FOLLOWED = 2; // times what the whole map has
-const AHEAD_MS = 250; // the robot goes on so long without a word of it; see arena.py
+const AHEAD_MS = 250; // the robot goes on so long without a word of it; see arena_robot.py
 const SMOOTH_MS = 80;
 const BUMP_MS = 2500;
+const DRAG_PX = 8; // less was a click
 
 // Where the robot is between two messages: it goes on as it did, and what that was wrong by goes
 // away little by little.
@@ -48,19 +49,22 @@ class Glide {
 
 // The map with what was seen before, and the part of it that is looked at.
 class ArenaMap extends Map2d {
-  constructor(canvas, seen) {
+  constructor(canvas, occupancy) {
     super(canvas);
-    this.seen = seen;
+    this.occupancy = occupancy;
     this.above = 34;
     // null for all that there is.
     this.view = null;
-    this.following = false;
+    // The robot that is followed.
+    this.followed = null;
+    // Whether the next click is a goal.
+    this.aims = false;
   }
 
   show(scene, cursor) {
-    if (this.following && scene.pose) {
+    if (this.followed) {
       this.view ??= { scale: this.scale * FOLLOWED };
-      [this.view.x, this.view.y] = scene.pose;
+      [this.view.x, this.view.y] = this.followed.pose;
     }
     this.draw(scene, cursor, this.view);
   }
@@ -72,7 +76,7 @@ class ArenaMap extends Map2d {
     context.globalAlpha = 0.05;
     context.fillRect(0, 0, this.width, this.height);
     context.globalAlpha = 1;
-    this.seen.draw(this);
+    this.occupancy.draw(this);
   }
 
   // Nearer by a factor; the place under (px, py) stays there.
@@ -89,16 +93,16 @@ class ArenaMap extends Map2d {
   pan(dx, dy) {
     const [x, y] = this.metres(this.width / 2 - dx, this.middle() - dy);
     this.view = { x, y, scale: this.scale };
-    this.following = false;
+    this.followed = null;
   }
 
   fitAll() {
     this.view = null;
-    this.following = false;
+    this.followed = null;
   }
 }
 
-function arenaButtons(map, redraw, el) {
+function arenaButtons(map, robots, redraw, el, send) {
   const make = (text, title, act) => {
     const made = element('button', { type: 'button', textContent: text, title });
     made.setAttribute('aria-label', title);
@@ -113,23 +117,35 @@ function arenaButtons(map, redraw, el) {
     // With the keys, where they are beside the map.
     else (keysBeside(el) ?? el).requestFullscreen();
   });
+  // One robot after the other, then none.
   const follow = make('Follow', 'Follow the robot (key f)', () => {
-    map.following = !map.following;
+    map.followed = robots[robots.indexOf(map.followed) + 1] ?? null;
   });
+  const goal = make('Goal', 'Click where it shall go, drag to where it shall look (key g)', () => {
+    map.aims = !map.aims;
+    // A publisher is made now: those who listen find it before there is a goal.
+    if (map.aims) send({ aim: true });
+  });
+  const dock = make('Dock', 'Keep it in the panel on the right (key k)', () => send({ dock: true }));
   const all = [
     make('+', 'Zoom in (key +)', () => map.zoom(ZOOM)),
     make('−', 'Zoom out (key -)', () => map.zoom(1 / ZOOM)),
     make('Fit', 'Show the whole map (key 0)', () => map.fitAll()),
-    follow, full,
+    follow, goal, dock, full,
   ];
   const place = element('div', { className: 'labkit-arena-buttons' }, ...all);
   place.setAttribute('role', 'group');
   place.setAttribute('aria-label', 'Map');
   return {
     place,
-    keys: { '+': all[0], '=': all[0], '-': all[1], 0: all[2], f: follow, o: full },
+    keys: {
+      '+': all[0], '=': all[0], '-': all[1], 0: all[2], f: follow, g: goal, k: dock, o: full,
+    },
     show: () => {
-      follow.setAttribute('aria-pressed', String(map.following));
+      dock.hidden = !el.closest('.jp-LabShell .jp-Notebook');
+      goal.setAttribute('aria-pressed', String(map.aims));
+      follow.setAttribute('aria-pressed', String(map.followed !== null));
+      setText(follow, map.followed?.name ? `Follow ${map.followed.name}` : 'Follow');
       setText(full, document.fullscreenElement ? 'Leave full screen' : 'Full screen');
     },
   };
@@ -154,14 +170,20 @@ function comeIntoView(el) {
 }
 
 // Mouse: drag to move, wheel to zoom. The wheel alone scrolls the page until the map was clicked.
-function pointAt(canvas, map, change) {
+// A goal is where the mouse is pressed, and looks to where it is let go.
+function pointAt(canvas, map, change, setGoal) {
   let drag = null;
   canvas.addEventListener('pointerdown', (event) => {
     canvas.setPointerCapture(event.pointerId);
     drag = [event.offsetX, event.offsetY];
   });
+  canvas.addEventListener('pointerup', ({ offsetX, offsetY }) => {
+    if (!map.aims || !drag) return;
+    const [right, down] = [offsetX - drag[0], offsetY - drag[1]];
+    setGoal(map.metres(...drag), Math.hypot(right, down) > DRAG_PX ? Math.atan2(-down, right) : 0);
+  });
   canvas.addEventListener('pointermove', ({ offsetX, offsetY }) => {
-    if (drag) {
+    if (drag && !map.aims) {
       map.pan(offsetX - drag[0], offsetY - drag[1]);
       drag = [offsetX, offsetY];
     }
@@ -187,56 +209,82 @@ function render({ model, el }) {
   canvas.setAttribute(
     'aria-label',
     'Map around the robot, told in words below. Arrow keys move it, plus and minus zoom, 0 shows '
-    + 'all, f follows the robot. Arrow keys with Shift move a cross, Escape removes it.',
+    + 'all, f follows the robot. Arrow keys with Shift move a cross, Escape removes it. After g, '
+    + 'Enter sets a goal at the cross.',
   );
   // Several views may show the same; and JupyterLab makes one anew that was out of sight.
-  const seen = model.labkitSeen ??= new Seen();
-  const map = new ArenaMap(canvas, seen);
-  const glide = new Glide();
-  const scene = { ...emptyScene(), fades: true };
+  const occupancy = model.labkitOccupancy ??= new OccupancyGrid();
+  const map = new ArenaMap(canvas, occupancy);
+  const scene = emptyScene();
+  const { robots } = scene;
+  // Each joins when it has told where it is.
+  const robotNamed = (name) => {
+    const known = robots.find((robot) => robot.name === name);
+    if (known) return known;
+    const made = { ...emptyRobot(name), fades: true, glide: new Glide() };
+    robots.push(made);
+    robots.sort((one, other) => (one.name < other.name ? -1 : 1));
+    return made;
+  };
+  const badge = element('div', { className: 'labkit-arena-bump', textContent: 'Bump', hidden: true });
+  const takeRobot = (name, news, buffers) => {
+    const robot = robotNamed(name);
+    take(scene.shown, robot, news, news.eye ? buffers.shift() : null);
+    if (news.pose) robot.glide.take(news.pose);
+    if (news.eye) occupancy.take(robot.scan, robot.eye);
+    if (news.met) occupancy.meet(numbers(buffers.shift()));
+    if (news.bump) {
+      bumpedAt = performance.now();
+      canvas.dataset.bumps = Number(canvas.dataset.bumps ?? 0) + 1;
+    }
+  };
   let [cursor, frame, bumpedAt] = [null, 0, 0];
 
   const redraw = () => {
     frame ||= requestAnimationFrame((now) => {
       frame = 0;
       if (!canvas.clientWidth) return;
-      if (scene.pose) scene.pose = glide.at(now);
+      for (const robot of robots) robot.pose = robot.glide.at(now);
       map.show(scene, cursor);
       buttons.show();
+      canvas.style.cursor = map.aims ? 'crosshair' : '';
       // For those who look on from outside, such as tests.
       canvas.dataset.view = map.view
         ? ['x', 'y', 'scale'].map((part) => map.view[part].toFixed(2)).join(' ') : 'all';
-      if (scene.pose && glide.moves(now)) redraw();
+      if (robots.some(({ glide }) => glide.moves(now))) redraw();
     });
   };
-  const buttons = arenaButtons(map, redraw, el);
-  const badge = element('div', { className: 'labkit-arena-bump', textContent: 'Bump', hidden: true });
-  const { note, end } = follow(model, el, (news, buffers) => {
-    take(scene, news, buffers?.[0]);
-    if (news.pose) glide.take(news.pose);
-    if (news.eye) seen.take(scene.scan, scene.eye);
-    if (news.met) seen.meet(numbers(buffers.at(-1)));
-    if (news.text) setText(words, news.text);
-    if (news.bump !== undefined) {
-      scene.bump = news.bump;
-      badge.hidden = !news.bump;
-      if (news.bump) {
-        bumpedAt = performance.now();
-        canvas.dataset.bumps = Number(canvas.dataset.bumps ?? 0) + 1;
-      }
+  const buttons = arenaButtons(map, robots, redraw, el, (content) => send(content));
+  const { note, send, end } = follow(model, el, (news, buffers) => {
+    if (news.goals) {
+      scene.goals = news.goals;
+      for (const [x, y] of scene.goals) include(scene.shown, x, y);
     }
+    const parts = [...buffers ?? []];
+    for (const [name, told] of Object.entries(news.robots ?? {})) takeRobot(name, told, parts);
+    if (news.text) setText(words, news.text);
+    badge.hidden = !robots.some(({ bump }) => bump);
     if (performance.now() - bumpedAt > BUMP_MS) badge.hidden = true;
     canvas.dataset.frames = Number(canvas.dataset.frames ?? 0) + 1;
-    if (news.pose) canvas.dataset.pose = news.pose.map((value) => value.toFixed(3)).join(' ');
+    if (news.robots) {
+      canvas.dataset.pose = robots.map(
+        ({ glide }) => glide.pose.map((value) => value.toFixed(3)).join(' '),
+      ).join(', ');
+    }
     redraw();
     if (news.fresh) comeIntoView(el);
   });
   el.append(element('div', { className: 'labkit-arena-map' }, canvas, badge, buttons.place),
     words, note);
+  const setGoal = ([x, y], yaw) => {
+    map.aims = false;
+    send({ goal: [x, y, yaw] });
+    redraw();
+  };
   pointAt(canvas, map, (place) => {
     cursor = place;
     redraw();
-  });
+  }, setGoal);
   const noCursor = () => {
     cursor = null;
     redraw();
@@ -244,7 +292,11 @@ function render({ model, el }) {
   canvas.addEventListener('pointerleave', noCursor);
   canvas.addEventListener('blur', noCursor);
   canvas.addEventListener('keydown', (event) => {
-    if (event.key === 'Escape') noCursor();
+    if (event.key === 'Escape') {
+      map.aims = false;
+      noCursor();
+    }
+    if (event.key === 'Enter' && map.aims && cursor) setGoal(cursor, 0);
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     buttons.keys[event.key]?.click();
     const arrow = ARROWS[event.key];
@@ -253,13 +305,13 @@ function render({ model, el }) {
     const far = PAN * map.width;
     if (!event.shiftKey) map.pan(-far * arrow[0], far * arrow[1]);
     else {
-      cursor = [0, 1].map((axis) => (cursor ?? scene.pose ?? [0, 0])[axis]
+      cursor = [0, 1].map((axis) => (cursor ?? robots[0]?.pose ?? [0, 0])[axis]
         + CROSS_STEP * arrow[axis]);
     }
     redraw();
   });
   const repaint = () => {
-    seen.repaint();
+    occupancy.repaint();
     redraw();
   };
   const sizes = new ResizeObserver(redraw);

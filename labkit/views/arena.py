@@ -1,269 +1,290 @@
-"""The robot's arena: a live map of what is heard on `/odom` and `/scan`. `lab.arena()`.
+"""A live map of robots by their `/odom` and `/scan`: `lab.arena()`.
 
-It is an ordinary subscriber of those topics and knows nothing else, so it shows a robot in Gazebo
-or a real one as well. Python keeps the scene and tells it in words; a canvas in the page draws
-it. Where widgets can't run, the scene is shown as a picture (`labkit.views.arena_picture`).
+It is an ordinary subscriber of those topics, so it shows a robot in Gazebo or a real one as well.
+Python keeps a scene for each robot and describes it; a canvas in the page draws them. Where
+widgets can't run, the scenes are a picture (`labkit.views.arena_picture`). A goal that is set on
+the map is published, as RViz does.
 """
 
 from __future__ import annotations
 
 import math
+import threading
 import time
-from collections import deque
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from labkit.background.patience import busyness
-from labkit.errors import LabError
-from labkit.sim.kinematics import BURGER, Pose, Twist2, wrap_angle
+from labkit.asking.delivery import wait_until_found
+from labkit.background.nodes import node_exists
+from labkit.errors import LabError, quoted
+from labkit.views import dock
 from labkit.views.arena_picture import Scene, to_svg
-from labkit.views.feed import Feed, heard
-from labkit.views.live import helper
-from labkit.views.live_page import LivePage, News
-from labkit.views.robot_messages import beam_ends, motion_of, nearest_of, scanner_place
+from labkit.views.arena_robot import MappedRobot
+from labkit.views.feed import Feed, subscribed
+from labkit.views.live import helper, live_views
+from labkit.views.live_page import LivePage, Update
 
 if TYPE_CHECKING:
     from nav_msgs.msg import Odometry
+    from rclpy.publisher import Publisher
     from sensor_msgs.msg import LaserScan
 
 __all__ = ['Arena', 'arena']
 
-# Words change no more often than this, s: a screen reader has to be able to speak them.
-WORDS_SEC = 1.0
-# A point of the trail, m from the one before. A longer way at once is none that was driven.
-TRAIL_STEP, JUMP = 0.01, 0.5
-TRAIL_LENGTH = 5000
-# The page lets a robot glide as it was for no longer than this, s, when it hears nothing of it.
-GLIDE_SEC = 0.12
-# The robot touches what is so near to it, m: the scanner's noise, and what it moves in a round.
-TOUCH = 0.015
-# It was stopped by that if it is ahead by this angle or less, rad.
-AHEAD = math.radians(80)
-# Walls are remembered at one point of each square of this size, m.
-SQUARE = 0.02
-MOST_MET = 20_000
-# How long a picture waits for the first message of a topic that somebody publishes, s, on a calm
-# machine.
-FIRST_SEC = 1.0
+# The text changes no more often than this, s: a screen reader has to finish speaking it.
+TEXT_SEC = 1.0
+# How long a picture waits for the first message of a published topic, s.
+FIRST_SEC = 3.0
 
 
 class Arena(LivePage):
-    """A live map around one robot, to be shown in a cell; see `arena`.
-
-    Attributes:
-        odom: Full name of the topic with the odometry.
-        scan: Full name of the topic with the laser scan.
-        scene: What was heard last.
-    """
+    """A live map around robots, to be shown in a cell; see `arena`."""
 
     _name = 'arena'
-    # For what nobody tells; else news goes to the page with the odometry that brings it.
+    # Only for changes without odometry: each odometry message is sent on as it arrives.
     _period = 0.25
 
     def __init__(
-        self, *, odom: str, scan: str, namespace: str, goals: Iterable[tuple[float, float]]
+        self, *, odom: str, scan: str, namespace: str | None, goals: Iterable[tuple[float, float]]
     ) -> None:
-        self.scene = Scene(goals=_checked(goals))
-        super().__init__(_feeds(odom, scan, namespace, self))
-        self.odom, self.scan = (feed.topic for feed in self._feeds)
-        self._trail: deque[tuple[float, float]] = deque(maxlen=TRAIL_LENGTH)
-        # The topics on which something has come since it listens.
-        self._heard: set[str] = set()
-        # Where walls were seen, by square.
-        self._met: dict[int, list[float]] = {}
-        # The last scan: as it was heard, where its beams ended, and while the scene has it not.
-        self._heard_scan: tuple[object, Pose] | None = None
-        self._ends: Any = None
-        self._unseen: LaserScan | None = None
-        # A scan that came before it was known where the robot is: a robot that stands still may
-        # not send another one.
-        self._early: LaserScan | None = None
-        # What the page does not know yet.
+        self._topics = odom, scan
+        self._namespace = namespace
+        # Points, and for one that was set on the map the heading there, rad.
+        self._goals: list[tuple[float, ...]] = [*_checked(goals)]
+        self._goal_publisher: Publisher | None = None
+        self._robots: dict[str, MappedRobot] = {}
+        # Why a robot that publishes is not heard.
+        self._why = ''
+        # First: a name of a topic may be invalid.
+        robots = [self._new_robot(name) for name in self._names()]
+        super().__init__([feed for robot in robots for feed in robot.feeds])
+        # Changes that the page has not received yet.
         self._fresh = True
-        self._lifted = False
-        self._new_trail: list[float] = []
-        self._new_scan = self._last_scan = b''
-        self._eye: tuple[float, float] | None = None
-        self._told_twist: Twist2 | None = None
-        self._worded_at = 0.0
+        self._text_sent_at = 0.0
 
     # -- for cells ------------------------------------------------------------------------------
 
     @property
+    def scenes(self) -> dict[str, Scene]:
+        """The latest scene of each robot, by namespace."""
+        with self._lock:
+            return {name: robot.current_scene() for name, robot in self._robots.items()}
+
+    @property
     def text(self) -> str:
-        """What there is to see, in words."""
-        self._look_at_scan()
-        return self.scene.words() or (
-            f'Nothing was heard on {self.odom} yet. Start a robot with lab.spin(lab.Turtlebot()).'
-        )
+        """The scenes in words."""
+        words = '\n'.join(filter(None, (scene.words() for scene in self.scenes.values())))
+        why = self._why or 'Start a robot with lab.spin(lab.Turtlebot()).'
+        return words or f'Nothing was heard on {self._feeds[0].topic} yet. {why}'
 
     def __repr__(self) -> str:
         self._wait_for_first()
         return self.text
 
-    def _still(self) -> dict[str, str]:
+    def _static(self) -> dict[str, str]:
         if self._watched and not self._ended and self._node is None:
-            # Before the page asks for it: it can't while the cell goes on and lets a robot drive.
+            # Before the page asks: it can't while the cell is running and driving the robot.
             self._open()
         self._wait_for_first()
         return self._stored_form()
 
     def _stored_form(self) -> dict[str, str]:
         with self._lock:
-            self._look_at_scan()
-            self.scene.trail = list(self._trail)
-            return {'text/plain': self.text, 'image/svg+xml': to_svg(self.scene, self.text)}
+            text = self.text
+            return {'text/plain': text, 'image/svg+xml': to_svg([*self.scenes.values()], text)}
 
     # -- ROS ------------------------------------------------------------------------------------
 
     def _wait_for_first(self) -> None:
-        """Give topics that are published a moment to be heard, so that there is a picture."""
+        """Give published topics a moment to deliver, so that there is a picture."""
         if self._ended:
             return
+        with self._lock:
+            self._find_robots()
+            robots = list(self._robots.values())
         if self._node is None:
-            self._heard.clear()
+            for robot in robots:
+                robot.forget_heard()
 
         def enough() -> bool:
-            return all(feed.topic in self._heard or not feed.publishers for feed in self._feeds)
+            return all(robot.is_heard for robot in robots)
 
-        with heard(self._feeds, enough, timeout_sec=FIRST_SEC * busyness()):
-            pass
+        with subscribed(list(self._feeds), enough, timeout_sec=FIRST_SEC):
+            odom = self._feeds[0]
+            self._why = odom.silence() if odom.publishers else ''
 
-    def _on_odometry(self, message: Odometry) -> None:
-        motion = motion_of(message)
-        if motion is None:
-            return
-        pose, twist = motion
-        point = (pose.x, pose.y)
-        self._heard.add(self.odom)
+    def _close(self) -> None:
         with self._lock:
-            scene = self.scene
-            way = math.dist(self._trail[-1], point) if self._trail else math.inf
-            if way > JUMP:
-                # The robot was put there: its path begins anew.
-                self._trail.clear()
-                self._new_trail.clear()
-                self._lifted = True
-            if way > JUMP or twist.v:
-                scene.bump = None
-            elif scene.twist.v:
-                scene.bump = self._touched(pose, scene.twist.v)
-                # A bump is told at once.
-                self._worded_at = 0.0 if scene.bump else self._worded_at
-            scene.pose, scene.twist = motion
-            early, self._early = self._early, None
-            if early is not None:
-                self._on_scan(early)
-            if way >= TRAIL_STEP:
-                self._trail.append(point)
-                self._new_trail += point
-            # The page lets the robot go on as it did: it has to know when that is not so.
-            late = twist != Twist2() and time.monotonic() - self._sent_at >= GLIDE_SEC
-            if self._node is not None and (late or twist != self._told_twist):
-                self._send()
+            publisher, self._goal_publisher = self._goal_publisher, None
+            if publisher is not None and self._node is not None and node_exists(self._node):
+                self._node.destroy_publisher(publisher)
+            super()._close()
 
-    def _on_scan(self, message: LaserScan) -> None:
-        with self._lock:
-            pose = self.scene.pose
-            if pose is None:
-                self._early = message
-                return
-            self._heard.add(self.scan)
-            if self._heard_scan == (message.ranges, pose):
-                return  # while it stands, each is like the one before
-            self._heard_scan = (message.ranges, pose)
-            self._unseen = message
-            ends = self._ends = beam_ends(message, pose)
-            self._eye = scanner_place(pose)
-            self._new_scan = ends.astype('<f4').tobytes()
-            walls = ends[np.isfinite(ends[:, 0])]
-            squares = np.rint(walls / SQUARE).astype(np.int64) @ (1 << 32, 1)
-            self._met.update(zip(squares.tolist(), walls.tolist(), strict=True))
-            while len(self._met) > MOST_MET:
-                del self._met[next(iter(self._met))]
+    def _tick(self) -> None:
+        self._find_robots()
+        super()._tick()
 
-    def _look_at_scan(self) -> None:
-        """Put the last scan into the scene: not each is looked at."""
-        with self._lock:
-            message, self._unseen = self._unseen, None
-            if message is None:
-                return
-            self.scene.scan = [
-                (end[0], end[1]) if end[0] == end[0] else None for end in self._ends.tolist()
-            ]
-            self.scene.reach = float(message.range_max)
-            self.scene.nearest = nearest_of(message)
+    def _find_robots(self) -> None:
+        """Put robots on the map that have appeared."""
+        names = self._names()
+        if names and '' not in names and '' in self._robots and not self._robots[''].scene.pose:
+            # It stood for one that was to come.
+            for feed in self._robots.pop('').feeds:
+                feed.close()
+                self._feeds.remove(feed)
+        for name in names:
+            if name not in self._robots:
+                feeds = self._new_robot(name).feeds
+                self._feeds += feeds
+                if self._node is not None:
+                    for feed in feeds:
+                        feed.open(self._node)
 
-    def _touched(self, pose: Pose, v: float) -> tuple[float, float] | None:
-        """Return the nearest of what is close ahead of a robot that drove and stands now."""
-        ahead = pose.yaw if v > 0 else pose.yaw + math.pi
+    def _names(self) -> list[str]:
+        """Return the namespaces of the robots; '' for one that is to come if there are none."""
+        if self._namespace is not None or any(topic.startswith('/') for topic in self._topics):
+            return [(self._namespace or '').strip('/')]
+        end, node = f'/{self._topics[0]}', helper()
+        found = [
+            topic.removesuffix(end).strip('/')
+            for topic, types in node.get_topic_names_and_types()
+            if topic.endswith(end)
+            and 'nav_msgs/msg/Odometry' in types
+            and node.count_publishers(topic)
+        ]
+        return sorted(found) or ([] if self._robots else [''])
 
-        def turn(point: list[float]) -> float:
-            return wrap_angle(math.atan2(point[1] - pose.y, point[0] - pose.x) - ahead)
+    def _new_robot(self, name: str) -> MappedRobot:
+        from nav_msgs.msg import Odometry
+        from rclpy.qos import QoSProfile, ReliabilityPolicy
+        from sensor_msgs.msg import LaserScan
 
-        near = BURGER.radius + TOUCH
-        close = [point for point in self._met.values() if math.dist(point, pose[:2]) <= near]
-        touched = [point for point in close if abs(turn(point)) <= AHEAD]
-        if not touched:
-            return None
-        x, y = min(touched, key=lambda point: math.dist(point, pose[:2]))
-        return x, y
+        robot = MappedRobot(name, self._goals)
+
+        def on_odometry(message: Odometry) -> None:
+            with self._lock:
+                if robot.take_odometry(message):
+                    self._text_sent_at = 0.0  # announce a bump immediately
+                if self._node is not None and robot.is_news(self._sent_at):
+                    self._send()
+
+        def on_scan(message: LaserScan) -> None:
+            with self._lock:
+                robot.take_scan(message)
+
+        # Best effort matches every publisher.
+        qos = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)  # type: ignore[no-untyped-call]
+        odom, scan = (_full_name(topic, name) for topic in self._topics)
+        robot.feeds = [
+            Feed(odom, helper(), on_odometry, msg_type=Odometry, qos_profile=qos),
+            Feed(scan, helper(), on_scan, msg_type=LaserScan, qos_profile=qos),
+        ]
+        # In this order they have their colours.
+        self._robots = dict(sorted({**self._robots, name: robot}.items()))
+        for one in self._robots.values():
+            one.others = [other for other in self._robots.values() if other is not one]
+        return robot
 
     # -- the page -------------------------------------------------------------------------------
 
-    def _news(self, everything: bool) -> News:
-        scene, now = self.scene, time.monotonic()
-        buffers: list[bytes] = []
-        if everything:
-            self._lifted, self._new_scan = True, self._new_scan or self._last_scan
-            self._new_trail = [number for point in self._trail for number in point]
-        state: dict[str, object] = {'goals': scene.goals, 'bump': scene.bump}
-        if scene.pose is not None:
-            state['pose'] = (*scene.pose, *scene.twist)
-            self._told_twist = scene.twist
-        if everything or now - self._worded_at >= WORDS_SEC:
-            self._worded_at = now
+    def _handle_request(self, content: dict[str, Any]) -> None:
+        """Handle a goal that is to be set, one that is set, or the wish for a panel."""
+        goal = content.get('goal')
+        if content.get('aim'):
+            self._publisher_of_goals()
+        elif content.get('dock'):
+            # With the keys of its cell.
+            request = self._cell.request_id
+            views = [view for view in live_views() if view._cell.request_id == request]
+            dock.show_panel(dock.TITLE, [view for view in views if isinstance(view, LivePage)])
+        elif isinstance(goal, list) and len(goal) == 3 and all(map(_is_finite, goal)):
+            self._set_goal(*map(float, goal))
+
+    def _publisher_of_goals(self) -> Publisher:
+        """Return the publisher of goals, made now if there is none."""
+        from geometry_msgs.msg import PoseStamped
+
+        publisher, node = self._goal_publisher, helper()
+        if publisher is None or publisher not in node.publishers:
+            space = next(iter(self._robots)) if len(self._robots) == 1 else self._namespace or ''
+            publisher = node.create_publisher(PoseStamped, _full_name('goal_pose', space), 10)
+            self._goal_publisher = publisher
+        return publisher
+
+    def _set_goal(self, x: float, y: float, yaw: float) -> None:
+        """Mark a goal on the map and publish it, when all who listen have found the publisher."""
+        from geometry_msgs.msg import PoseStamped
+
+        publisher, node = self._publisher_of_goals(), helper()
+        self._goals = [(x, y, yaw)]
+        for robot in self._robots.values():
+            robot.scene.goals = [(x, y)]
+        message = PoseStamped()
+        message.header.stamp = node.get_clock().now().to_msg()
+        message.header.frame_id = next(
+            (robot.frame for robot in self._robots.values() if robot.frame), 'odom'
+        )
+        message.pose.position.x, message.pose.position.y = x, y
+        message.pose.orientation.z, message.pose.orientation.w = (
+            math.sin(yaw / 2),
+            math.cos(yaw / 2),
+        )
+
+        def publish() -> None:
+            wait_until_found(node, [publisher])
+            with self._lock:
+                if self._goal_publisher is publisher and node_exists(node):
+                    publisher.publish(message)
+
+        threading.Thread(target=publish, name='labkit goal', daemon=True).start()
+
+    def _update(self, everything: bool) -> Update:
+        now = time.monotonic()
+        robots, buffers = {}, []
+        for name, robot in self._robots.items():
+            changes, parts = robot.update(everything)
+            if changes:
+                robots[name] = changes
+                buffers += parts
+        state: dict[str, object] = {'goals': self._goals}
+        if everything or now - self._text_sent_at >= TEXT_SEC:
+            self._text_sent_at = now
             silences = (feed.silence() for feed in self._feeds)
             state |= {'text': self.text, 'note': next(filter(None, silences), '')}
-        news = self._new_of(state)
-        if self._lifted or self._new_trail:
-            news |= {'lifted': self._lifted, 'trail': self._new_trail}
-        if self._new_scan:
-            news['eye'] = self._eye
-            buffers.append(self._new_scan)
+        changes = self._changes(state)
+        if robots:
+            changes['robots'] = robots
         if everything:
-            # Its cell was run just now: only then the page scrolls there.
-            news |= {'fresh': self._fresh, 'met': True}
-            buffers.append(np.array([*self._met.values()], '<f4').tobytes())
+            # Scroll to the view only when its cell was just run.
+            changes['fresh'] = self._fresh
             self._fresh = False
-        self._last_scan = self._new_scan or self._last_scan
-        self._lifted, self._new_trail, self._new_scan = False, [], b''
-        return news, buffers
+        return changes, buffers
 
 
 def arena(
     *,
     odom: str = 'odom',
     scan: str = 'scan',
-    namespace: str = '',
+    namespace: str | None = None,
     goals: Iterable[tuple[float, float]] = (),
 ) -> Arena:
-    """Show a live map of what a robot says on `/odom` and `/scan`.
+    """Show a live map of the `/odom` and `/scan` of robots.
 
-    The robot, where it looks, the path that it has driven, and the walls as its scanner sees
-    them. What was seen stays; what it bumps into is marked. Mouse, keys and buttons zoom and move
-    the map. Where the same cell shows `lab.teleop()`, map and keys stand side by side.
+    The map shows each robot, its heading, the path it has driven, and the walls as its scanner
+    sees them, all in the frame of the odometry. Walls stay on the map; bumps are marked. Mouse,
+    keys and buttons zoom and move the map. If the same cell shows `lab.teleop()`, map and keys are
+    side by side. The button Goal publishes where one clicks as `geometry_msgs/msg/PoseStamped` on
+    `goal_pose`, as RViz does; the button Dock is `lab.dock()`.
 
     Args:
         odom: Topic with the robot's `nav_msgs/msg/Odometry`.
         scan: Topic with its `sensor_msgs/msg/LaserScan`.
-        namespace: For one of several robots: `'robot1'` makes these `/robot1/odom` and so on.
+        namespace: One of several robots: `'robot1'` makes these `/robot1/odom` and so on. By
+            default all robots are on the map, as soon as they publish their odometry.
         goals: Points (x, y) to be marked, m, in the frame of the odometry.
 
     Returns:
-        What a cell shows as a map, and `print()` as text. `.close()` ends it.
+        A map in a cell, text for `print()`. `.close()` ends it.
 
     Raises:
         LabError: A goal is not a pair of numbers.
@@ -271,21 +292,8 @@ def arena(
     return Arena(odom=odom, scan=scan, namespace=namespace, goals=goals)
 
 
-def _feeds(odom: str, scan: str, namespace: str, view: Arena) -> list[Feed]:
-    """Return what an arena listens to."""
-    from nav_msgs.msg import Odometry
-    from rclpy.qos import QoSProfile, ReliabilityPolicy
-    from sensor_msgs.msg import LaserScan
-
-    # Best effort hears every publisher, whatever it offers.
-    qos = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)  # type: ignore[no-untyped-call]
-    return [
-        Feed(_full_name(topic, namespace), helper(), take, msg_type=msg_type, qos_profile=qos)
-        for topic, msg_type, take in (
-            (odom, Odometry, view._on_odometry),
-            (scan, LaserScan, view._on_scan),
-        )
-    ]
+def _is_finite(value: object) -> bool:
+    return isinstance(value, (int, float)) and math.isfinite(value)
 
 
 def _full_name(topic: str, namespace: str) -> str:
@@ -301,6 +309,6 @@ def _checked(goals: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
     except (TypeError, ValueError):
         pass
     raise LabError(
-        f'goals must be pairs of numbers, in metres, but they are {goals!r}.',
+        f'goals must be pairs of numbers, in metres, but they are {quoted(goals)}.',
         todo='Write them like this: lab.arena(goals=[(1.0, 0.5)])',
     )

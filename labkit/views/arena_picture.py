@@ -1,8 +1,7 @@
-"""A robot and its surroundings as a scene: told in words, and drawn as SVG without a browser.
+"""A robot and its surroundings, in words and as SVG without a browser.
 
-`labkit.views.arena` shows it where widgets can't run, and checks show with it what a robot did.
-An SVG inside a page or a file does not know the page's theme, so the picture has a ground of its
-own.
+`labkit.views.arena` shows it where widgets can't run, and checks use it to show what a robot
+did. An SVG in a page or a file can't follow the page's theme, so it has its own background.
 """
 
 from __future__ import annotations
@@ -20,45 +19,48 @@ __all__ = ['Scene', 'bounds', 'joined', 'row', 'to_svg', 'two']
 Point = tuple[float, float]
 
 WIDTH, HEIGHT = 520, 400
-# Pictures in a row are smaller, and as far apart, in pixels.
+# Size of pictures in a row, and the gap between them, px.
 SMALL, GAP = 390, 20
-# A number takes so much room, pixels.
+# Room for a number, px.
 EDGE = 40
-# What is shown at least: so far around the origin, m.
+# Least distance around the origin that is shown, m.
 LEAST = 1.0
-# Neighbouring beams end on the same wall if their ends are not further apart than this many times
-# what they would be on a wall that is looked at squarely.
+# Neighbouring beams hit the same wall if their ends are no further apart than this many times the
+# distance on a wall seen head-on.
 SAME_WALL = 8.0
-# Below this the robot stands, m/s and rad/s.
+# Below this the robot is at rest, m/s and rad/s.
 STILL = 0.005
 # A TurtleBot3 Burger from above, m: back, front and half of the width of its body, and the width
 # of a wheel. Source: ROBOTIS-GIT/turtlebot3_simulations, turtlebot3_gazebo/models/
 # turtlebot3_burger/model.sdf: a box of 0.14 m, 0.032 m behind the axle (here it is a little
 # narrower, to leave the wheels to be seen), wheels 0.018 m wide.
 BODY, WHEEL_WIDTH = (-0.102, 0.038, 0.062), 0.018
-# It is drawn no smaller than with this radius, pixels.
+# Least radius at which the robot is drawn, px.
 LEAST_PX = 13
 
 _INK, _GRID, _WALL, _TRAIL, _ROBOT, _GOAL = (
     *('#424242', '#e0e0e0', '#37474f', '#1565c0', '#ef6c00', '#2e7d32'),
 )
 _BUMP = '#c62828'
+# Of several robots on one map, and of their trails; as in `map.js`.
+_SEVERAL = (_ROBOT, '#1976d2', '#8e24aa', '#2e7d32')
 
 
 @dataclass
 class Scene:
-    """What there is to see, in metres and radians.
+    """A robot and its surroundings, in metres and radians.
 
     Attributes:
-        pose: Where the robot is; None if it is not known.
-        twist: How fast it moves.
-        trail: Where it was, oldest first.
-        scan: Ends of the beams of its scanner in their order; None where a beam met nothing.
-        reach: How far the scanner sees; 0 if nothing was heard of it.
-        nearest: Distance and direction of what is nearest, seen by the robot; None if nothing is.
-        goals: Points to be marked.
-        bump: Where it touches what has stopped it; None if nothing has.
-        frame: The frame of all that in words; '' if it is that of the odometry.
+        pose: Pose of the robot; None if unknown.
+        twist: Velocity of the robot.
+        trail: Past positions, oldest first.
+        scan: Ends of the scanner's beams, in order; None where a beam hit nothing.
+        reach: Range of the scanner; 0 before the first scan.
+        nearest: Distance and direction of the nearest obstacle; None if there is none.
+        goals: Points to mark.
+        bump: Point where an obstacle has stopped the robot; None if none has.
+        frame: Name of the frame; '' for the frame of the odometry.
+        name: Name of the robot, '' for the only one.
     """
 
     pose: Pose | None = None
@@ -70,19 +72,21 @@ class Scene:
     goals: Sequence[Point] = ()
     bump: Point | None = None
     frame: str = ''
+    name: str = ''
 
     def words(self) -> str:
-        """Return the scene in words; '' if nothing is known of a robot."""
+        """Return the scene in words; '' without a pose."""
         if self.pose is None:
             return ''
         degrees = round(math.degrees(self.pose.yaw)) + 0
-        text = f'Robot at x = {two(self.pose.x)} m, y = {two(self.pose.y)} m, heading {degrees}°. '
+        x, y = two(self.pose.x), two(self.pose.y)
+        text = f'{self.name or "Robot"} at x = {x} m, y = {y} m, heading {degrees}°. '
         v, w = self.twist
         if abs(v) < STILL and abs(w) < STILL:
             text += 'It stands.'
             if self.bump is not None:
-                x, y = self.bump
-                angle = math.atan2(y - self.pose.y, x - self.pose.x) - self.pose.yaw
+                ahead, left = self.bump[0] - self.pose.x, self.bump[1] - self.pose.y
+                angle = math.atan2(left, ahead) - self.pose.yaw
                 text += f' It bumped into something, {_direction(wrap_angle(angle))}.'
         else:
             text += f'It drives at {two(v)} m/s and turns at {two(w)} rad/s.'
@@ -95,11 +99,11 @@ class Scene:
 
 
 def bounds(points: Iterable[Point], *, least: float = LEAST) -> tuple[float, float, float, float]:
-    """Return what has to be shown: left, bottom, right, top, in steps of half a metre.
+    """Return the area to show: left, bottom, right, top, in steps of half a metre.
 
     Args:
-        points: What must be inside.
-        least: How much around the origin is shown in any case, m.
+        points: Points that must be inside.
+        least: Least distance around the origin that is shown, m.
     """
     corners = [(-least, -least), (least, least)]
     xs, ys = zip(*[*corners, *points], strict=True)
@@ -113,8 +117,8 @@ def joined(scan: Sequence[Point | None], eye: Point) -> list[tuple[Point, Point]
     """Return the lines between neighbouring beams that end on the same wall.
 
     Args:
-        scan: Ends of the beams, None where a beam met nothing.
-        eye: Where the scanner is.
+        scan: Ends of the beams, None where a beam hit nothing.
+        eye: Position of the scanner.
     """
     lines = []
     for one, other in pairwise([*scan, *scan[:1]]):
@@ -126,35 +130,40 @@ def joined(scan: Sequence[Point | None], eye: Point) -> list[tuple[Point, Point]
     return lines
 
 
-def to_svg(scene: Scene, text: str = '', *, least: float = LEAST, font: int = 11) -> str:
-    """Return a scene as an SVG picture.
+def to_svg(
+    scenes: Scene | Sequence[Scene], text: str = '', *, least: float = LEAST, font: int = 11
+) -> str:
+    """Return robots and their surroundings as an SVG picture.
 
     Args:
-        scene: What to draw.
-        text: The picture's text alternative; the scene's own words if empty.
-        least: How much around the origin is shown in any case, m.
-        font: Size of the letters, pixels.
+        scenes: The scene of a robot, or those of several on one map, with the same goals.
+        text: Text alternative; by default the scenes in words.
+        least: Least distance around the origin that is shown, m.
+        font: Font size, px.
     """
-    seen = [point for point in scene.scan if point is not None]
-    here = [(scene.pose.x, scene.pose.y)] if scene.pose is not None else []
-    paper = _Paper(bounds([*seen, *scene.trail, *scene.goals, *here], least=least))
+    scenes = [scenes] if isinstance(scenes, Scene) else scenes
+    first = scenes[0]
+    paper = _Paper(bounds(_points(scenes), least=least))
     paper.grid()
-    if scene.pose is not None and seen:
-        eye = _ahead(scene.pose, BURGER.scan_x)
-        paper.fan(scene.scan, eye)
-        paper.lines(joined(scene.scan, eye), _WALL, 2.5)
-        paper.dots(seen, _WALL)
-    paper.path(scene.trail, _TRAIL)
-    if scene.pose is not None:
-        paper.robot(scene.pose)
-    # Above the robot, which may stand on one.
-    for number, goal in enumerate(scene.goals, start=1):
-        paper.goal(goal, str(number) if len(scene.goals) > 1 else '')
-    if scene.bump is not None:
-        paper.bump(scene.bump)
-    if scene.frame:
-        paper.name(scene.frame)
-    text = html.escape(text or scene.words() or 'An empty map')
+    for scene in scenes:
+        if scene.pose is not None:
+            paper.scan(scene.scan, scene.pose)
+    colours = [(_TRAIL, _ROBOT)] if len(scenes) == 1 else [(one, one) for one in _SEVERAL]
+    for number, scene in enumerate(scenes):
+        paper.path(scene.trail, colours[number % len(colours)][0])
+    for number, scene in enumerate(scenes):
+        if scene.pose is not None:
+            paper.robot(scene.pose, colours[number % len(colours)][1], scene.name)
+    # On top of the robots, which may stand on one.
+    for number, goal in enumerate(first.goals, start=1):
+        paper.goal(goal, str(number) if len(first.goals) > 1 else '')
+    for scene in scenes:
+        if scene.bump is not None:
+            paper.bump(scene.bump)
+    if first.frame:
+        paper.name(first.frame)
+    words = '\n'.join(filter(None, (scene.words() for scene in scenes)))
+    text = html.escape(text or words or 'An empty map')
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
         f'width="{WIDTH}" height="{HEIGHT}" role="img" '
@@ -165,11 +174,21 @@ def to_svg(scene: Scene, text: str = '', *, least: float = LEAST, font: int = 11
     )
 
 
+def _points(scenes: Sequence[Scene]) -> list[Point]:
+    """Return what has to be on the map."""
+    points: list[Point] = []
+    for scene in scenes:
+        points += [end for end in scene.scan if end is not None]
+        points += [*scene.trail, *scene.goals]
+        points += [] if scene.pose is None else [(scene.pose.x, scene.pose.y)]
+    return points
+
+
 def row(scenes: Sequence[Scene], text: str) -> str:
-    """Return scenes next to each other as one SVG picture, each as large as what happens in it.
+    """Return scenes side by side as one SVG, each scaled to its content.
 
     Args:
-        scenes: What to draw.
+        scenes: The scenes.
         text: The picture's text alternative.
     """
     parts = [
@@ -188,7 +207,7 @@ def row(scenes: Sequence[Scene], text: str) -> str:
 
 
 class _Paper:
-    """A sheet of which a rectangle of the floor is the middle."""
+    """A drawing area centred on a rectangle of the floor."""
 
     def __init__(self, shown: tuple[float, float, float, float]) -> None:
         self.left, self.bottom, self.right, self.top = shown
@@ -204,26 +223,29 @@ class _Paper:
         return f'{x:.1f}', f'{y:.1f}'
 
     def grid(self) -> None:
-        """Draw lines at whole metres, or nearer to each other, and say which ones they are."""
+        """Draw grid lines, at whole metres or closer, and label them."""
         wide = WIDTH / self.scale
         step = 0.2 if wide < 2.7 else 0.5 if wide < 3.9 else 1 if wide < 26 else 5
+        if wide > 130:
+            # A robot outdoors may be thousands of kilometres from where its map begins.
+            step = 10.0 ** math.ceil(math.log10(wide / 26))
         for x in _multiples(step, (self.left + self.right) / 2, wide / 2):
             px, _ = self.at((x, 0))
             self._line(px, '0', px, str(HEIGHT), x == 0)
-            # One that would be cut off at the right is left out.
+            # Leave out labels that would be cut off on the right.
             if float(px) < WIDTH - EDGE:
                 self._label(float(px) + 3, HEIGHT - 4, f'{x:g} m' if x == 0 else f'{x:g}')
         for y in _multiples(step, (self.bottom + self.top) / 2, HEIGHT / self.scale / 2):
             _, py = self.at((0, y))
             self._line('0', py, str(WIDTH), py, y == 0)
-            # The corner at the bottom is that of the labels along x.
+            # The bottom corner belongs to the labels of the x axis.
             if float(py) < HEIGHT - 20:
                 self._label(3, float(py) - 3, f'{y:g} m' if y == 0 else f'{y:g}')
         self._label(WIDTH - 14, float(self.at((0, 0))[1]) - 3, 'x')
         self._label(float(self.at((0, 0))[0]) - 12, 12, 'y')
 
     def name(self, frame: str) -> None:
-        """Say whose the axes are."""
+        """Name the frame of the axes."""
         self.parts.append(
             f'<text x="{WIDTH - 8}" y="20" fill="#424242" text-anchor="end" '
             f'stroke="#ffffff" stroke-width="4" paint-order="stroke">{html.escape(frame)}</text>'
@@ -240,13 +262,24 @@ class _Paper:
         path = ''.join(f'M{" ".join(self.at(a))}L{" ".join(self.at(b))}' for a, b in lines)
         self.parts.append(f'<path d="{path}" stroke="{colour}" stroke-width="{width}"/>')
 
+    def scan(self, scan: Sequence[Point | None], pose: Pose) -> None:
+        """Draw the walls that a robot's scanner sees, and the area before them."""
+        seen = [end for end in scan if end is not None]
+        if not seen:
+            return
+        x, y, yaw = pose
+        eye = x + BURGER.scan_x * math.cos(yaw), y + BURGER.scan_x * math.sin(yaw)
+        self.fan(scan, eye)
+        self.lines(joined(scan, eye), _WALL, 2.5)
+        self.dots(seen, _WALL)
+
     def fan(self, scan: Sequence[Point | None], eye: Point) -> None:
-        """Draw what the scanner sees: from its eye along the ends of its beams."""
+        """Draw the area that the scanner sees."""
         path = 'L'.join(' '.join(self.at(end or eye)) for end in scan)
         self.parts.append(f'<path d="M{path}Z" fill="{_TRAIL}" fill-opacity="0.08"/>')
 
     def dots(self, points: Sequence[Point], colour: str) -> None:
-        # A line of no length with round ends is a dot.
+        # A line of zero length with round caps is a dot.
         path = ''.join(f'M{" ".join(self.at(point))}h0' for point in points)
         self.parts.append(
             f'<path d="{path}" stroke="{colour}" stroke-width="4" stroke-linecap="round"/>'
@@ -271,8 +304,8 @@ class _Paper:
                 f'font-weight="bold">{label}</text>'
             )
 
-    def robot(self, pose: Pose) -> None:
-        """Draw it from above: wheels, body, scanner, and a nose ahead; as in `map.js`."""
+    def robot(self, pose: Pose, colour: str, name: str) -> None:
+        """Draw a robot from above: wheels, body, scanner and nose; as in `map.js`."""
         scale = max(self.scale, LEAST_PX / BURGER.radius)
         x, y = self.at((pose.x, pose.y))
 
@@ -286,19 +319,26 @@ class _Paper:
         sides = ''.join(path([(-wheel, side), (wheel, side)]) for side in (beside, -beside))
         body = path([(back, half), (front, half), (front, -half), (back, -half)])
         self.parts.append(
-            f'<circle cx="{x}" cy="{y}" r="{scale * BURGER.radius:.1f}" fill="{_ROBOT}" '
+            f'<circle cx="{x}" cy="{y}" r="{scale * BURGER.radius:.1f}" fill="{colour}" '
             f'fill-opacity="0.18"/><g transform="translate({x} {y}) '
             f'rotate({-math.degrees(pose.yaw):.1f})">'
             f'<path d="{sides}" stroke="{_INK}" stroke-width="{scale * WHEEL_WIDTH:.1f}"/>'
             f'<path d="{body}Z" fill="#ffffff" stroke="{_INK}" stroke-width="2" '
             f'stroke-linejoin="round"/>'
-            f'<path d="{path([(0.088, 0), (front, 0.04), (front, -0.04)])}Z" fill="{_ROBOT}"/>'
+            f'<path d="{path([(0.088, 0), (front, 0.04), (front, -0.04)])}Z" fill="{colour}"/>'
             f'<path d="{path([(BURGER.scan_x, 0)])}h0" stroke="{_INK}" '
             f'stroke-width="{scale * 0.07:.1f}" stroke-linecap="round"/></g>'
         )
+        if name:
+            above = float(y) - scale * BURGER.radius - 5
+            self.parts.append(
+                f'<text x="{x}" y="{above:.1f}" fill="{_INK}" text-anchor="middle" '
+                f'stroke="#ffffff" stroke-width="3" paint-order="stroke">'
+                f'{html.escape(name)}</text>'
+            )
 
     def bump(self, point: Point) -> None:
-        """Draw a star where something is touched."""
+        """Draw a star at the point of contact."""
         x, y = self.at(point)
         corners = ' '.join(
             f'{(6 if corner % 2 else 13) * math.cos(corner * math.pi / 8):.1f},'
@@ -312,17 +352,13 @@ class _Paper:
 
 
 def _multiples(step: float, middle: float, reach: float) -> list[float]:
-    """Return all multiples of `step` that are no further than `reach` from `middle`."""
+    """Return the multiples of `step` within `reach` of `middle`."""
     first, last = math.ceil((middle - reach) / step), math.floor((middle + reach) / step)
     return [round(number * step, 6) for number in range(first, last + 1)]
 
 
-def _ahead(pose: Pose, distance: float) -> Point:
-    return pose.x + distance * math.cos(pose.yaw), pose.y + distance * math.sin(pose.yaw)
-
-
 def two(number: float) -> str:
-    """Return a number with two digits after the point, and no minus before a zero."""
+    """Return a number with two decimals, and no minus sign before zero."""
     return f'{round(number, 2) + 0.0:.2f}'
 
 

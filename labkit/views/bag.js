@@ -8,7 +8,7 @@ const ASK_MS = 100;
 const SLOW_MS = 4000;
 const SPOKEN_MS = 1000; // a screen reader has to be able to speak what it is told
 const RATES = [0.1, 0.5, 1, 2, 5, 10, 50, 100];
-const JUMP = 0.5; // a longer way at once is none that was driven, m; see arena.py
+const JUMP = 0.5; // a longer way at once is none that was driven, m; see arena_robot.py
 
 function inSeconds(time) {
   return `${time.toFixed(2)} s`;
@@ -84,9 +84,10 @@ class Topics {
     this.choose = choose;
     this.body = element('tbody');
     const heads = ['Topic', 'Messages', 'Rate', 'When they came'];
-    this.table = element('table', {}, element('thead', {}, element('tr', {}, ...heads.map(
-      (text) => element('th', { textContent: text, scope: 'col' }),
-    ))), this.body);
+    this.table = element('table', { className: 'labkit-bag-topics' },
+      element('thead', {}, element('tr', {}, ...heads.map(
+        (text) => element('th', { textContent: text, scope: 'col' }),
+      ))), this.body);
     this.strips = [];
   }
 
@@ -131,7 +132,8 @@ class Topics {
 class Trail {
   constructor(canvas) {
     this.map = new Map2d(canvas);
-    this.scene = emptyScene();
+    this.robot = emptyRobot();
+    this.scene = emptyScene(this.robot);
     this.times = [];
   }
 
@@ -162,15 +164,15 @@ class Trail {
 
   drawAt(time) {
     const index = indexAt(this.times, time);
-    this.scene.pose = index < 0 ? null : [...this.poses[index]];
+    this.robot.pose = index < 0 ? null : [...this.poses[index]];
     const first = index < 0 ? 0 : this.starts[index];
-    this.scene.trail = index < 0 ? [] : this.poses.slice(first, index + 1);
+    this.robot.trail = index < 0 ? [] : this.poses.slice(first, index + 1);
     if (this.map.canvas.clientWidth) this.map.draw(this.scene, null);
   }
 
   words() {
-    if (!this.scene.pose) return 'The robot has not told yet where it is.';
-    const [x, y, yaw, v, w] = this.scene.pose;
+    if (!this.robot.pose) return 'The robot has not told yet where it is.';
+    const [x, y, yaw, v, w] = this.robot.pose;
     const degrees = Math.round((yaw * 180) / Math.PI) + 0;
     return `Robot at x = ${x.toFixed(2)} m, y = ${y.toFixed(2)} m, heading ${degrees}°, `
       + `${v.toFixed(2)} m/s, ${w.toFixed(2)} rad/s.`;
@@ -388,7 +390,9 @@ function render({ model, el }) {
   clear.addEventListener('click', () => takeLines([], []));
   model.on('msg:custom', onMessage);
   const header = element('div', { className: 'labkit-live-header' }, title, about);
-  el.append(header, note, topics.table, controls, details, plot, arena);
+  // Beside each other where there is room: play, map and topics are in sight together.
+  el.append(header, note, controls, element('div', { className: 'labkit-bag-sides' },
+    element('div', {}, arena, plot), element('div', {}, topics.table, details)));
   const sizes = new ResizeObserver(() => {
     topics.draw();
     redraw();

@@ -1,6 +1,6 @@
-"""A bag as a still picture, where nothing can be live: strips, lines over time, a robot's trail.
+"""A bag as a still picture: timelines, lines over time, a robot's trail.
 
-A picture of pixels, as those of matplotlib are: it shows times, and each recording has others.
+It is a PNG, like those of matplotlib: it shows times, which differ with each recording.
 """
 
 from __future__ import annotations
@@ -20,25 +20,18 @@ __all__ = ['to_png']
 
 WIDTH, STRIP, PANEL, MAP = 7.2, 0.3, 1.7, 3.6
 DPI = 90
-# More topics are told in words alone.
-MOST_STRIPS = 40
+# Further topics are listed in the text only.
+MAX_STRIPS = 40
 _STYLES = ('-', '--', ':', '-.', (0, (5, 2)), (0, (1, 4)))
 
 
 def to_png(
     strips: Sequence[Strip], samples: Sequence[Samples], track: Track | None, seconds: float
 ) -> str:
-    """Return a picture of a bag as a PNG, in base64.
-
-    Args:
-        strips: When messages came.
-        samples: Fields to be drawn.
-        track: Where a robot was.
-        seconds: How long the bag is, s.
-    """
+    """Return a picture of a bag as a PNG, in base64; `seconds` is the duration of the bag."""
     from matplotlib.figure import Figure
 
-    strips = strips[:MOST_STRIPS]
+    strips = strips[:MAX_STRIPS]
     units = list(dict.fromkeys(each.unit for each in samples))
     heights = [STRIP * len(strips) + 0.5, *[PANEL] * len(units), *[MAP] * (track is not None)]
     figure = Figure(figsize=(WIDTH, sum(heights) + 0.5 * len(heights)), layout='constrained')
@@ -87,7 +80,7 @@ def _draw_track(axes: Any, track: Track) -> None:
     if len(x):
         yaw = float(track.numbers[-1, 2])
         axes.plot(x[0], y[0], 'o', color='#2e7d32', label='first')
-        # An arrow whose tip is where the robot was last.
+        # The tip of the arrow is the last position of the robot.
         way = (-20 * math.cos(yaw), -20 * math.sin(yaw))
         arrow = {'arrowstyle': '-|>', 'color': '#ef6c00', 'lw': 3}
         axes.annotate('', (x[-1], y[-1]), way, textcoords='offset points', arrowprops=arrow)
@@ -98,7 +91,7 @@ def _draw_track(axes: Any, track: Track) -> None:
 
 
 def _plain(text: str) -> str:
-    """Return a name as matplotlib shows it: a dollar would begin a formula."""
-    # Names of ROS have no other characters, and a font lacks some.
+    """Return a name for matplotlib, where a dollar sign would start a formula."""
+    # Names of ROS are ASCII, and fonts lack some other characters.
     ascii_only = ''.join(char if char.isascii() and char.isprintable() else '?' for char in text)
     return ascii_only.replace('$', r'\$')

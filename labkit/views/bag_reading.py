@@ -1,7 +1,7 @@
-"""What a picture of a bag shows, read from it: never all of its messages at once.
+"""Read the content of a bag's picture, never all of its messages at once.
 
-When messages came is told by the bag's index. What is drawn of their contents is read message by
-message, and of very many only some, evenly chosen.
+Arrival times come from the bag's index. Contents are read message by message; of very many
+messages, an evenly spaced sample.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from labkit.bags.reader import Bag, BagTopic
-from labkit.errors import LabError, nearest
+from labkit.errors import LabError, nearest, quoted
 from labkit.rosgraph.interfaces import message_class
 from labkit.rosgraph.refusals import Refused
 from labkit.sim.kinematics import Pose
@@ -42,27 +42,25 @@ __all__ = [
 ]
 
 ODOMETRY, SCAN = 'nav_msgs/msg/Odometry', 'sensor_msgs/msg/LaserScan'
-# Columns of a strip.
+# Columns of a timeline.
 BINS = 240
-# So many messages of a topic are read for a picture; of more, every n-th.
-MOST_SAMPLES = 5000
-# Fields of a type that are offered to be drawn. Some types have thousands.
-MOST_FIELDS = 200
+# Most messages read of a topic; of more, every n-th.
+MAX_SAMPLES = 5000
+# Most fields offered for drawing. Some types have thousands.
+MAX_FIELDS = 200
 
 Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True)
 class Strip:
-    """When the messages of a topic came.
+    """Arrival times of the messages of a topic.
 
     Attributes:
-        topic: The topic.
-        first_sec: When the first one came, s since the bag begins.
-        last_sec: When the last one came.
-        gap: Where nothing came for longest: how long, and from when on, s; None if there are
-            less than two messages.
-        bins: How many messages came in each column of the strip.
+        first_sec: Time of the first message, s from the beginning of the bag.
+        last_sec: Time of the last message, s from the beginning of the bag.
+        gap: Length and start of the longest pause, s; None with fewer than two messages.
+        bins: Number of messages in each column.
     """
 
     topic: BagTopic
@@ -73,9 +71,10 @@ class Strip:
 
     @property
     def rate(self) -> float | None:
-        """Return how many messages came in a second, from the first one to the last one, Hz."""
+        """The mean rate between the first and the last message, Hz."""
         took = self.last_sec - self.first_sec
-        return (self.topic.count - 1) / took if took > 0 else None
+        # The count is what the bag says; its messages may say otherwise.
+        return (self.topic.count - 1) / took if self.topic.count > 1 and took > 0 else None
 
 
 @dataclass(frozen=True)
@@ -83,12 +82,11 @@ class Samples:
     """The numbers of one field.
 
     Attributes:
-        source: The field.
-        unit: Its unit, '' if none is known.
-        times: When the messages came, s since the bag begins.
-        values: What they said.
+        unit: Its unit, '' if unknown.
+        times: Arrival times, s from the beginning of the bag.
+        values: Values of the field.
         step: Every `step`-th message was read.
-        problem: Why there is less than there should be, '' if all is well.
+        problem: Why there is less than there should be, '' if nothing is missing.
     """
 
     source: Source
@@ -101,11 +99,11 @@ class Samples:
 
 @dataclass(frozen=True)
 class Track:
-    """Where a robot was.
+    """The path of a robot.
 
     Attributes:
-        topic: The topic of its odometry.
-        times: When, s since the bag begins.
+        topic: Topic of its odometry.
+        times: Time of each pose, s from the beginning of the bag.
         numbers: x, y, yaw, v and w for each time.
     """
 
@@ -114,19 +112,19 @@ class Track:
     numbers: Any
 
     def pose_at(self, seconds: float) -> Pose | None:
-        """Return the last pose at a time or before it, None if there is none."""
+        """Return the last pose at or before a time, None if there is none."""
         index = int(np.searchsorted(self.times, seconds, side='right')) - 1
         return None if index < 0 else Pose(*map(float, self.numbers[index, :3]))
 
 
 @dataclass(frozen=True)
 class Content:
-    """What was read for the picture of a bag.
+    """The content of a bag's picture.
 
     Attributes:
-        strips: When messages came, a strip for each topic.
-        samples: Numbers of the fields that are drawn.
-        track: The way of a robot, if the bag has one.
+        strips: Arrival times, by topic.
+        samples: Numbers of the drawn fields.
+        track: Path of a robot, if the bag has one.
         problems: What could not be read, as sentences.
     """
 
@@ -137,20 +135,20 @@ class Content:
 
 
 def read_strip(bag: Bag, topic: BagTopic) -> Strip:
-    """Return when the messages of a topic came.
+    """Return the arrival times of the messages of a topic.
 
     Raises:
         LabError: The bag is damaged.
     """
     stamps = bag.stamps(topic.name)
-    # Two types on one topic have one strip.
+    # Two types on one topic share a timeline.
     seconds = (stamps - bag.start_ns) / 1e9
     if not len(seconds):
         return Strip(topic, 0.0, 0.0, None, np.zeros(BINS, dtype=np.int64))
     bins, _ = np.histogram(seconds, BINS, (0.0, max(bag.duration_sec, 1e-9)))
     gap = None
     if len(seconds) > 1:
-        # Of whole nanoseconds: of pauses that are the same, the first one counts.
+        # In whole nanoseconds: of equal pauses, take the first.
         pauses = np.diff(stamps)
         longest = int(np.argmax(pauses))
         gap = float(pauses[longest] / 1e9), float(seconds[longest])
@@ -162,12 +160,12 @@ def chosen_topic(bag: Bag, wanted: str | None, msg_type: str, near: str = '') ->
 
     Args:
         bag: The bag.
-        wanted: The topic that is asked for; None for the fullest, '' for none.
+        wanted: The requested topic; None for the one with the most messages, '' for none.
         msg_type: Its type.
-        near: A topic of the same robot: one of its namespace is preferred.
+        near: A topic of the same robot: prefer its namespace.
 
     Raises:
-        LabError: The bag has no such topic, or its type is another one.
+        LabError: The bag has no such topic, or it has another type.
     """
     if wanted == '':
         return ''
@@ -185,13 +183,13 @@ def chosen_topic(bag: Bag, wanted: str | None, msg_type: str, near: str = '') ->
 
 
 def read_track(bag: Bag, topic: str, progress: Progress) -> Track:
-    """Return where a robot was.
+    """Return the path of a robot.
 
     Raises:
         LabError: The bag is damaged.
     """
     rows: list[tuple[float, ...]] = []
-    for seconds, message in _some(bag, topic, progress):
+    for seconds, message in _sampled(bag, topic, progress):
         motion = motion_of(message)
         if motion is not None:
             rows.append((seconds, *motion[0], *motion[1]))
@@ -200,19 +198,14 @@ def read_track(bag: Bag, topic: str, progress: Progress) -> Track:
 
 
 def check_field(bag: Bag, source: Source) -> None:
-    """Raise a LabError unless a bag has a topic with such a field, and it is a number."""
+    """Raise a LabError unless a bag has this topic and field, and it is a number."""
     topic = bag.topic(source.topic)
     if topic.count:
         _getter(bag, topic, source)
 
 
 def read_samples(bag: Bag, sources: Sequence[Source], progress: Progress) -> list[Samples]:
-    """Return the numbers of fields of one topic.
-
-    Args:
-        bag: The bag.
-        sources: The fields.
-        progress: Called with how far it is, from 0 to 1.
+    """Return the numbers of fields of one topic; `progress` is called with 0 to 1.
 
     Raises:
         LabError: There is no such field, or it is not a number.
@@ -227,7 +220,7 @@ def read_samples(bag: Bag, sources: Sequence[Source], progress: Progress) -> lis
     values: list[list[float]] = [[] for _ in sources]
     problem = ''
     try:
-        for seconds, message in _some(bag, topic.name, progress):
+        for seconds, message in _sampled(bag, topic.name, progress):
             times.append(seconds)
             for (get, _), numbers in zip(getters, values, strict=True):
                 numbers.append(_number(get, message))
@@ -241,13 +234,13 @@ def read_samples(bag: Bag, sources: Sequence[Source], progress: Progress) -> lis
 
 
 def number_paths(message: Any) -> list[str]:
-    """Return the paths of a message's fields that are numbers; of arrays, the first element's."""
+    """Return the paths of a message's numbers; of an array, that of the first element."""
     found: list[str] = []
     for path in _paths(message, ''):
         found.append(path)
-        if len(found) >= MOST_FIELDS:
+        if len(found) >= MAX_FIELDS:
             break
-    # Stamps and covariances are seldom what is looked for.
+    # Stamps and covariances are seldom wanted.
     return sorted(found, key=lambda path: ('covariance' in path, path.startswith('header.')))
 
 
@@ -255,11 +248,11 @@ def number_paths(message: Any) -> list[str]:
 
 
 def _step(count: int) -> int:
-    return math.ceil(count / MOST_SAMPLES) or 1
+    return math.ceil(count / MAX_SAMPLES) or 1
 
 
-def _some(bag: Bag, topic: str, progress: Progress) -> Iterator[tuple[float, Any]]:
-    """Yield times and messages of a topic: all of them, or every n-th."""
+def _sampled(bag: Bag, topic: str, progress: Progress) -> Iterator[tuple[float, Any]]:
+    """Yield times and messages of a topic: all, or every n-th."""
     stamps = np.unique(bag.stamps(topic))
     chosen = stamps[:: _step(len(stamps))]
     for number, stamp in enumerate(chosen.tolist()):
@@ -270,7 +263,7 @@ def _some(bag: Bag, topic: str, progress: Progress) -> Iterator[tuple[float, Any
 
 
 def _getter(bag: Bag, topic: BagTopic, source: Source) -> tuple[Callable[[Any], Any], str]:
-    """Return what takes a field out of a message, and its unit.
+    """Return a function that reads a field of a message, and its unit.
 
     Raises:
         LabError: There is no such field, or it is not a number.
@@ -283,7 +276,7 @@ def _getter(bag: Bag, topic: BagTopic, source: Source) -> tuple[Callable[[Any], 
 
 
 def _foreign_getter(bag: Bag, topic: BagTopic, source: Source) -> Callable[[Any], Any]:
-    """Return what takes a field out of a message whose type is not installed here."""
+    """Return a function that reads a field of a message whose type is not installed."""
 
     def take(message: Any, part: tuple[str, str]) -> Any:
         name, index = part
@@ -313,7 +306,8 @@ def _foreign_getter(bag: Bag, topic: BagTopic, source: Source) -> Callable[[Any]
             else f'Its numbers: {", ".join(paths[:4]) or "none"}.'
         )
         raise LabError(
-            f'{source.text!r}: {topic.msg_type} has no number {source.path!r}.', todo=todo
+            f'{quoted(source.text)}: {topic.msg_type} has no number {quoted(source.path)}.',
+            todo=todo,
         )
     return get
 
@@ -322,7 +316,7 @@ def _number(get: Callable[[Any], Any], message: Any) -> float:
     try:
         return float(get(message))
     except IndexError:
-        # The array is shorter in this message.
+        # This message has a shorter array.
         return math.nan
 
 

@@ -1,7 +1,7 @@
-"""One card for what an exercise or a quiz has to say: HTML in a notebook, plain text elsewhere.
+"""Cards with the results of exercises and quizzes: HTML in a notebook, plain text elsewhere.
 
-A card never relies on colour: its tone is also a sign and a word. Its colours are those of
-JupyterLab's theme; elsewhere it inherits the page's.
+A card never relies on colour: its tone is also a sign and a word. It uses JupyterLab's theme
+colours; elsewhere it inherits the page's.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ _EDGE = (
     'color:var(--jp-content-font-color1, inherit)'
 )
 _ROWS = 'display:grid;grid-template-columns:max-content 1fr;gap:0.2em 1em;margin:0.4em 0 0'
-# JupyterLab has rules of its own for lists of this kind.
+# JupyterLab styles such lists itself.
 _LABEL = 'font-weight:bold;float:none;width:auto;white-space:nowrap'
-# Spaces are shown as they are: one too many may be the mistake.
+# Keep spaces: one too many may be the mistake.
 _TEXT = 'margin:0;padding:0;overflow-wrap:anywhere;white-space:break-spaces'
 CODE_STYLE = (
     'margin:0.5em 0 0;padding:0.5em;overflow-x:auto;white-space:pre;'
@@ -40,15 +40,15 @@ CODE_STYLE = (
 
 @dataclass(frozen=True, repr=False)
 class Card:
-    """What is said, and how it is shown: as text in a terminal, as a box in a notebook.
+    """A message: text in a terminal, a box in a notebook.
 
     Attributes:
         tone: `'good'`, `'bad'`, `'warn'`, `'quiet'` or `'info'`.
         word: The tone as a word, such as `'PASS'`.
-        title: What it is about, such as the name of an exercise.
-        text: Sentences under the title. A word in backticks is shown as code.
-        rows: Pairs of a label and a text; pairs without a text are left out.
-        code: Lines shown as they are: a solution, a traceback.
+        title: The subject, such as the name of an exercise.
+        text: Sentences under the title. Words in backticks are shown as code.
+        rows: Pairs of label and text; pairs without text are left out.
+        code: Lines shown verbatim: a solution, a traceback.
     """
 
     tone: str
@@ -59,14 +59,13 @@ class Card:
     code: str = ''
 
     def __repr__(self) -> str:
-        """Return the card as lines of text."""
         lines = [f'{self.word}: {self.title}' if self.title else self.word]
         for paragraph in filter(None, self.text.splitlines()):
             lines += textwrap.wrap(paragraph, _WIDTH, initial_indent='  ', subsequent_indent='  ')
         rows = [row for row in self.rows if row[1]]
         width = max((len(label) for label, _ in rows), default=0) + 2
         for label, text in rows:
-            # Each line of a text stays one: a list of things seen reads as a list.
+            # Keep line breaks, so that a list stays a list.
             start = f'  {label + ":":<{width}}'
             for line in text.splitlines():
                 lines += textwrap.wrap(
@@ -95,7 +94,7 @@ class Card:
         if rows:
             parts.append(f'<dl style="{_ROWS}">{"".join(rows)}</dl>')
         if self.code:
-            # Reachable by keyboard, because a wide one scrolls.
+            # Focusable, because a wide one scrolls.
             parts.append(
                 f'<pre tabindex="0" style="{CODE_STYLE}">{html.escape(self.code.rstrip())}</pre>'
             )
@@ -103,7 +102,7 @@ class Card:
 
 
 def rich(text: str) -> str:
-    """Return text as HTML: escaped, `code` in backticks, one line break for each newline."""
+    """Return text as HTML: escaped, with `code` in backticks and a line break per newline."""
     escaped = html.escape(text)
     marked = re.sub(r'`([^`\n]+)`', r'<code>\1</code>', escaped)
     return marked.replace('\n', '<br>')

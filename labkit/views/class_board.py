@@ -1,4 +1,4 @@
-"""What is shown of a class: who is where, what is passed, what fails most; also as text."""
+"""The state of a class: who is where, what is passed, what fails most; also as text."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ class LessonRow:
     """A lesson.
 
     Attributes:
-        title: Its number and its title.
-        here: How many learners are at it now.
-        exercises: Name of each exercise, how many have passed it, how many others have tried it.
+        title: Number and title.
+        here: Number of learners who are working on it.
+        exercises: For each exercise its name, and how many have passed it or only tried it.
     """
 
     title: str
@@ -30,12 +30,12 @@ class LessonRow:
 
 @dataclass(frozen=True)
 class FailRow:
-    """A mistake that learners have not mended yet.
+    """A mistake that learners have not fixed yet.
 
     Attributes:
-        count: How many learners.
-        exercise: The lesson and the exercise.
-        sentence: What the course says about it.
+        count: Number of learners.
+        exercise: Lesson and exercise.
+        sentence: The course's explanation.
     """
 
     count: int
@@ -45,17 +45,17 @@ class FailRow:
 
 @dataclass(frozen=True)
 class LearnerRow:
-    """A learner, for the teacher alone.
+    """A learner, visible to the teacher only.
 
     Attributes:
-        name: The name in the class.
-        lesson: The lesson that is open, `''` if none is.
-        done: How many exercises are passed.
+        name: Name in the class.
+        lesson: The open lesson, `''` for none.
+        done: Number of passed exercises.
         exercise: The exercise of the last check.
-        last: Its outcome.
-        stuck_min: For so long it has not been passed, min; None if the learner is not stuck.
-        quiet_min: So long ago something was heard, min; None if that is not known.
-        remark: What can hardly be true, or why nothing can be read; `''` if all is well.
+        last: Outcome of that check.
+        stuck_min: Time since the learner got stuck, min; None if not stuck.
+        quiet_min: Time since the last sign of life, min; None if unknown.
+        remark: Why the data is implausible or unreadable; `''` if it is fine.
     """
 
     name: str
@@ -70,19 +70,19 @@ class LearnerRow:
 
 @dataclass(frozen=True)
 class Board:
-    """All that is shown of a class.
+    """The state of a class.
 
     Attributes:
-        shared: How many learners share.
-        at_work: How many of them have been heard of lately.
-        stuck: How many of those have been at one exercise for long.
-        lessons: Those that anybody has begun.
-        fails: What fails most often first.
-        learners: Who they are, with those who are stuck first.
-        exercise_count: How many exercises the course has.
-        certain: Whether the machine vouches for all names.
-        silent: How many of the class share nothing, as far as that is known.
-        note: What is wrong; `''` if nothing is.
+        shared: Number of learners who share their progress.
+        at_work: Number of those with recent activity.
+        stuck: Number of those who have been at one exercise for long.
+        lessons: Lessons that anybody has begun.
+        fails: Most frequent failures first.
+        learners: Learners, those who are stuck first.
+        exercise_count: Number of exercises in the course.
+        certain: Whether names are those of accounts, which learners can't choose.
+        silent: Number of learners in the class who share nothing, as far as known.
+        note: Any problem; `''` if there is none.
     """
 
     shared: int = 0
@@ -98,7 +98,7 @@ class Board:
 
     @property
     def told(self) -> str:
-        """What can be known of it at all."""
+        """How far the data can be trusted."""
         if not self.shared:
             return EMPTY
         names = NAMES_OF_ACCOUNTS if self.certain else NAMES_TOLD
@@ -107,12 +107,7 @@ class Board:
 
 
 def text_form(board: Board, *, names: bool) -> str:
-    """Return a class as lines of text.
-
-    Args:
-        board: The class.
-        names: Whether to tell who is who.
-    """
+    """Return a class as lines of text, with the names of learners if `names`."""
     lines = [
         f'Class: {board.shared} share their progress, {board.at_work} at work, '
         f'{board.stuck} stuck.'

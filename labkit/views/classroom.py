@@ -1,7 +1,6 @@
-"""A class, live, for the projector or for the teacher alone.
+"""A live view of a class, for the projector or for the teacher alone.
 
-The page gets words and numbers and puts them in as text. What is stored in the notebook has no
-names in it, so that a teacher can hand it on.
+The stored output has no names in it, so that a teacher can share the notebook.
 """
 
 from __future__ import annotations
@@ -14,13 +13,13 @@ from typing import Any
 from labkit import settings
 from labkit.views.class_board import Board, text_form
 from labkit.views.live import helper
-from labkit.views.live_page import LivePage, News
+from labkit.views.live_page import LivePage, Update
 
 __all__ = ['Classroom']
 
-# So often it is looked at what learners have sent, s.
-LOOK_SEC = 2.0
-# A folder that has not answered for so long may be one of a network that is gone, s.
+# Period of reading the folder of the class, s.
+READ_SEC = 2.0
+# A folder that has not answered for this long may be on a disconnected network drive, s.
 SILENT_SEC = 20.0
 SILENT = 'The folder of the class does not answer. This is how it was before.'
 
@@ -29,45 +28,45 @@ class Classroom(LivePage):
     """A live view of a class, to be shown in a cell; see `labkit.teaching.classroom`.
 
     Args:
-        look: Returns what is true of the class now.
-        names: Whether to tell who is who.
+        read: Returns the current state of the class.
+        names: Whether to show names.
     """
 
     _name = 'classroom'
     _period = 0.5
 
-    def __init__(self, look: Callable[[], Board], *, names: bool) -> None:
-        self._look, self._names = look, names
-        self._board, self._answered_at = look(), time.monotonic()
-        self._looking: _Looking | None = None
+    def __init__(self, read: Callable[[], Board], *, names: bool) -> None:
+        self._read, self._names = read, names
+        self._board, self._answered_at = read(), time.monotonic()
+        self._reader: _Reader | None = None
         if settings.audience().live:
-            helper()  # which the page's side of a view lives with
+            helper()  # the view's page needs it
         super().__init__()
 
     def __repr__(self) -> str:
-        return text_form(self._look(), names=self._names)
+        return text_form(self._read(), names=self._names)
 
-    def _still(self) -> dict[str, str]:
-        # A program may have names in its output, if it asks for them; a notebook is handed on.
+    def _static(self) -> dict[str, str]:
+        # A program may print names if asked to; a notebook gets shared.
         return {'text/plain': text_form(self._board, names=self._names and not self._watched)}
 
     def _open(self) -> None:
         with self._lock:
             super()._open()
-            self._looking = _Looking(self._look, self._take)
-            self._looking.start()
+            self._reader = _Reader(self._read, self._on_board)
+            self._reader.start()
 
     def _close(self) -> None:
         with self._lock:
-            if self._looking is not None:
-                self._looking.end()
-                self._looking = None
+            if self._reader is not None:
+                self._reader.stop()
+                self._reader = None
             super()._close()
 
-    def _take(self, board: Board) -> None:
+    def _on_board(self, board: Board) -> None:
         self._board, self._answered_at = board, time.monotonic()
 
-    def _news(self, everything: bool) -> News:
+    def _update(self, everything: bool) -> Update:
         board = self._board
         silent = time.monotonic() - self._answered_at > SILENT_SEC
         state: dict[str, Any] = {
@@ -78,10 +77,10 @@ class Classroom(LivePage):
             'note': SILENT if silent else board.note,
             'told': board.told,
         }
-        return self._new_of(state), []
+        return self._changes(state), []
 
     def _learners(self, board: Board) -> list[list[Any]] | None:
-        """Return a row a learner; None if nobody is to be named."""
+        """Return one row per learner; None without names."""
         if not self._names:
             return None
         return [
@@ -99,22 +98,22 @@ class Classroom(LivePage):
         ]
 
 
-class _Looking(threading.Thread):
-    """Looks again and again, in a thread of its own: ROS does not wait for a slow folder."""
+class _Reader(threading.Thread):
+    """Reads the class periodically, in its own thread: ROS must not wait for a slow folder."""
 
-    def __init__(self, look: Callable[[], Board], take: Callable[[Board], None]) -> None:
+    def __init__(self, read: Callable[[], Board], callback: Callable[[Board], None]) -> None:
         super().__init__(name='labkit classroom', daemon=True)
-        self._look, self._take = look, take
-        self._ending = threading.Event()
+        self._read, self._on_board = read, callback
+        self._stopping = threading.Event()
 
-    def end(self) -> None:
-        """Look no more. A look that is on its way is not waited for."""
-        self._ending.set()
+    def stop(self) -> None:
+        """Stop reading, without waiting for a read in progress."""
+        self._stopping.set()
 
     def run(self) -> None:
-        """Look until the end."""
-        while not self._ending.is_set():
-            board = self._look()
-            if not self._ending.is_set():
-                self._take(board)
-            self._ending.wait(LOOK_SEC)
+        """Read until stopped."""
+        while not self._stopping.is_set():
+            board = self._read()
+            if not self._stopping.is_set():
+                self._on_board(board)
+            self._stopping.wait(READ_SEC)

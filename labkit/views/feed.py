@@ -1,7 +1,6 @@
-"""One topic as a view hears it: from the moment it appears, with a QoS that all publishers offer.
+"""One topic as a view receives it: as soon as it appears, with QoS that matches all publishers.
 
-Also what a person wants to know besides the messages: how many came and how often, who publishes,
-and why nothing comes.
+It also knows how many messages arrived and how often, who publishes, and why none arrive.
 """
 
 from __future__ import annotations
@@ -12,63 +11,62 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from labkit.asking.discovery import asking_node, is_only_process
+from labkit.asking.listener import Listener, least_profile
+from labkit.asking.silence import why_silent
 from labkit.background.compat import RCLError
-from labkit.background.discovery import alone, asking_node
 from labkit.background.nodes import node_exists
 from labkit.background.runtime import runtime
-from labkit.errors import LabError
+from labkit.errors import LabError, quoted
 from labkit.rosgraph.endpoints import Endpoint, publishers
 from labkit.rosgraph.interfaces import message_class, type_name
-from labkit.rosgraph.matching import nobody_publishes, other_type_here, why_silent
+from labkit.rosgraph.matching import nobody_publishes, other_type_here
 from labkit.rosgraph.names import full_topic_name
-from labkit.rosgraph.qos import match_all
 
 if TYPE_CHECKING:
     from rclpy.node import Node
     from rclpy.qos import QoSProfile
-    from rclpy.subscription import Subscription
 
-__all__ = ['STILL_SEC', 'Feed', 'checked_type', 'heard']
+__all__ = ['STILL_SEC', 'Feed', 'checked_type', 'subscribed']
 
-DEPTH = 100
-# The rate is that of the last messages of so many seconds, and of the last two at least.
+# The rate covers the messages of this many seconds, and at least the last two.
 RATE_SEC = 2.0
-# A topic is said to be silent when nothing has come for so long, in seconds.
+# A topic without messages for this long counts as silent, s.
 SILENT_SEC = 1.0
-# How long a still picture waits for messages, s, and for somebody to publish any: in this process,
-# or in another one, which may have been started just now.
+# How long a still picture waits for messages, s, and for a publisher: in this process, or in
+# another one, which may have just been started.
 STILL_SEC = 4.0
 NOBODY_SEC = 1.0
 NOBODY_ELSEWHERE_SEC = 3.0
 
 
 class Feed:
-    """The messages of one topic, for as long as it is open.
+    """The messages of one topic while it is open.
 
     Args:
         topic: Name of the topic, which need not exist yet.
-        node: The node that knows its full name.
-        take: Called in the background with each message.
-        msg_type: Class of the messages; None to take that of the publishers.
-        qos_profile: QoS profile of the subscription; None for one that hears all publishers.
-        raw: Whether `take` gets serialized messages.
+        node: A node that resolves the name.
+        callback: Callback for each message, called in the background.
+        msg_type: Class of the messages; None for the publishers' type.
+        qos_profile: QoS profile of the subscription; None for one that matches all publishers.
+        raw: Whether `callback` gets serialized messages.
 
     Attributes:
         topic: Full name of the topic.
-        msg_type: Class of the messages; None as long as it is not known.
-        publishers: Who publishes there.
-        count: How many messages have come.
-        heard_at: When the last one came, as `time.monotonic()` tells it.
+        msg_type: Class of the messages; None while it is unknown.
+        publishers: The publishers of the topic.
+        count: Number of messages received.
+        heard_at: `time.monotonic()` of the last message.
 
     Raises:
-        LabError: It is no name of a topic.
+        LabError: The name of the topic is invalid.
     """
 
     def __init__(
         self,
         topic: str,
         node: Node,
-        take: Callable[[Any], None],
+        callback: Callable[[Any], None],
         *,
         msg_type: type | None = None,
         qos_profile: QoSProfile | int | None = None,
@@ -80,52 +78,51 @@ class Feed:
         self.count = 0
         self.heard_at = 0.0
         self._profile_wanted, self._raw = qos_profile, raw
-        self._take = take
+        self._callback = callback
         self._node: Node | None = None
-        self._subscription: Subscription | None = None
-        self._profile: QoSProfile | None = None
+        self._listener: Listener | None = None
         self._problem = ''
         self._changed_at = 0.0
-        # Moments and how many messages had come by then.
+        # Pairs of a time and the count at that time.
         self._marks: deque[tuple[float, int]] = deque()
 
     # -- listening ------------------------------------------------------------------------------
 
     def open(self, node: Node) -> None:
-        """Listen from now on, if there is something to listen to."""
+        """Subscribe from now on, if there is anything to subscribe to."""
         self._node = node
         self._marks.clear()
         self._changed_at = time.monotonic()
-        self.look()
+        self.refresh()
 
     def close(self) -> None:
-        """Listen no more."""
+        """Unsubscribe."""
         self._unsubscribe()
         self._node = None
 
     @property
     def is_open(self) -> bool:
-        """Tell whether it listens, or waits for something to listen to."""
+        """Whether it is subscribed, or waiting for a publisher."""
         return self._node is not None
 
     @property
     def has_new_publishers(self) -> bool:
-        """Tell whether publishers have come or gone since the last look."""
+        """Whether publishers have appeared or gone since the last refresh."""
         assert self._node is not None
         return self._node.count_publishers(self.topic) != len(self.publishers)
 
     @property
     def is_settled(self) -> bool:
-        """Tell whether the last look has seen all publishers, and the names of their nodes."""
+        """Whether the last refresh saw all publishers and the names of their nodes."""
         return not self.has_new_publishers and all(end.is_known for end in self.publishers)
 
     @property
-    def is_promising(self) -> bool:
-        """Tell whether somebody publishes what is listened to."""
-        return self._subscription is not None and bool(self.publishers)
+    def is_connected(self) -> bool:
+        """Whether there is a subscription and a publisher."""
+        return self._listener is not None and bool(self.publishers)
 
-    def look(self) -> None:
-        """Look who publishes, and subscribe, subscribe anew or no more if that asks for it."""
+    def refresh(self) -> None:
+        """Update the publishers, and subscribe, resubscribe or unsubscribe to match them."""
         if self._node is None or not node_exists(self._node):
             return
         seen = publishers(self._node, self.topic)
@@ -133,86 +130,60 @@ class Feed:
             self.publishers, self._changed_at = seen, time.monotonic()
         self._problem = ''
         try:
-            msg_type = self._type_to_hear()
+            msg_type = self._type_to_use()
         except LabError as error:
             msg_type, self._problem = None, str(error)
         if msg_type is None:
             self._unsubscribe()
             return
         self.msg_type = msg_type
-        profile = self._profile_to_use()
-        wanted = (msg_type, profile.reliability, profile.durability)
-        if wanted != self._heard_as():
-            self._unsubscribe()
-            self._subscribe(profile)
+        offered = [end.qos for end in self.publishers if end.msg_type == type_name(msg_type)]
+        try:
+            if self._listener is not None and self._listener.msg_type is msg_type:
+                self._listener.follow(offered)
+            else:
+                self._unsubscribe()
+                self._listener = Listener(
+                    self._node,
+                    self.topic,
+                    msg_type,
+                    self._on_message,
+                    offered=offered,
+                    qos_profile=self._profile_wanted,
+                    raw=self._raw,
+                )
+        except (RCLError, LabError) as error:
+            self._listener = None
+            self._problem = other_type_here(self._node, self.topic, msg_type) or str(error)
 
-    def _type_to_hear(self) -> type | None:
-        """Return the class to subscribe to, None if it is not the time to."""
+    def _type_to_use(self) -> type | None:
+        """Return the class to subscribe to, None if it is too early."""
         types = sorted({end.msg_type for end in self.publishers})
         if self._wanted is not None:
-            # In one process, a publisher of another type would keep it from subscribing.
+            # Within one process, a publisher of another type would make subscribing fail.
             return self._wanted if not types or type_name(self._wanted) in types else None
         if len(types) > 1:
             raise LabError(
                 f'{self.topic} has messages of more than one type: {", ".join(types)}.',
-                todo=f'Name the one that you want: msg_type={types[0]!r}.',
+                todo=f'Name the one that you want: msg_type={quoted(types[0])}.',
             )
         return message_class(types[0]) if types else None
 
-    def _profile_to_use(self) -> QoSProfile:
-        from rclpy.qos import QoSProfile
-
-        if isinstance(self._profile_wanted, QoSProfile):
-            return self._profile_wanted
-        profile = QoSProfile(depth=self._profile_wanted or DEPTH)  # type: ignore[no-untyped-call]
-        name = type_name(self.msg_type)
-        offered = [end.qos for end in self.publishers if end.msg_type == name]
-        if offered and self._profile_wanted is None:
-            match_all(profile, offered)
-        return profile
-
-    def _heard_as(self) -> tuple[object, ...] | None:
-        if self._subscription is None or self._profile is None:
-            return None
-        profile = self._profile
-        return self._subscription.msg_type, profile.reliability, profile.durability
-
-    def _subscribe(self, profile: QoSProfile) -> None:
-        from rclpy.event_handler import SubscriptionEventCallbacks
-
-        assert self._node is not None
-        self._profile = profile
-        try:
-            self._subscription = self._node.create_subscription(
-                self.msg_type,
-                self.topic,
-                self._on_message,
-                profile,
-                # A view says itself what does not fit.
-                event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
-                raw=self._raw,
-            )
-        except (RCLError, LabError) as error:
-            self._problem = other_type_here(self._node, self.topic, self.msg_type) or str(error)
-
     def _unsubscribe(self) -> None:
-        if self._subscription is not None and self._node is not None and node_exists(self._node):
-            self._node.destroy_subscription(self._subscription)
-        self._subscription = None
+        if self._listener is not None:
+            self._listener.close()
+        self._listener = None
 
     def _on_message(self, message: Any) -> None:
-        # As light as can be: it may be called thousands of times a second.
+        # Keep it cheap: it may be called thousands of times a second.
         self.count += 1
         self.heard_at = time.monotonic()
-        self._take(message)
+        self._callback(message)
 
-    # -- what there is to say -------------------------------------------------------------------
+    # -- status ---------------------------------------------------------------------------------
 
     def rate(self) -> float | None:
-        """Return how many messages come in a second; None as long as that is not known.
-
-        To be asked several times a second.
-        """
+        """Return the rate of messages, Hz, None while unknown; call it several times a second."""
         now = time.monotonic()
         if self.count and (not self._marks or self._marks[-1][1] != self.count):
             self._marks.append((self.heard_at, self.count))
@@ -227,7 +198,7 @@ class Feed:
         return 1 / interval if interval > 0 else None
 
     def silence(self) -> str:
-        """Return why nothing comes and what to do, '' as long as all is well."""
+        """Return why nothing arrives and what to do, '' if all is well."""
         since = time.monotonic() - max(self.heard_at, self._changed_at)
         if self._node is None or not node_exists(self._node):
             return ''
@@ -235,37 +206,39 @@ class Feed:
             return self._problem
         if not self.publishers:
             return nobody_publishes(self._node, self.topic)
-        if self.msg_type is None or (self._subscription is not None and since < SILENT_SEC):
+        listener = self._listener
+        if self.msg_type is None or (listener is not None and since < SILENT_SEC):
             return ''
         interval = 1 / (self.rate() or 1)
-        if self.count and since < 3 * interval and self._subscription is not None:
+        if self.count and since < 3 * interval and listener is not None:
             return ''
-        return why_silent(self._node, self.topic, self.msg_type, self._profile_to_use())
+        profile = listener.profile if listener is not None else least_profile()
+        return why_silent(self._node, self.topic, self.msg_type, profile, patience_sec=0.0)
 
 
 @contextmanager
-def heard(
+def subscribed(
     feeds: Sequence[Feed], enough: Callable[[], object], *, timeout_sec: float = STILL_SEC
 ) -> Iterator[None]:
-    """Wait for messages of topics; they stay open for as long as a `with` block lasts.
+    """Wait for messages of topics, which stay open while the `with` block runs.
 
     Args:
-        feeds: The topics. Those that are open stay so.
-        enough: Tells whether there are enough messages. Waiting ends too when time is over, or
-            when nobody publishes one of the topics.
+        feeds: The topics. Those that are already open stay open.
+        enough: Tells whether there are enough messages. Waiting also ends at the timeout, or when
+            a topic has no publisher.
         timeout_sec: Seconds to wait.
     """
     node = asking_node()
-    begin, patience = time.monotonic(), NOBODY_SEC if alone() else NOBODY_ELSEWHERE_SEC
+    begin, patience = time.monotonic(), NOBODY_SEC if is_only_process() else NOBODY_ELSEWHERE_SEC
 
     def done() -> bool:
         for feed in feeds:
             if not feed.is_settled:
-                feed.look()
+                feed.refresh()
         late = time.monotonic() - begin > patience
         settled = all(feed.is_settled for feed in feeds)
         return bool(settled and enough()) or (
-            late and not all(feed.is_promising for feed in feeds)
+            late and not all(feed.is_connected for feed in feeds)
         )
 
     closed = [feed for feed in feeds if not feed.is_open]
@@ -280,7 +253,7 @@ def heard(
 
 
 def checked_type(msg_type: type | str | None) -> type | None:
-    """Return the class that a learner names: a class, `'std_msgs/msg/String'`, or None.
+    """Return the message class for a class, a name such as `'std_msgs/msg/String'`, or None.
 
     Raises:
         LabError: There is no such type.
@@ -291,6 +264,6 @@ def checked_type(msg_type: type | str | None) -> type | None:
     if msg_type is None or hasattr(msg_type, 'get_fields_and_field_types'):
         return msg_type
     raise LabError(
-        f'msg_type must be a message class, or the name of one, but it is {msg_type!r}.',
+        f'msg_type must be a message class, or the name of one, but it is {quoted(msg_type)}.',
         todo="Write msg_type='std_msgs/msg/String', or leave it out.",
     )

@@ -223,17 +223,18 @@ function render({ model, el }) {
   const name = element('strong');
   const about = element('span');
   const details = element('p', { className: 'labkit-graph-details' }, name, about);
-  const hint = 'Point at a part, or press Tab and the arrow keys, to know more of it.';
+  const known = { then: false, changed: false };
+  const hint = () => `Point at a part${known.svg?.includes('"sign"') ? ' with a sign' : ''}, `
+    + 'or press Tab and the arrow keys, to know more of it.';
   const drawing = new Drawing(([first, ...lines]) => {
     setText(name, first ?? '');
-    setText(about, first ? lines.join(' · ') : hint);
+    setText(about, first ? lines.join(' · ') : hint());
   });
   const send = (content) => kernel.send(content);
   const switches = makeSwitches(send);
   const back = element('button', { type: 'button', textContent: 'Show it' });
   const since = element('span');
   const changed = element('p', { className: 'labkit-graph-changed', hidden: true }, since, back);
-  const known = { then: false, changed: false };
   const showChanged = () => {
     changed.hidden = !known.changed && !known.then;
     setText(since, known.then

@@ -1,18 +1,20 @@
 """The graph as a picture: `lab.graph()`.
 
-The drawing is an SVG of our own, in the colours of the course's pictures, which every viewer of a
-notebook shows. In JupyterLab the same drawing is live. In a terminal, and for screen readers, the
-graph is told in words.
+The drawing is an SVG in the colours of the course's pictures, which every notebook viewer shows.
+In JupyterLab the same drawing is live. Terminals and screen readers get the graph in words.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from labkit import settings
-from labkit.background.discovery import soon
-from labkit.errors import LabError
+from labkit.asking.discovery import poll_until
+from labkit.errors import LabError, quoted
 from labkit.rosgraph.snapshot import Graph, is_whole, read_graph
+from labkit.silent.kinds import Fault, in_words
+from labkit.silent.watch import faults
 from labkit.views.graph_picture import Picture
 from labkit.views.live import helper
 from labkit.views.themed import as_source, picture
@@ -20,17 +22,13 @@ from labkit.views.themed import as_source, picture
 if TYPE_CHECKING:
     from labkit.views.graph_live import LiveGraph
 
-__all__ = ['GraphView', 'bundle', 'graph']
+__all__ = ['GraphView', 'bundle', 'graph', 'names_of', 'not_drawn']
 
 EMPTY = 'No node is running. Start one with lab.spin(node) and look again.'
 
 
 class GraphView:
-    """The computation graph of one moment, to be shown in a cell.
-
-    Attributes:
-        data: The graph as data, see `labkit.rosgraph.snapshot.Graph`.
-    """
+    """The computation graph at one moment, to be shown in a cell."""
 
     def __init__(self, data: Graph) -> None:
         self.data = data
@@ -42,17 +40,29 @@ class GraphView:
         forms = bundle(self.data)
         drawing = forms.get('image/svg+xml')
         if drawing and settings.audience().live:
-            # JupyterLab shows an SVG without its words, and as wide as it likes.
+            # JupyterLab would show an SVG without its text, and at any width.
             source = as_source('image/svg+xml', drawing.encode())
             forms['text/html'] = picture(forms['text/plain'], source)
         return forms
 
 
 def bundle(data: Graph) -> dict[str, str]:
-    """Return a graph as text, and as a picture if there is something to draw."""
+    """Return a graph as text, and as a picture if it has nodes."""
     if not data.nodes:
         return {'text/plain': EMPTY}
-    return {'text/plain': str(data), 'image/svg+xml': Picture(data).svg()}
+    found = not_drawn(faults())
+    text = '\n'.join(filter(None, [str(data), in_words(found)]))
+    return {'text/plain': text, 'image/svg+xml': Picture(data, wrong=names_of(found)).svg()}
+
+
+def not_drawn(found: Iterable[Fault]) -> list[Fault]:
+    """Leave out the faults that the picture itself shows: two ends that do not match."""
+    return [one for one in found if not one.kind.id.startswith(('qos.', 'types.'))]
+
+
+def names_of(found: Iterable[Fault]) -> set[str]:
+    """Return the nodes and topics that faults are about."""
+    return {name for one in found for name in (*one.nodes, one.about)}
 
 
 def graph(
@@ -60,26 +70,26 @@ def graph(
 ) -> GraphView | LiveGraph:
     """Show the computation graph: which nodes run, and which topics connect them.
 
-    Nodes are round, topics are boxes, an arrow is the way of the messages. A service has six
-    corners, an action has double sides and thick arrows. Nodes of other processes have a dashed
-    border. Where a subscription can't hear a publisher, a dashed arrow with a red cross leads to
-    it, and says whom and why.
+    Nodes are round, topics are boxes, and arrows show where messages go. Services are hexagons,
+    actions have double sides and thick arrows. Nodes of other processes have a dashed border.
+    What is in a namespace is in a frame. Where a subscription can't receive from a publisher, a
+    dashed arrow with a red cross says why. A part with another silent fault has a warning sign.
 
-    In JupyterLab the picture is live: it follows what comes and goes, dots show messages that
-    pass, and each part tells more when it is pointed at, or reached with Tab and the arrow keys.
-    For that, what this notebook publishes and hears is counted. What other processes publish is
-    subscribed to by a hidden node, while the picture is seen and no cell runs.
+    In JupyterLab the picture is live: it follows changes, dots show passing messages, and each
+    part tells more when pointed at, or reached with Tab and the arrow keys, a fault included.
+    Messages of this notebook are counted as they pass; those of other processes are subscribed to
+    by a hidden node, while the picture is visible and no cell is running.
 
     Args:
         services: Whether to show services too.
-        actions: Whether to show actions; one is drawn as one thing, not as what it consists of.
+        actions: Whether to show actions, each as one thing instead of its topics and services.
         hidden: Whether to show hidden nodes and topics, and those that every node has.
         live: Whether the picture is live in JupyterLab, until the cell is run again or ROS is
             stopped. False for a picture of this moment.
 
     Returns:
-        What a cell shows as a picture, and `print()` as text. `.data` is the graph as data, and
-        `.close()` ends a live one.
+        A picture in a cell, text for `print()`. `.data` is the graph as data, and `.close()` ends
+        a live picture.
 
     Raises:
         LabError: An argument is neither True nor False.
@@ -87,9 +97,9 @@ def graph(
     given = {'services': services, 'actions': actions, 'hidden': hidden, 'live': live}
     for name, value in given.items():
         if not isinstance(value, bool):
-            raise LabError(f'{name} must be True or False, but it is {value!r}.')
+            raise LabError(f'{name} must be True or False, but it is {quoted(value)}.')
     node = helper()
-    soon(lambda: is_whole(node))
+    poll_until(lambda: is_whole(node))
     if live and settings.audience().live:
         from labkit.views.graph_live import LiveGraph
 

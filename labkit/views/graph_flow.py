@@ -1,39 +1,40 @@
-"""What the live picture of a graph tells of each of its parts: type, QoS, rate, and what to do."""
+"""The details of each part of a live graph picture: type, QoS, rate, and what to do."""
 
 from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable, Mapping
 
-from labkit.background.traffic import Way
+from labkit.asking.traffic import Way
 from labkit.rosgraph.endpoints import Endpoint
 from labkit.rosgraph.snapshot import Graph, GraphTopic
+from labkit.silent.watch import seen_about
 from labkit.views.graph_picture import Line, Picture, Shape
 
 __all__ = ['Flow', 'in_hertz', 'parts', 'way_of']
 
-# A rate is that of the last messages of so many seconds, and of the last two at least.
+# A rate covers the messages of this many seconds, and at least the last two.
 RATE_SEC = 3.0
-# A topic is said to be silent when nothing has come for so long, s, or for three intervals.
+# A topic without messages for this long, s, or for three intervals, counts as silent.
 SILENT_SEC = 1.5
 
 
 class Flow:
-    """How often messages pass at one place."""
+    """The rate of messages along one arrow."""
 
     def __init__(self) -> None:
-        # Moments and how many had passed by then.
+        # Pairs of a time and the total at that time.
         self._marks: deque[tuple[float, int]] = deque()
 
     def add(self, now: float, count: int) -> None:
-        """Note that so many have passed just now."""
+        """Count messages that have just passed."""
         total = self._marks[-1][1] if self._marks else 0
         self._marks.append((now, total + count))
         while len(self._marks) > 2 and self._marks[1][0] <= now - RATE_SEC:
             self._marks.popleft()
 
     def rate(self, now: float) -> float:
-        """Return how many pass in a second, Hz."""
+        """Return the rate, Hz."""
         if len(self._marks) < 2:
             return 0.0
         (begin, before), (end, after) = self._marks[0], self._marks[-1]
@@ -42,24 +43,19 @@ class Flow:
 
 
 def in_hertz(rate: float) -> str:
-    """Return a rate with its unit; '' for none."""
+    """Return a rate with its unit; '' for zero."""
     if not rate:
         return ''
     return f'{rate:.2g} Hz' if rate < 99.5 else f'{rate:.0f} Hz'
 
 
 def way_of(line: Line) -> Way | None:
-    """Return what passes along an arrow; None for one that is not counted."""
+    """Return the endpoint that an arrow counts messages of; None if it counts none."""
     return (line.kind, line.node, line.other) if line.kind in ('publishes', 'hears') else None
 
 
 def parts(data: Graph, picture: Picture) -> dict[str, list[str]]:
-    """Return what is to be told of each part of a picture, in lines; the first is its name.
-
-    Args:
-        data: The graph.
-        picture: Its picture.
-    """
+    """Return the lines of details for each part of a picture, its name first."""
     topics = {topic.name: topic for topic in data.topics}
     found = {
         f'b{number}': _of_shape(shape, data, topics) for number, shape in enumerate(picture.shapes)
@@ -77,6 +73,7 @@ def _of_shape(shape: Shape, data: Graph, topics: Mapping[str, GraphTopic]) -> li
             *(f'Type: {name}' for name in topic.types),
             *_ends('Published by', topic.publishers),
             *_ends('Subscribed by', topic.subscriptions),
+            *_faults(topic.name),
         ]
     if shape.kind == 'node':
         lines = [f'Node {shape.name}', *([] if shape.own else ['In another process'])]
@@ -87,8 +84,14 @@ def _of_shape(shape: Shape, data: Graph, topics: Mapping[str, GraphTopic]) -> li
                 if shape.name in {end.node for end in getattr(topic, attribute)}
             ]
             lines += [f'{words}: {", ".join(names)}'] if names else []
-        return lines if len(lines) > 1 else [*lines, 'It neither publishes nor subscribes']
+        lines = lines if len(lines) > 1 else [*lines, 'It neither publishes nor subscribes']
+        return [*lines, *_faults(shape.name)]
     return [f'{shape.kind.capitalize()} {shape.name}', *(f'Type: {line}' for line in shape.small)]
+
+
+def _faults(name: str) -> list[str]:
+    """Return what is told about a node or a topic."""
+    return [line for fault in seen_about(name) for line in (f'⚠ {fault}', f'→ {fault.advice}')]
 
 
 def _of_line(line: Line, topics: Mapping[str, GraphTopic]) -> list[str]:
@@ -116,7 +119,7 @@ def _ends(words: str, ends: Iterable[Endpoint]) -> list[str]:
 
 
 def _about(ends: Iterable[Endpoint]) -> list[str]:
-    """Return type and QoS of the ends of one node, once if they are the same."""
+    """Return type and QoS of a node's endpoints, without duplicates."""
     return list(
         dict.fromkeys(
             f'{end.msg_type}, {_word(end.qos.reliability.name)}, {_word(end.qos.durability.name)}'

@@ -1,7 +1,6 @@
-"""The picture of the graph in JupyterLab: it follows what comes and goes, and what passes.
+"""The live graph picture of JupyterLab: it follows changes and passing messages.
 
-The graph is read, and messages are counted, only while the page says that a person can see the
-picture.
+It reads the graph and counts messages only while the page reports that the picture is visible.
 """
 
 from __future__ import annotations
@@ -10,20 +9,22 @@ import time
 from collections.abc import Iterator
 from typing import Any
 
-from labkit.background.traffic import Traffic, Way
+from labkit.asking.traffic import Traffic, Way
 from labkit.rosgraph.snapshot import Graph, read_graph
-from labkit.views.graph import bundle
+from labkit.silent.kinds import Fault
+from labkit.silent.watch import watch
+from labkit.views.graph import bundle, names_of, not_drawn
 from labkit.views.graph_flow import Flow, in_hertz, parts, way_of
 from labkit.views.graph_picture import WIDTH, Picture
 from labkit.views.graph_words import description
 from labkit.views.live import helper
-from labkit.views.live_page import LOOK_SEC, LivePage, News
+from labkit.views.live_page import REFRESH_SEC, LivePage, Update
 
 __all__ = ['LiveGraph']
 
-# A page may be narrower; then the picture is made smaller, px.
+# The picture shrinks with the page, down to this width, px.
 NARROWEST = 340.0
-# Rates are told so often, s: more often they can't be read.
+# Period of rates, s: faster changes can't be read.
 RATES_SEC = 1.0
 
 
@@ -31,7 +32,7 @@ class LiveGraph(LivePage):
     """The computation graph, live, to be shown in a cell; see `labkit.views.graph.graph`."""
 
     _name = 'graph'
-    # So often dots start on their way.
+    # Period of the dots that show messages.
     _period = 0.1
 
     def __init__(self, *, services: bool, actions: bool, hidden: bool) -> None:
@@ -39,9 +40,10 @@ class LiveGraph(LivePage):
         self._shown = {'services': services, 'actions': actions}
         self._width = WIDTH
         self._visible = False
-        # Whether the page shows how it was when the cell was run.
+        # Whether the page shows the graph as it was when the cell was run.
         self._then = False
         self._traffic = Traffic()
+        self._told: tuple[Fault, ...] = ()
         self._flows: dict[Way, Flow] = {}
         self._read_at = self._rated_at = 0.0
         self._first = self._now = self._read()
@@ -51,24 +53,23 @@ class LiveGraph(LivePage):
 
     @property
     def data(self) -> Graph:
-        """The graph as data, as it is now, see `labkit.rosgraph.snapshot.Graph`."""
-        return self._chosen(self._read() if self._can_look() else self._now)
+        """The current graph as data."""
+        return self._chosen(self._read() if self._can_read() else self._now)
 
     def __repr__(self) -> str:
-        return self._still()['text/plain']
+        return self._static()['text/plain']
 
-    def _still(self) -> dict[str, str]:
+    def _static(self) -> dict[str, str]:
         return bundle(self.data)
 
-    def _can_look(self) -> bool:
-        """Tell whether ROS is up: it is not started again from here."""
-        return not (self._ended or self._cut_off())
+    def _can_read(self) -> bool:
+        """Return whether ROS is up: a view must not restart it."""
+        return not (self._ended or self._why_stopped())
 
     def _read(self) -> Graph:
         return read_graph(helper(), include_hidden=self._hidden, include_services=True)
 
     def _chosen(self, data: Graph) -> Graph:
-        """Return what is to be shown of a graph."""
         services = data.services if self._shown['services'] else ()
         actions = data.actions if self._shown['actions'] else ()
         return Graph(data.nodes, data.topics, services, actions)
@@ -86,7 +87,7 @@ class LiveGraph(LivePage):
             self._traffic.close()
             super()._close()
 
-    def _hear(self, content: dict[str, Any]) -> None:
+    def _handle_request(self, content: dict[str, Any]) -> None:
         if isinstance(content.get('width'), (int, float)):
             self._width = min(max(float(content['width']), NARROWEST), WIDTH)
         for name in self._shown:
@@ -101,10 +102,10 @@ class LiveGraph(LivePage):
 
     # -- the page -------------------------------------------------------------------------------
 
-    def _news(self, everything: bool) -> News:
+    def _update(self, everything: bool) -> Update:
         now = time.monotonic()
-        due = everything or (self._visible and now - self._read_at >= LOOK_SEC)
-        if due and self._can_look():
+        due = everything or (self._visible and now - self._read_at >= REFRESH_SEC)
+        if due and self._can_read():
             self._read_at = now
             self._now = self._read()
             if self._visible:
@@ -114,28 +115,31 @@ class LiveGraph(LivePage):
         state: dict[str, Any] = {
             'then': self._then,
             'changed': self._chosen(self._first) != self._chosen(self._now),
-            # Nobody is asked for what is not there.
+            # Offer no switch for what does not exist.
             'switches': {name: on for name, on in self._shown.items() if getattr(whole, name)},
         }
-        if everything or chosen != self._drawn:
-            self._drawn, self._picture = chosen, Picture(chosen, self._width)
+        if everything or chosen != self._drawn or watch.seen != self._told:
+            self._told = watch.seen
+            self._drawn = chosen
+            self._picture = Picture(chosen, self._width, names_of(not_drawn(self._told)))
             state |= self._drawing()
         passed = self._passed(now)
         if now - self._rated_at >= RATES_SEC or everything:
             self._rated_at = now
             state['rates'] = self._rates(now)
-        news = self._new_of(state)
-        return ({**news, 'passed': passed} if passed else news), []
+        changes = self._changes(state)
+        return ({**changes, 'passed': passed} if passed else changes), []
 
     def _drawing(self) -> dict[str, Any]:
+        told = [description(self._drawn), *map(str, self._told)]
         return {
             'svg': self._picture.svg() if self._drawn.nodes else '',
             'parts': parts(self._drawn, self._picture),
-            'told': description(self._drawn) if self._drawn.nodes else '',
+            'told': ' '.join(told) if self._drawn.nodes else '',
         }
 
     def _passed(self, now: float) -> dict[str, int]:
-        """Return how many messages have passed along each arrow since the last time."""
+        """Return the number of messages along each arrow since the last call."""
         if not self._visible:
             return {}
         counts = self._traffic.passed(self._now.topics)
@@ -152,7 +156,7 @@ class LiveGraph(LivePage):
         return {name: in_hertz(flows[way].rate(now)) for name, way in self._ways() if way in flows}
 
     def _ways(self) -> Iterator[tuple[str, Way]]:
-        """Yield the arrows on which messages are counted, and what passes there."""
+        """Yield the name and the endpoint of each arrow with counted messages."""
         for number, line in enumerate(self._picture.lines):
             way = way_of(line)
             if way is not None:

@@ -1,20 +1,18 @@
-"""The computation graph as a drawing, in the shapes and colours of the course's pictures.
+"""The computation graph as an SVG, in the shapes and colours of the course's pictures.
 
-One drawing serves all: it is stored with a lesson, printed, and what moves in JupyterLab. A node
-is round, a topic is a box, a service has six corners, and an action has double sides, so nothing
-is told by colour alone. It has a ground of its own: where it is shown as an image, it does not
-know whether the page is dark.
+The same drawing is stored with a lesson, printed, and live in JupyterLab. Nodes are round, topics
+are boxes, services are hexagons, and actions have double sides, so nothing depends on colour. It
+has its own background, because an image can't know whether the page is dark.
 """
 
 from __future__ import annotations
 
 import zlib
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
 
 from labkit.rosgraph.snapshot import Graph, GraphNode
-from labkit.views.graph_layout import arrange
-from labkit.views.graph_part import TO_WORDS, Arrow, Box
+from labkit.views.graph_layout import HEADER, TO_WORDS, Arrow, Box, arrange
 from labkit.views.graph_words import (
     description,
     hearing,
@@ -26,30 +24,34 @@ from labkit.views.graph_words import (
 
 __all__ = ['WIDTH', 'Line', 'Picture', 'Shape']
 
-# As wide as a page of a notebook shows in full size, px.
+# Width that fits a notebook page at full size, px.
 WIDTH = 900.0
 MARGIN = 24.0
-# Sizes of letters and from line to line, px.
+# Font sizes and line height, px.
 NAME, SMALL, ROW = 15, 13, 18
-# Letters in a line.
+# Characters in a line.
 IN_NAME, IN_TYPE, IN_REASON = 28, 36, 30
-# Of a box: its least height, and what is added to its words, px.
-HEIGHT, PADDING = 48.0, 32.0
-# A box grows with its arrows: for each one, and up to, px.
-FOR_ARROW, HIGHEST = 14.0, 132.0
+# Least height of a box, and padding around its text, px.
+HEIGHT, PADDING = 48, 32
+# Height of a box per arrow, and its maximum, px.
+FOR_ARROW, HIGHEST = 14, 132
 # Half the size of a cross, px.
 CROSS = 11
-# Of many publishers that are not heard, so many are named.
+# At most this many unheard publishers are named.
 NAMED = 2
 
 INK, LINE, WRONG = '#1f2933', '#52606d', '#c62828'
-# kind -> colour of the ground, of the edge
+# A sign at a box that something is told about: fill, border, size in px.
+SIGN, SIGN_EDGE, SIGN_SIZE = '#ffc53d', '#7a4d00', 22
+# kind -> (fill, border)
 COLOURS = {
     'node': ('#e3f0fb', '#1f6fb2'),
     'topic': ('#fdf3d7', '#a8730a'),
     'service': ('#e3f6e8', '#1b7f3b'),
     'action': ('#f1eafa', '#6b3fa0'),
 }
+# Of the frame around a namespace; it is transparent.
+FRAME = '#9aa5b1'
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,11 +60,11 @@ class Shape:
 
     Attributes:
         kind: `'node'`, `'topic'`, `'service'` or `'action'`.
-        name: What it is called in the graph.
-        names: Its name in lines.
-        small: Lines under the name.
-        own: Whether it belongs to this process, for a node.
-        box: Where it is.
+        names: Its name, broken into lines.
+        small: Lines below the name.
+        own: Whether a node belongs to this process.
+        box: Its place.
+        wrong: Whether a fault is told about it, so that it has a sign.
     """
 
     kind: str
@@ -71,6 +73,7 @@ class Shape:
     small: list[str]
     own: bool
     box: Box
+    wrong: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,9 +83,9 @@ class Line:
     Attributes:
         kind: `'publishes'`, `'hears'`, `'apart'`, `'service'` or `'action'`.
         node: The node at one of its ends.
-        other: What is at the other end.
-        words: Lines beside it.
-        arrow: Where it is.
+        other: The topic, service or action at the other end.
+        words: Lines of its label.
+        arrow: Its route.
     """
 
     kind: str
@@ -96,17 +99,16 @@ class Picture:
     """A drawing of a graph.
 
     Args:
-        data: The graph.
-        width: It should not be wider, px.
+        width: Width not to exceed if possible, px.
+        wrong: Full names of the nodes and topics that a fault is told about.
 
     Attributes:
         shapes: Its boxes.
         lines: Its arrows.
-        width: Its size, px.
-        height: Its size, px.
+        width: Its size, px; likewise `height`.
     """
 
-    def __init__(self, data: Graph, width: float = WIDTH) -> None:
+    def __init__(self, data: Graph, width: float = WIDTH, wrong: Collection[str] = ()) -> None:
         self._data = data
         self.lines = list(_lines(data))
         self.shapes = [*map(_of_node, data.nodes)]
@@ -116,7 +118,10 @@ class Picture:
             ('action', data.actions),
         ):
             self.shapes += [_shape(kind, each.name, each.types) for each in found]
+        self.shapes = [replace(shape, wrong=shape.name in wrong) for shape in self.shapes]
+        self._frames = _frames(data)
         for shape in self.shapes:
+            shape.box.group = _frame_of(shape.name, self._frames)
             ends = [
                 sum(getattr(line.arrow, end) == shape.box.name for line in self.lines)
                 for end in ('tail', 'head')
@@ -130,16 +135,17 @@ class Picture:
         self.width, self.height = layout.width + 2 * MARGIN, layout.height + 2 * MARGIN
 
     def svg(self) -> str:
-        """Return the drawing as SVG, without scripts, and the same for the same graph."""
+        """Return the drawing as SVG, without scripts, the same for equal graphs."""
         named = [(f'a{number}', line) for number, line in enumerate(self.lines)]
         parts = [
-            # Those with words last: no line leads over words.
+            *(_frame_svg(space, box) for space, box in self._frames.items()),
+            # Those with labels last: no line may cross a label.
             *(_line_svg(*each) for each in sorted(named, key=lambda each: bool(each[1].words))),
             *(_shape_svg(f'b{number}', shape) for number, shape in enumerate(self.shapes)),
         ]
         drawn = '\n'.join(parts)
         told = safe(description(self._data))
-        # Several pictures in one page must not share the names of their parts.
+        # Several pictures on one page must not share ids.
         name = f'graph-{zlib.crc32((drawn + told).encode()):08x}'
         width, height = round(self.width), round(self.height)
         return f"""\
@@ -184,13 +190,25 @@ def _shape(
         *(text_width(line, SMALL) for line in under or ['']),
     )
     high = ROW * (len(names) + len(under)) + 18
-    box = Box(_box_name(kind, name), wide + PADDING, max(HEIGHT, high), kind == 'node')
+    box = Box(_box_name(kind, name), wide + PADDING, max(HEIGHT, high))
     return Shape(kind, name, names, under, own, box)
 
 
 def _box_name(kind: str, name: str) -> str:
-    """Return a name for a box: a node and a topic may be called the same."""
+    """Return a unique name: a node and a topic may have the same one."""
     return f'{kind} {name}'
+
+
+def _frames(data: Graph) -> dict[str, Box]:
+    """Return a box for each namespace that has nodes, but for the root."""
+    spaces = {node.name.rpartition('/')[0] for node in data.nodes}
+    return {space: Box(_box_name('namespace', space), 0, 0) for space in sorted(spaces - {''})}
+
+
+def _frame_of(name: str, frames: dict[str, Box]) -> Box | None:
+    """Return the box of the innermost namespace of a name."""
+    inside = [space for space in frames if name.startswith(f'{space}/')]
+    return frames[max(inside, key=len)] if inside else None
 
 
 def _lines(data: Graph) -> list[Line]:
@@ -219,7 +237,7 @@ def _line(
         tail, head = head, tail
     size = None
     if words:
-        size = (max(text_width(line, SMALL) for line in words), ROW * float(len(words)))
+        size = (max(text_width(line, SMALL) for line in words), ROW * len(words))
     return Line(kind, node, other, words or [], Arrow(tail, head, size))
 
 
@@ -257,7 +275,7 @@ def _shape_svg(name: str, shape: Shape) -> str:
                 f'<path class="side" d="M{side:.1f} {y:.1f} V{y + height:.1f}" stroke="{edge}" '
                 'stroke-width="2"/>'
             )
-    # Letters stand on their line: their middle is a third of their size above it.
+    # The middle of a line of text is a third of the font size above its baseline.
     down = box.y + 5 - ROW * (len(shape.names) + len(shape.small) - 1) / 2
     text = ''
     for number, line in enumerate([*shape.names, *shape.small]):
@@ -267,7 +285,30 @@ def _shape_svg(name: str, shape: Shape) -> str:
             f'<text x="{box.x:.1f}" y="{down + number * ROW:.1f}" text-anchor="middle" {style}>'
             f'{safe(line)}</text>'
         )
-    return f'<g class="{shape.kind}" data-part="{name}">{body}{text}</g>'
+    sign = _sign_svg(x + width - 10, y) if shape.wrong else ''
+    return f'<g class="{shape.kind}" data-part="{name}">{body}{text}{sign}</g>'
+
+
+def _sign_svg(x: float, y: float) -> str:
+    """Return a warning sign with its middle at a point."""
+    half = SIGN_SIZE / 2
+    return (
+        f'<path class="sign" d="M{x:.1f} {y - half:.1f} l{half:g} {SIGN_SIZE - 2:g} '
+        f'h-{SIGN_SIZE:g} z" fill="{SIGN}" stroke="{SIGN_EDGE}" stroke-width="1.5" '
+        'stroke-linejoin="round"/>'
+        f'<text x="{x:.1f}" y="{y + half - 4:.1f}" text-anchor="middle" font-weight="bold" '
+        f'font-size="{SMALL}" fill="{SIGN_EDGE}">!</text>'
+    )
+
+
+def _frame_svg(space: str, box: Box) -> str:
+    left, top = box.x - box.width / 2, box.y - box.height / 2
+    return (
+        f'<g class="namespace"><rect x="{left:.1f}" y="{top:.1f}" width="{box.width:.1f}" '
+        f'height="{box.height:.1f}" rx="12" fill="{FRAME}" fill-opacity="0.12" '
+        f'stroke="{FRAME}"/><text class="small" x="{left + 14:.1f}" y="{top + HEADER - 4:.1f}" '
+        f'font-size="{SMALL}">{safe(space)}</text></g>'
+    )
 
 
 def _line_svg(name: str, line: Line) -> str:

@@ -1,48 +1,48 @@
-"""The words in the picture of a graph: broken into lines, measured, and safe in an SVG."""
+"""The text in a graph picture: line breaks, widths, escaping; and the graph in sentences."""
 
 from __future__ import annotations
 
 import re
 from html import escape
 
+from labkit.errors import printable
 from labkit.rosgraph.matching import why_apart
 from labkit.rosgraph.snapshot import Graph, GraphTopic
 
 __all__ = ['description', 'hearing', 'in_lines', 'safe', 'text_width', 'unheard']
 
-# Advance widths of DejaVu Sans, in parts of the font's size: of the usual fonts the widest.
+# Advance widths of DejaVu Sans, the widest of the usual fonts, in hundredths of the font size.
 _WIDTHS = {
-    0.35: " ',.IJijl",
-    0.42: '!()-/:;[\\]frt|',
-    0.56: '"*_`sz',
-    0.63: '?FLPTYacekovxy',
-    0.70: '$0123456789ABCEKRSVXZbdghnpqu{}',
-    0.80: '&DGHNOQUw',
-    0.88: '#+<=>M^~',
-    1.0: '%@Wm',
+    35: " ',.IJijl",
+    42: '!()-/:;[\\]frt|',
+    56: '"*_`sz',
+    63: '?FLPTYacekovxy',
+    70: '$0123456789ABCEKRSVXZbdghnpqu{}',
+    80: '&DGHNOQUw',
+    88: '#+<=>M^~',
+    100: '%@Wm',
 }
 _WIDTH_OF = {char: width for width, chars in _WIDTHS.items() for char in chars}
-_BOLD = 1.1
+# Width of bold and regular type, in percent.
+_BOLD, _REGULAR = 110, 100
 
 
-def text_width(text: str, size: float, *, bold: bool = False) -> float:
-    """Return how wide a line of text is at most, px.
+def text_width(text: str, size: int, *, bold: bool = False) -> int:
+    """Return the greatest width of a line of text, px.
 
-    Args:
-        text: The line.
-        size: Size of the font, px.
-        bold: Whether it is bold.
+    Whole numbers: sums of floats differ between Python versions.
     """
-    return sum(_WIDTH_OF.get(char, 1.0) for char in text) * size * (_BOLD if bold else 1.0)
+    hundredths = sum(_WIDTH_OF.get(char, 100) for char in text) * (_BOLD if bold else _REGULAR)
+    return -(-hundredths * size // 10_000)
 
 
 def in_lines(text: str, limit: int) -> list[str]:
-    """Return text in lines: broken at spaces, and a long name after `/` or `_`.
+    """Return text broken into lines: at spaces, and long names after `/` or `_`.
 
     Args:
         text: The text.
-        limit: Letters in a line. A part of a name that is longer stays whole, up to half as much
-            again.
+        limit: Characters in a line. A longer part of a name stays whole, up to 1.5 times the
+            limit.
     """
     most = limit + limit // 2
     pieces = []
@@ -63,13 +63,13 @@ def in_lines(text: str, limit: int) -> list[str]:
 
 
 def safe(text: str) -> str:
-    """Return text that means nothing but itself in an SVG."""
-    # What has no form may not be in an SVG at all.
-    return escape(''.join(char if char.isprintable() else '\ufffd' for char in text))
+    """Return text escaped for an SVG."""
+    # Unprintable characters are not allowed in an SVG at all.
+    return escape(printable(text))
 
 
 def unheard(topic: GraphTopic) -> dict[str, dict[str, list[str]]]:
-    """Return who does not hear whom: subscribing node -> reason -> publishing nodes."""
+    """Return who does not hear whom: subscriber -> reason -> publishers."""
     found: dict[str, dict[str, list[str]]] = {}
     for pair in topic.mismatches():
         found.setdefault(pair.subscription, {}).setdefault(pair.reason, []).append(pair.publisher)
@@ -77,7 +77,7 @@ def unheard(topic: GraphTopic) -> dict[str, dict[str, list[str]]]:
 
 
 def hearing(topic: GraphTopic) -> list[str]:
-    """Return the subscribing nodes that hear somebody, or would if somebody published."""
+    """Return the subscribers that hear a publisher, or would if there were any."""
     return list(
         dict.fromkeys(
             end.node
@@ -88,11 +88,7 @@ def hearing(topic: GraphTopic) -> list[str]:
 
 
 def description(data: Graph) -> str:
-    """Return the graph in sentences, with arrows: what a picture of it shows.
-
-    Args:
-        data: The graph.
-    """
+    """Return the graph in sentences."""
     said = []
     for topic in data.topics:
         publishers = list(dict.fromkeys(end.node for end in topic.publishers))

@@ -1,4 +1,4 @@
-"""Pictures in messages, as pixels that can be shown: each encoding of `sensor_msgs/msg/Image`.
+"""Images in messages as pixels: the encodings of `sensor_msgs/msg/Image`.
 
 Names of encodings: ros2/common_interfaces, sensor_msgs/include/sensor_msgs/image_encodings.hpp.
 Depth in metres (32FC1) and in millimetres (16UC1): REP 118.
@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from PIL import Image as Pixels
 
-from labkit.errors import LabError
+from labkit.errors import LabError, quoted
 
 if TYPE_CHECKING:
     from sensor_msgs.msg import Image
 
 __all__ = ['Picture', 'picture_of', 'to_jpeg', 'to_png']
 
-# Encoding -> numbers in a pixel, their type, and the order of red, green and blue among them.
+# Encoding -> numbers per pixel, their type, and the positions of red, green and blue.
 _COLOURS = {
     'rgb8': (3, 'u1', (0, 1, 2)),
     'bgr8': (3, 'u1', (2, 1, 0)),
@@ -30,19 +30,19 @@ _COLOURS = {
     'bgr16': (3, 'u2', (2, 1, 0)),
 }
 _GREYS = {'mono8': 'u1', '8UC1': 'u1', 'mono16': 'u2'}
-# Encoding -> type of the numbers, and how many there are in a metre.
+# Encoding -> type of the numbers, and units per metre.
 _DEPTHS = {'16UC1': ('u2', 1000.0), '32FC1': ('f4', 1.0)}
-# To the page goes no more than this: width and height, pixels; quality of a JPEG, 0 to 100.
+# Limits for the page: width and height, px; JPEG quality, 0 to 100.
 LARGEST = (640, 480)
 QUALITY = 80
 
 
 class Picture(NamedTuple):
-    """A picture that can be shown.
+    """An image ready to be shown.
 
     Attributes:
         pixels: Rows of pixels, 0 to 255: grey, or red, green and blue.
-        words: What it is: size, encoding, and for a depth what light and dark mean.
+        words: Size and encoding, and for a depth image the meaning of light and dark.
     """
 
     pixels: Any
@@ -50,10 +50,10 @@ class Picture(NamedTuple):
 
 
 def picture_of(message: Image) -> Picture:
-    """Return what a message shows.
+    """Return the image of a message.
 
     Raises:
-        LabError: Its encoding can't be shown, or it has fewer bytes than it says.
+        LabError: The encoding is unsupported, or the data is shorter than stated.
     """
     name = message.encoding
     words = f'{message.width} x {message.height} pixels, {name}'
@@ -69,21 +69,21 @@ def picture_of(message: Image) -> Picture:
     else:
         known = ', '.join([*_COLOURS, *_GREYS, *_DEPTHS])
         raise LabError(
-            f'Pictures with the encoding {name!r} can not be shown.',
+            f'Pictures with the encoding {quoted(name)} can not be shown.',
             todo=f'Let the camera publish one of these: {known}.',
         )
     return Picture(pixels, words)
 
 
 def to_jpeg(picture: Picture) -> bytes:
-    """Return a picture as a JPEG that is not too large for a page."""
+    """Return an image as a JPEG, scaled down for a page."""
     image = Pixels.fromarray(picture.pixels)
     image.thumbnail(LARGEST)
     return _saved(image, format='JPEG', quality=QUALITY)
 
 
 def to_png(picture: Picture) -> bytes:
-    """Return a picture as a PNG that is not too large for a page."""
+    """Return an image as a PNG, scaled down for a page."""
     image = Pixels.fromarray(picture.pixels)
     image.thumbnail(LARGEST)
     return _saved(image, format='PNG')
@@ -96,10 +96,11 @@ def _saved(image: Any, **options: Any) -> bytes:
 
 
 def _numbers(message: Image, kind: str, count: int) -> Any:
-    """Return the numbers of a picture: rows, columns, and so many in a pixel."""
+    """Return the numbers of an image as an array: row, column, channel."""
     dtype = np.dtype(f'{">" if message.is_bigendian else "<"}{kind}')
     row = message.width * count * dtype.itemsize
-    step, height = message.step or row, message.height
+    # A single row has no next one, and its step may be any number.
+    step, height = message.step if message.step and message.height > 1 else row, message.height
     if not row or not height:
         raise LabError('The picture has no pixels.', todo='Look at its width and height.')
     if step < row or len(message.data) < step * (height - 1) + row:
@@ -108,7 +109,7 @@ def _numbers(message: Image, kind: str, count: int) -> Any:
             f'{message.encoding} in rows of {step} bytes, but it has {len(message.data)} bytes.',
             todo='The node that publishes it should set width, height, step and data to match.',
         )
-    # Rows may be longer than their pixels, but for the last one.
+    # Rows may be padded, except for the last one.
     data = np.zeros(step * height, np.uint8)
     given = np.frombuffer(message.data, np.uint8)[: step * height]
     data[: len(given)] = given
@@ -117,15 +118,14 @@ def _numbers(message: Image, kind: str, count: int) -> Any:
 
 
 def _as_bytes(numbers: Any) -> Any:
-    """Return numbers of 8 or 16 bits as 8 bits."""
     if numbers.dtype.itemsize == 2:
         numbers = numbers >> 8
     return np.ascontiguousarray(numbers.astype(np.uint8))
 
 
 def _depth(metres: Any) -> tuple[Any, str]:
-    """Return distances as grey, what is near is light; and what that means, in words."""
-    known = np.isfinite(metres) & (metres > 0)  # 0 or not a number: not measured
+    """Return distances as grey, near is light; and a description of that."""
+    known = np.isfinite(metres) & (metres > 0)  # 0 and NaN: not measured
     if not known.any():
         return np.zeros(metres.shape, np.uint8), ', a depth of which nothing was measured'
     near, far = float(metres[known].min()), float(metres[known].max())

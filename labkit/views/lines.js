@@ -7,10 +7,11 @@ const LETTERS = 14;
 const [LEFT, RIGHT, TOP, BOTTOM, GAP] = [64, 12, 10, 38, 14];
 const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 2], [1, 4]]; // see plot_picture.py
 const PANEL = { one: 230, many: 150 };
+const [HUGE, TINY] = [Number.MAX_VALUE, 1e-302]; // see plot_picture.py
 
 // Round numbers from low to high, some `most` of them.
 function ticks(low, high, most) {
-  const rough = (high - low) / most;
+  const rough = Math.min(high - low, HUGE) / most;
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = power * [1, 2, 5, 10].find((each) => each * power >= rough * 0.999);
   const found = [];
@@ -34,12 +35,9 @@ function limits(lines) {
     }
   }
   if (low > high) return [0, 1];
-  if (low === high) {
-    const room = Math.abs(low) / 2 || 0.5;
-    return [low - room, high + room];
-  }
-  const room = (high - low) * 0.06;
-  return [low - room, high + room];
+  let room = high - low > TINY ? Math.min(high - low, HUGE) * 0.06 : Math.abs(low) / 2;
+  if (room <= TINY) room = 0.5;
+  return [Math.max(low - room, -HUGE), Math.min(high + room, HUGE)];
 }
 
 class Sheet {
@@ -90,7 +88,9 @@ class Sheet {
     const { context } = this;
     const right = this.width - RIGHT;
     const [low, high] = limits(lines);
-    const py = (value) => top + (height * (high - value)) / (high - low);
+    // Smaller by a power of two, since the difference of great numbers is infinite.
+    const span = high / 1024 - low / 1024;
+    const py = (value) => top + (height * (high / 1024 - value / 1024)) / span;
     context.lineWidth = 1;
     context.setLineDash([]);
     context.strokeStyle = this.colour('line');

@@ -24,8 +24,10 @@ function makeView(model, el) {
   el.setAttribute(suppress, 'true');
   const runs = (event) => event.key === 'Enter' && (event.shiftKey || event.ctrlKey || event.altKey);
   el.addEventListener('keydown', (event) => {
-    // The cell gets the keys then, as with Escape in its code.
-    if (event.key === 'Escape') el.closest('.jp-Cell')?.focus({ preventScroll: true });
+    // The cell gets the keys then, as with Escape in its code. In a panel there is none.
+    const cell = el.closest('.jp-Cell');
+    if (event.key === 'Escape' && cell) cell.focus({ preventScroll: true });
+    else if (event.key === 'Escape') document.activeElement.blur();
     if (!runs(event)) event.stopPropagation();
   });
   // JupyterLab hears a key before the view does.
@@ -57,6 +59,19 @@ function connect(model, lose) {
   };
   const disconnect = () => model.off('comm_live_update', end);
   return { send, disconnect };
+}
+
+// Close the panel of `lab.dock()`, if this is in one. It is a widget of its own, and outlives the
+// kernel: after a restart there would be two.
+async function closePanel(model) {
+  const panel = model.get('panel');
+  if (!panel) return;
+  try {
+    const { views } = await model.widget_manager.get_model(panel);
+    for (const view of Object.values(views ?? {})) (await view)._outputView?.dispose();
+  } catch {
+    // The kernel has closed it already.
+  }
 }
 
 // The place where a view says what is wrong.
@@ -108,6 +123,7 @@ function follow(model, el, take) {
     ended = GONE;
     take({ ended });
     show();
+    closePanel(model);
   });
   const watch = setInterval(() => {
     if (ended) return;

@@ -1,7 +1,8 @@
-"""The life of a live view: from the cell that shows it to whatever ends it.
+"""The lifetime of a live view, from the cell that shows it to its end.
 
-It lives until it is closed, until its cell is run again, or until ROS is stopped. What is shown in
-a page of its own ends for another reason too: nobody looks (`labkit.views.live_page`).
+It ends when it is closed, when its cell is run again, or when ROS is stopped. A view in a page
+also
+ends when nobody looks at it (`labkit.views.live_page`).
 """
 
 from __future__ import annotations
@@ -19,55 +20,51 @@ if TYPE_CHECKING:
     from rclpy.timer import Timer
     from typing_extensions import Self
 
-__all__ = ['STOPPED', 'Live', 'helper', 'living']
+__all__ = ['STOPPED', 'Live', 'helper', 'live_views']
 
 STOPPED = 'ROS was stopped. Run this cell to start it again.'
 
-# The views that live. (A dictionary, because that may be changed by one thread at any moment.)
+# The live views, in order. A dictionary, because one operation on it is atomic across threads.
 _views: dict[Live, None] = {}
 
 
 def helper() -> Node:
-    """Return labkit's hidden node, which listens for views: they are no part of the graph.
-
-    ROS is started if it is not up.
-    """
+    """Return labkit's hidden node, which subscribes for views; start ROS if it is not up."""
     runtime.start()
     assert runtime.helper is not None
     return runtime.helper
 
 
-def living() -> tuple[Live, ...]:
-    """Return the views that live, in the order in which they were made."""
+def live_views() -> tuple[Live, ...]:
+    """Return the live views, oldest first."""
     return tuple(_views)
 
 
 class Live:
-    """A view that follows what happens. What it shows is up to those that are made on it.
+    """A view that follows changes. Subclasses decide what it shows.
 
-    They extend `_open` and `_close`, which say when it listens, and do in `_tick` what is to be
-    done again and again meanwhile.
+    They extend `_open` and `_close`, and do their periodic work in `_tick`.
     """
 
-    # What it is called where it speaks of itself.
+    # Its name in messages.
     _name: ClassVar[str] = 'view'
-    # So often it looks for what is new, s.
+    # Period of `_tick`, s.
     _period: ClassVar[float]
 
     def __init__(self) -> None:
-        # A person looks at a page. Nobody is asked but here.
+        # Whether a person looks at a page. Asked only here.
         self._watched = settings.audience().live
-        # Pages speak in one thread, ROS in another one. Nobody waits while holding it.
+        # Pages call from one thread, ROS from another. Nothing may block while holding it.
         self._lock = threading.RLock()
-        # Both are there while it listens.
+        # Both exist while it is open.
         self._node: Node | None = None
         self._timer: Timer | None = None
-        # Why it has ended, '' if it has not.
+        # Why it has ended, '' while it is live.
         self._ended = ''
         self._cell = Cell()
 
     def close(self) -> None:
-        """Listen no more. What is shown stays as it is."""
+        """Unsubscribe. The last picture stays."""
         self._end(f'This {self._name} has ended. Run its cell to start a new one.')
 
     def __enter__(self) -> Self:
@@ -76,27 +73,25 @@ class Live:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    # -- from here on it lives ------------------------------------------------------------------
+    # -- lifetime -------------------------------------------------------------------------------
 
-    def _take_place(self) -> None:
-        """Live from now on, in place of what an earlier run of this cell has left."""
+    def _start(self) -> None:
+        """Register as live, and close the view of an earlier run of this cell."""
         self._cell = cell = runtime.console.current_cell()
-        for other in living():
+        for other in live_views():
             same = cell.cell_id and cell.cell_id == other._cell.cell_id
             if same and cell.request_id != other._cell.request_id and other is not self:
                 other.close()
         _views[self] = None
 
-    # -- listening ------------------------------------------------------------------------------
-
     def _open(self) -> None:
-        """Listen from now on, with labkit's hidden node."""
+        """Start to listen, with labkit's hidden node."""
         with self._lock:
             self._node = helper()
             self._timer = self._node.create_timer(self._period, self._on_timer)
 
     def _close(self) -> None:
-        """Listen no more, until it is opened again."""
+        """Stop listening until it is opened again."""
         with self._lock:
             if self._node is not None and self._timer is not None and node_exists(self._node):
                 self._node.destroy_timer(self._timer)
@@ -108,41 +103,35 @@ class Live:
                 self._tick()
 
     def _tick(self) -> None:
-        """Look for what is new, and show it."""
+        """Update the view."""
         raise NotImplementedError
 
-    # -- the end --------------------------------------------------------------------------------
-
-    def _cut_off(self) -> str:
+    def _why_stopped(self) -> str:
         """Return why it can't go on, '' if it can."""
-        # It is not started again from here: whoever stopped ROS meant to.
+        # A view must not restart ROS: stopping it was deliberate.
         gone = self._node is not None and self._node is not runtime.helper
         return STOPPED if gone or not runtime.started else ''
 
     def _on_destroyed(self) -> None:
-        """Some node has been destroyed."""
-        words = self._cut_off()
+        """Handle the destruction of any node."""
+        words = self._why_stopped()
         if words:
             self._end(words)
 
     def _end(self, words: str) -> None:
-        """Live no more.
-
-        Args:
-            words: Why, and what to do, for whoever looks at it.
-        """
+        """End the view; `words` tell the learner why, and what to do."""
         self._ended = self._ended or words
         _views.pop(self, None)
         self._close()
-        self._say_end()
+        self._show_end()
 
-    def _say_end(self) -> None:
+    def _show_end(self) -> None:
         """Show that it has ended, and why."""
         raise NotImplementedError
 
 
 def _on_destroyed() -> None:
-    for view in living():
+    for view in live_views():
         view._on_destroyed()
 
 

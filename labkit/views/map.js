@@ -1,4 +1,4 @@
-// A map of the floor on a canvas: a robot, its trail, walls and goals.
+// A map of the floor on a canvas: robots, their trails, walls and goals.
 
 const STEP = 0.25; // what is shown grows in steps of so many metres
 const MARGIN = 0.25;
@@ -15,12 +15,14 @@ const LIDAR = 0.035;
 const LEAST_PX = 13; // drawn no smaller than this radius
 const FADE_MS = 60000; // by then a point of the trail is as pale as it gets
 const SHADES = 10;
+const SEVERAL = 4; // colours of robots that share a map
 
-function emptyScene() {
-  return {
-    pose: null, trail: [], fades: false, scan: null, eye: null, goals: [], bump: null,
-    shown: [-LEAST, -LEAST, LEAST, LEAST],
-  };
+function emptyRobot(name = '') {
+  return { name, pose: null, trail: [], fades: false, scan: null, eye: null, bump: null };
+}
+
+function emptyScene(...robots) {
+  return { robots, goals: [], shown: [-LEAST, -LEAST, LEAST, LEAST] };
 }
 
 // Let [left, bottom, right, top] hold a point; it never shrinks, so that the map does not jump.
@@ -40,25 +42,22 @@ function numbers(bytes) {
   return new Float32Array(buffer.slice(byteOffset, byteOffset + byteLength));
 }
 
-function take(scene, news, scan) {
-  if (news.lifted) scene.trail = [];
-  if (news.goals) {
-    scene.goals = news.goals;
-    for (const [x, y] of scene.goals) include(scene.shown, x, y);
-  }
+function take(shown, robot, news, scan) {
+  if (news.lifted) robot.trail = [];
+  if (news.bump !== undefined) robot.bump = news.bump;
   if (news.pose) {
-    scene.pose = news.pose;
-    include(scene.shown, news.pose[0], news.pose[1]);
+    robot.pose = news.pose;
+    include(shown, news.pose[0], news.pose[1]);
   }
   for (let i = 0; i + 1 < (news.trail?.length ?? 0); i += 2) {
-    scene.trail.push([news.trail[i], news.trail[i + 1], performance.now()]);
-    include(scene.shown, news.trail[i], news.trail[i + 1]);
+    robot.trail.push([news.trail[i], news.trail[i + 1], performance.now()]);
+    include(shown, news.trail[i], news.trail[i + 1]);
   }
   if (news.eye) {
-    scene.scan = numbers(scan);
-    scene.eye = news.eye;
-    for (let i = 0; i < scene.scan.length; i += 2) {
-      include(scene.shown, scene.scan[i], scene.scan[i + 1]);
+    robot.scan = numbers(scan);
+    robot.eye = news.eye;
+    for (let i = 0; i < robot.scan.length; i += 2) {
+      include(shown, robot.scan[i], robot.scan[i + 1]);
     }
   }
 }
@@ -123,18 +122,24 @@ class Map2d {
     context.font = this.font;
     this.below(scene);
     this.grid();
-    const eye = scene.pose && (scene.eye ?? this.ahead(scene.pose, SCAN_X));
-    if (scene.scan && eye) {
-      this.fan(scene.scan, eye);
-      this.walls(scene.scan, eye);
+    const { robots } = scene;
+    for (const { pose, scan, eye: seen } of robots) {
+      const eye = pose && (seen ?? this.ahead(pose, SCAN_X));
+      if (scan && eye) {
+        this.fan(scan, eye);
+        this.walls(scan, eye);
+      }
     }
-    this.trail(scene.trail, scene.fades);
-    if (scene.pose) this.robot(...scene.pose);
-    // Above the robot, which may stand on one.
-    scene.goals.forEach(([x, y], index) => {
-      this.goal(x, y, scene.goals.length > 1 ? `${index + 1}` : '');
+    const colour = (index, only) => (robots.length > 1 ? `robot-${index % SEVERAL}` : only);
+    robots.forEach(({ trail, fades }, i) => this.trail(trail, fades, colour(i, 'trail')));
+    robots.forEach(({ name, pose }, i) => {
+      if (pose) this.robot(name, pose, colour(i, 'robot-0'));
     });
-    if (scene.bump) this.bump(...scene.bump);
+    // Above the robots, which may stand on one.
+    scene.goals.forEach(([x, y, yaw], index) => {
+      this.goal(x, y, scene.goals.length > 1 ? `${index + 1}` : '', yaw);
+    });
+    for (const { bump } of robots) if (bump) this.bump(...bump);
     this.ruler();
     if (cursor) this.cursor(cursor);
   }
@@ -147,7 +152,8 @@ class Map2d {
   grid() {
     const [left, top] = this.metres(0, 0);
     const [right, bottom] = this.metres(this.width, this.height);
-    const step = GRIDS.find((size) => size * this.scale >= GRID_PX) ?? 200;
+    const step = GRIDS.find((size) => size * this.scale >= GRID_PX)
+      ?? 10 ** Math.ceil(Math.log10(GRID_PX / this.scale));
     this.step = step;
     const multiples = (low, high) => {
       const [first, last] = [Math.ceil(low / step), Math.floor(high / step)];
@@ -204,7 +210,7 @@ class Map2d {
   }
 
   // Oldest first. Where it fades, points have times, and what is long ago is pale.
-  trail(points, fades) {
+  trail(points, fades, colour) {
     const { context } = this;
     const now = performance.now();
     const shade = ([, , time]) => (
@@ -214,14 +220,15 @@ class Map2d {
     for (let i = 1; i < points.length; i += 1) {
       if (i + 1 === points.length || shade(points[i + 1]) !== shade(points[i])) {
         context.globalAlpha = 1 - (0.85 * shade(points[i])) / SHADES;
-        this.line(points.slice(begin, i + 1), 'trail', 2.5);
+        this.line(points.slice(begin, i + 1), colour, 2.5);
         begin = i;
       }
     }
     context.globalAlpha = 1;
   }
 
-  goal(x, y, label) {
+  // With the direction in which the robot shall look there, if it has one.
+  goal(x, y, label, yaw) {
     const { context } = this;
     const [px, py] = [this.px(x), this.py(y)];
     context.strokeStyle = context.fillStyle = this.colour('goal');
@@ -232,15 +239,19 @@ class Map2d {
     context.lineTo(px + 12, py);
     context.moveTo(px, py - 12);
     context.lineTo(px, py + 12);
+    if (yaw !== undefined) {
+      context.moveTo(px, py);
+      context.lineTo(px + 30 * Math.cos(yaw), py - 30 * Math.sin(yaw));
+    }
     context.stroke();
     context.fillText(label, px + 12, py - 8);
   }
 
   // From above: two wheels, a body with round corners, the scanner on top, and a nose ahead.
-  robot(x, y, yaw) {
+  robot(name, [x, y, yaw], colour) {
     const { context } = this;
     const scale = Math.max(this.scale, LEAST_PX / RADIUS);
-    const [ink, ground, accent] = ['ink', 'ground', 'robot'].map(this.colour);
+    const [ink, ground, accent] = ['ink', 'ground', colour].map(this.colour);
     const shape = (fill, line, draw) => {
       context.beginPath();
       draw();
@@ -273,6 +284,15 @@ class Map2d {
     shape(ink, 0, () => context.arc(SCAN_X, 0, LIDAR, 0, 2 * Math.PI));
     shape(accent, 0, () => context.arc(SCAN_X, 0, 0.4 * LIDAR, 0, 2 * Math.PI));
     context.restore();
+    if (!name) return;
+    context.textAlign = 'center';
+    context.lineWidth = 3;
+    context.strokeStyle = ground;
+    context.fillStyle = ink;
+    const at = [name, this.px(x), this.py(y) - scale * RADIUS - 5];
+    context.strokeText(...at);
+    context.fillText(...at);
+    context.textAlign = 'start';
   }
 
   // A star where it touches something.

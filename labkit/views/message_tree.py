@@ -1,4 +1,4 @@
-"""A message as the rows of a tree: one for each field, long arrays and texts shortened."""
+"""A message as rows of a tree, one per field; long arrays and texts are shortened."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 __all__ = ['Row', 'as_text', 'fields_of', 'is_message', 'rows', 'value_text']
 
-# Elements of an array of numbers, and of messages, that are shown.
+# Elements shown of arrays of numbers, and of arrays of messages.
 NUMBERS = 5
 MESSAGES = 3
 TEXT = 120
@@ -22,11 +22,11 @@ class Row(NamedTuple):
     """One field.
 
     Attributes:
-        depth: How deep in the message it is, from 0.
-        name: Its name, or its number in an array.
+        depth: Nesting depth, from 0.
+        name: Its name, or its index in an array.
         field_type: Its type as interface files write it.
-        has_parts: Whether the rows of its own fields follow.
-        value: Its value as text; how many elements if it is an array of messages.
+        has_parts: Whether rows of nested fields follow.
+        value: Its value as text; the number of elements for an array of messages.
     """
 
     depth: int
@@ -37,12 +37,7 @@ class Row(NamedTuple):
 
 
 def rows(message: Any, *, no_time: bool = False) -> list[Row]:
-    """Return a message as rows, those of a field's parts after its own.
-
-    Args:
-        message: The message.
-        no_time: Whether to leave out the values of time stamps, so that they are the same always.
-    """
+    """Return a message as rows; with `no_time`, without time stamps, which differ each time."""
     found: list[Row] = []
     _add_fields(found, message, 0, no_time)
     if len(found) > MOST_ROWS:
@@ -51,19 +46,19 @@ def rows(message: Any, *, no_time: bool = False) -> list[Row]:
 
 
 def as_text(found: list[Row]) -> str:
-    """Return rows as lines of text, indented."""
+    """Return rows as indented lines."""
     return '\n'.join(
         f'{"  " * row.depth}{row.name}:{" " * bool(row.value)}{row.value}' for row in found
     )
 
 
 def is_message(value: Any) -> bool:
-    """Tell whether a value is a message: of rclpy, or as `rosbags` makes them of foreign types."""
+    """Return whether a value is a message: of rclpy, or of `rosbags` for types not installed."""
     return hasattr(value, 'get_fields_and_field_types') or hasattr(value, '__msgtype__')
 
 
 def fields_of(message: Any) -> dict[str, str]:
-    """Return names and types of a message's fields; of foreign types only the names are known."""
+    """Return names and types of a message's fields; types are unknown if not installed."""
     if hasattr(message, 'get_fields_and_field_types'):
         found: dict[str, str] = message.get_fields_and_field_types()
         return found
@@ -71,7 +66,7 @@ def fields_of(message: Any) -> dict[str, str]:
 
 
 def value_text(value: Any) -> str:
-    """Return a value of a message as text."""
+    """Return a field value as text."""
     if isinstance(value, (bool, np.bool_)):
         return 'true' if value else 'false'
     if isinstance(value, (float, np.floating)):

@@ -1,7 +1,8 @@
-"""What comes on one topic, live: `lab.monitor(topic)`.
+"""A live view of one topic: `lab.monitor(topic)`.
 
-The last message as a tree, how often messages come, who publishes them, and when none comes, why.
-Messages are taken as bytes; only one that is shown is made into a Python object.
+The last message as a tree, the rate, the publishers, and the reason for silence. Messages arrive
+as
+bytes; only one that is shown is deserialized.
 """
 
 from __future__ import annotations
@@ -10,13 +11,13 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from labkit.errors import LabError
+from labkit.errors import LabError, quoted
 from labkit.rosgraph.endpoints import Endpoint
 from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.names import UNKNOWN_NODE
-from labkit.views.feed import Feed, checked_type, heard
+from labkit.views.feed import Feed, checked_type, subscribed
 from labkit.views.live import helper
-from labkit.views.live_page import LivePage, News
+from labkit.views.live_page import LivePage, Update
 from labkit.views.message_tree import as_text, rows
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ class Monitor(LivePage):
     """
 
     _name = 'monitor'
-    # What changes more often can't be read.
+    # Faster changes can't be read.
     _period = 0.1
 
     def __init__(
@@ -47,28 +48,30 @@ class Monitor(LivePage):
         count: int,
     ) -> None:
         if not isinstance(count, int) or count < 1:
-            raise LabError(f'count must be a whole number of at least 1, but it is {count!r}.')
+            raise LabError(
+                f'count must be a whole number of at least 1, but it is {quoted(count)}.'
+            )
         self._msg_type, self._qos_profile = checked_type(msg_type), qos_profile
-        self._feed = self._new_feed(topic, self._take)
+        self._feed = self._new_feed(topic, self._on_message_bytes)
         self.topic = self._feed.topic
         self._last_message: tuple[type | None, bytes] | None = None
         self._wanted = count
         super().__init__([self._feed])
-        self._text = '' if self._watched else self._heard_text()
+        self._text = '' if self._watched else self._wait_for_text()
 
     @property
     def count(self) -> int:
-        """Return how many messages have come while somebody looked on."""
+        """Number of messages received while the view was visible."""
         return self._feed.count
 
     def __repr__(self) -> str:
-        return self._text or self._heard_text()
+        return self._text or self._wait_for_text()
 
-    def _still(self) -> dict[str, str]:
-        return {'text/plain': self._text or self._known_text()}
+    def _static(self) -> dict[str, str]:
+        return {'text/plain': self._text or self._stored_text()}
 
-    def _known_text(self) -> str:
-        """Return the last message as text, and how many have come."""
+    def _stored_text(self) -> str:
+        """Return the last message as text, and the count."""
         feed = self._feed
         if self._last_message is None:
             return f'{self.topic}: no message has come.'
@@ -80,27 +83,29 @@ class Monitor(LivePage):
             ]
         )
 
-    def _new_feed(self, topic: str, take: Callable[[bytes], None]) -> Feed:
+    def _new_feed(self, topic: str, callback: Callable[[bytes], None]) -> Feed:
         return Feed(
             topic,
             helper(),
-            take,
+            callback,
             msg_type=self._msg_type,
             qos_profile=self._qos_profile,
             raw=True,
         )
 
-    def _take(self, data: bytes) -> None:
+    def _on_message_bytes(self, data: bytes) -> None:
         self._last_message = (self._feed.msg_type, data)
 
-    def _heard_text(self) -> str:
-        """Wait for messages; return the last of them as text that is the same each time."""
+    def _wait_for_text(self) -> str:
+        """Wait for messages; return the last one as text that is the same each time."""
         messages: list[bytes] = []
         feed = self._new_feed(self.topic, messages.append)
-        with heard([feed], lambda: len(messages) >= self._wanted):
+        with subscribed([feed], lambda: len(messages) >= self._wanted):
             if not messages:
                 return f'{self.topic}: no message came. {feed.silence()}'.strip()
-            ends = ', '.join(f'{name} ({", ".join(qos)})' for name, *qos in _told(feed.publishers))
+            ends = ', '.join(
+                f'{name} ({", ".join(qos)})' for name, *qos in _publisher_rows(feed.publishers)
+            )
             lines = [f'{self.topic} [{type_name(feed.msg_type)}]']
             lines += [f'published by {ends}'] if ends else []
             if self._wanted > 1:
@@ -108,23 +113,23 @@ class Monitor(LivePage):
             message = _message(feed.msg_type, messages[: self._wanted][-1])
             return '\n'.join([*lines, as_text(rows(message, no_time=True))])
 
-    def _news(self, everything: bool) -> News:
+    def _update(self, everything: bool) -> Update:
         now, feed = time.monotonic(), self._feed
         rate = feed.rate()
         state: dict[str, Any] = {
             'topic': self.topic,
             'type': type_name(feed.msg_type) if feed.msg_type else '',
             'rate': '' if rate is None else f'{rate:.3g}' if rate < 99.5 else f'{rate:.0f}',
-            'note': feed.silence(),
-            'publishers': _told(feed.publishers),
+            'note': ' '.join(filter(None, [feed.silence(), *_faults(self.topic)])),
+            'publishers': _publisher_rows(feed.publishers),
             'count': feed.count,
         }
-        if feed.count != self._told.get('count') and self._last_message is not None:
+        if feed.count != self._page_state.get('count') and self._last_message is not None:
             state['age'] = now - feed.heard_at
             tree = rows(_message(*self._last_message))
             state['fields'] = [row[:-1] for row in tree]
             state['values'] = [row.value for row in tree]
-        return self._new_of(state), []
+        return self._changes(state), []
 
 
 def monitor(
@@ -134,26 +139,35 @@ def monitor(
     qos_profile: QoSProfile | int | None = None,
     count: int = 1,
 ) -> Monitor:
-    """Show what comes on a topic: the last message, how often, from whom, or why nothing comes.
+    """Show a topic: the last message, the rate, the publishers, or why nothing arrives.
 
-    It is live in a notebook, and listens for as long as it can be seen. Elsewhere it is a text
-    that tells the next message.
+    In a notebook it is live, and subscribes while it is visible. Elsewhere it is the next message
+    as
+    text.
 
     Args:
         topic: Name of the topic. It need not exist yet.
-        msg_type: Class of its messages, or its name. By default that of the publishers.
-        qos_profile: QoS profile, or queue depth in messages. By default one that hears all
+        msg_type: Class of its messages, or its name. By default the publishers' type.
+        qos_profile: QoS profile, or queue depth in messages. By default one that matches all
             publishers.
-        count: For the text: how many messages to wait for. The last of them is shown.
+        count: For the text: number of messages to wait for. The last one is shown.
 
     Returns:
-        What a cell shows. `.close()` ends it.
+        A view to show in a cell. `.close()` ends it.
 
     Raises:
-        LabError: `topic` is no name of a topic, there is no such type, or `count` is no number
-            of messages.
+        LabError: `topic` is not a valid topic name, there is no such type, or `count` is not a
+            positive whole number.
     """
     return Monitor(topic, msg_type=msg_type, qos_profile=qos_profile, count=count)
+
+
+def _faults(topic: str) -> list[str]:
+    from labkit.silent.watch import seen_about
+
+    # Why nothing arrives because two ends do not match is told already.
+    found = [one for one in seen_about(topic) if one.kind.id.startswith(('messages.', 'time.'))]
+    return [f'{fault} {fault.advice}' for fault in found]
 
 
 def _message(msg_type: type | None, data: bytes) -> Any:
@@ -162,7 +176,7 @@ def _message(msg_type: type | None, data: bytes) -> Any:
     return deserialize_message(data, msg_type)
 
 
-def _told(publishers: tuple[Endpoint, ...]) -> list[list[str]]:
+def _publisher_rows(publishers: tuple[Endpoint, ...]) -> list[list[str]]:
     """Return publishers as name, reliability and durability."""
     return [
         [_name(end), *(_word(policy) for policy in (end.qos.reliability, end.qos.durability))]

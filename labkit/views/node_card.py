@@ -1,8 +1,7 @@
-"""A node as the last value of a cell: its name, and what it publishes, subscribes to and offers.
+"""A node as the last value of a cell: its name and its endpoints.
 
-rclpy's `Node` has no form to be shown in. IPython is told one for it by name, so that rclpy need
-not be loaded; it is used while the notebook-safe functions are in place, and else the node is
-shown as Python shows it.
+rclpy's `Node` has no rich representation. IPython gets one by name, so that rclpy need not be
+loaded; it is used while the notebook-safe functions are installed.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ __all__ = ['node_card', 'register']
 
 
 def register() -> None:
-    """Let the running IPython show nodes as cards; without one nothing happens."""
+    """Register the node form with the running IPython, if there is one."""
     ipython = sys.modules.get('IPython')
     shell = ipython.get_ipython() if ipython is not None else None
     if shell is None:
@@ -32,10 +31,11 @@ def register() -> None:
 
 
 def node_card(node: Node) -> Card:
-    """Return the card of a node: what it is asked for by `ros2 node info`, in short."""
+    """Return a node as a card: `ros2 node info` in short."""
     from labkit.background.nodes import full_name
     from labkit.background.runtime import runtime
     from labkit.rosgraph.listings import ends_of_node
+    from labkit.silent.watch import about
 
     name = full_name(node)
     if not name:
@@ -50,22 +50,23 @@ def node_card(node: Node) -> Card:
         ('Sends goals', _lines(ends.action_clients)),
     ]
     spun = runtime.entry_of(node) is not None
+    told = [fault for fault in about(name) if fault.kind.id != 'life.unspun']
+    rows += [('⚠', f'{fault}\n→ {fault.advice}') for fault in told]
     text = 'It runs in the background.' if spun else 'It is not spun: `lab.spin(node)` runs it.'
     return Card('info', 'NODE', name, text=text, rows=rows)
 
 
 def _lines(found: NamesAndTypes, name: str = '') -> str:
-    """Return a line for each end; what every node has is left out."""
-    from labkit.background.discovery import LAST_SERVICE, PARAMETER_SERVICES
-    from labkit.rosgraph.names import EVERY_NODE_HAS
+    """Return one line per endpoint, without those that every node has."""
+    from labkit.rosgraph.names import EVERY_NODE_HAS, EVERY_NODE_OFFERS
 
-    usual = {f'{name}/{service}' for service in (*PARAMETER_SERVICES, LAST_SERVICE)}
+    usual = {f'{name}/{service}' for service in EVERY_NODE_OFFERS}
     usual.update(EVERY_NODE_HAS)
     return '\n'.join(f'{end} [{", ".join(types)}]' for end, types in found if end not in usual)
 
 
 def _is_shown(node: Node) -> bool:
-    """Tell whether a node is to be shown as a card: its class has no form of its own."""
+    """Return whether to show a node as a card: unless its class has its own representation."""
     from labkit.background.notebook_rclpy import is_installed
 
     own = type(node).__repr__ is not object.__repr__ or hasattr(node, '_repr_html_')
@@ -73,7 +74,7 @@ def _is_shown(node: Node) -> bool:
 
 
 def _text(node: Node, printer: Any, cycle: bool) -> None:
-    # In a list or another container a card would be too much.
+    # Inside a list or another container a card would be too much.
     as_card = _is_shown(node) and len(printer.stack) <= 1
     printer.text(repr(node_card(node) if as_card else node))
 

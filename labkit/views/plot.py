@@ -1,7 +1,7 @@
-"""Numbers of messages over time, live: `lab.plot(field, ...)`.
+"""Plot message fields over time, live: `lab.plot(field, ...)`.
 
-Of every message the number is taken, and no more; the page gets what is new some times a second,
-as bytes, and thinned to what can be seen.
+Only the plotted number of each message is kept; the page gets new ones a few times a second, as
+bytes, thinned to what can be seen.
 """
 
 from __future__ import annotations
@@ -14,34 +14,31 @@ from typing import Any
 
 import numpy as np
 
-from labkit.errors import LabError
+from labkit.errors import LabError, quoted
 from labkit.rosgraph.interfaces import message_class
 from labkit.rosgraph.names import full_topic_name
-from labkit.views.feed import Feed, heard
+from labkit.views.feed import Feed, subscribed
 from labkit.views.live import helper
-from labkit.views.live_page import LivePage, News
+from labkit.views.live_page import LivePage, Update
 from labkit.views.plot_fields import Source, parse, reader, resolve, unit_of
 from labkit.views.plot_picture import COLOURS, Floats, Line, in_words, thin, to_svg
 
 __all__ = ['Plot', 'plot']
 
-# So many columns the picture has at most; what is in between can't be seen.
+# Most columns of the picture; more can't be seen.
 COLUMNS = 800
-# Samples of a field that may wait to be sent; a timer that is late for longer loses the oldest.
+# Most unsent samples of a field; if the timer is late, the oldest are dropped.
 MAX_WAITING = 20_000
 # Longest window, s.
-MOST_SEC = 3600.0
+MAX_SEC = 3600.0
 
 
 class Series:
     """The numbers of one field.
 
-    Args:
-        source: The field.
-
     Attributes:
         topic: Full name of its topic.
-        unit: Its unit; '' if none is known.
+        unit: Its unit; '' if unknown.
         problem: Why it can't be drawn, '' if it can.
     """
 
@@ -53,14 +50,14 @@ class Series:
         self.waiting: deque[tuple[float, float]] = deque(maxlen=MAX_WAITING)
         self._get: Callable[[bytes], Any] | None = None
         self._type: Any = None
-        # What the page has been sent, for the next page.
+        # What the page has received, for a page that is opened later.
         self._sent: deque[tuple[Floats, Floats]] = deque()
         self._latest = -math.inf
 
     def add(self, moment: float, data: bytes, msg_type: Any) -> None:
-        """Keep the field of a serialized message that came at a moment."""
+        """Keep the field of a serialized message that arrived at a time."""
         if msg_type is not self._type:
-            self.settle(msg_type)
+            self.set_type(msg_type)
         if self._get is None:
             return
         try:
@@ -70,8 +67,8 @@ class Series:
             value = math.nan
         self.waiting.append((moment, value))
 
-    def settle(self, msg_type: Any) -> None:
-        """Find the field in a type of messages; note why if that can't be."""
+    def set_type(self, msg_type: Any) -> None:
+        """Find the field in a message type; note the problem if it can't be read."""
         self._type, self._get, self.problem = msg_type, None, ''
         try:
             self._get = reader(self.source, msg_type)
@@ -80,22 +77,22 @@ class Series:
             self.problem = str(error)
 
     def take(self, window: float) -> tuple[Floats, Floats] | None:
-        """Return times and values of what is new, None if nothing is."""
+        """Return times and values of new samples, None without any."""
         if not self.waiting:
             return None
         count = len(self.waiting)
         samples = np.array([self.waiting.popleft() for _ in range(count)], dtype=np.float64)
         chunk = thin(samples[:, 0], samples[:, 1], window / COLUMNS)
         self._sent.append(chunk)
-        # Not with the time that goes on: what came last is kept when nothing comes any more.
-        heard = samples[~np.isnan(samples[:, 1]), 0]
-        self._latest = max([self._latest, *heard[-1:]])
+        # Relative to the last sample, not to now: the last window stays when messages stop.
+        subscribed = samples[~np.isnan(samples[:, 1]), 0]
+        self._latest = max([self._latest, *subscribed[-1:]])
         while self._sent[0][0][-1] < self._latest - window:
             self._sent.popleft()
         return chunk
 
     def kept(self, window: float) -> tuple[Floats, Floats]:
-        """Return times and values of the whole window, as far as they have been taken."""
+        """Return times and values of the window, as far as taken."""
         if not self._sent:
             return np.empty(0), np.empty(0)
         times, values = (np.concatenate(parts) for parts in zip(*self._sent, strict=True))
@@ -106,9 +103,9 @@ class Plot(LivePage):
     """A live plot of fields, to be shown in a cell; see `plot`."""
 
     _name = 'plot'
-    # No more than 20 in any second, also where the timer is late.
+    # At most 20 updates in any second, even if the timer is late.
     _period = 0.055
-    _least = 0.052
+    _min_interval = 0.052
 
     def __init__(self, sources: list[Source], *, seconds: float, count: int) -> None:
         self._sources, self._seconds, self._count = sources, seconds, count
@@ -116,18 +113,18 @@ class Plot(LivePage):
         feeds = _feeds(self._series)
         for feed in feeds:
             _refuse_wrong_fields(feed, self._series)
-        # The moment that is the page's zero of time.
+        # Zero of the page's time axis.
         self._begin = 0.0
         super().__init__(feeds)
-        self._bundle = {} if self._watched else self._heard_bundle()
+        self._bundle = {} if self._watched else self._wait_for_bundle()
 
     def __repr__(self) -> str:
-        return (self._bundle or self._heard_bundle())['text/plain']
+        return (self._bundle or self._wait_for_bundle())['text/plain']
 
-    def _still(self) -> dict[str, str]:
-        return self._bundle or self._known_bundle()
+    def _static(self) -> dict[str, str]:
+        return self._bundle or self._stored_bundle()
 
-    def _known_bundle(self) -> dict[str, str]:
+    def _stored_bundle(self) -> dict[str, str]:
         """Return text and picture of the last window."""
         words, lines = [], []
         for each in self._series:
@@ -141,7 +138,7 @@ class Plot(LivePage):
         drawn = any(math.isfinite(value) for line in lines for value in line.values)
         return {'text/plain': text, **({'image/svg+xml': to_svg(lines, text)} if drawn else {})}
 
-    def _heard_bundle(self) -> dict[str, str]:
+    def _wait_for_bundle(self) -> dict[str, str]:
         """Wait for messages; return text and picture that are the same each time."""
         series = [Series(source) for source in self._sources]
         feeds = _feeds(series)
@@ -149,7 +146,7 @@ class Plot(LivePage):
         def enough() -> bool:
             return all(len(each.waiting) >= self._count or each.problem for each in series)
 
-        with heard(feeds, enough):
+        with subscribed(feeds, enough):
             values = [[float(v) for _, v in list(each.waiting)[: self._count]] for each in series]
             words = [
                 _in_words(each, numbers, self._count)
@@ -168,14 +165,14 @@ class Plot(LivePage):
         )
 
     def _open(self) -> None:
-        # A gap where nobody looked on.
+        # A gap for the time when nobody was looking.
         moment = time.monotonic()
         self._begin = self._begin or moment
         for each in self._series:
             each.waiting.append((moment, math.nan))
         super()._open()
 
-    def _news(self, everything: bool) -> News:
+    def _update(self, everything: bool) -> Update:
         parts, buffers = [], []
         for number, each in enumerate(self._series):
             chunk = each.take(self._seconds)
@@ -191,26 +188,26 @@ class Plot(LivePage):
             'seconds': self._seconds,
             'note': ' '.join(_problems(self._series, self._feeds)),
         }
-        news = self._new_of(state)
-        if news or parts:
-            news |= {'parts': parts, 'now': time.monotonic() - self._begin, 'anew': everything}
-        return news, buffers
+        changes = self._changes(state)
+        if changes or parts:
+            changes |= {'parts': parts, 'now': time.monotonic() - self._begin, 'anew': everything}
+        return changes, buffers
 
 
 def plot(*fields: str, seconds: float = 10.0, count: int = 10) -> Plot:
-    """Draw numbers of messages over time.
+    """Plot message fields over time.
 
     A field is the topic, a dot and the path in the message: `'/odom.pose.pose.position.x'`, or
-    `'/scan.ranges[0]'`. In a notebook the plot is live, and listens for as long as it can be
-    seen. Elsewhere it is a picture and a text of the next messages.
+    `'/scan.ranges[0]'`. In a notebook the plot is live, and subscribes while it is visible.
+    Elsewhere it is a picture and a text of the next messages.
 
     Args:
-        fields: What to draw. The topics need not exist yet.
-        seconds: How much time the live plot shows, s.
-        count: For the picture: how many messages to wait for.
+        fields: Fields to plot. The topics need not exist yet.
+        seconds: Window of the live plot, s.
+        count: For the picture: number of messages to wait for.
 
     Returns:
-        What a cell shows. `.close()` ends it.
+        A view to show in a cell. `.close()` ends it.
 
     Raises:
         LabError: A field does not exist, or is not a number.
@@ -220,19 +217,19 @@ def plot(*fields: str, seconds: float = 10.0, count: int = 10) -> Plot:
             f'lab.plot() takes 1 to {len(COLOURS)} fields, but got {len(fields)}.',
             todo="Write for example: lab.plot('/odom.twist.twist.linear.x')",
         )
-    if not isinstance(seconds, (int, float)) or not 0 < seconds <= MOST_SEC:
+    if not isinstance(seconds, (int, float)) or not 0 < seconds <= MAX_SEC:
         raise LabError(
-            f'seconds must be a number above 0, up to {MOST_SEC:.0f}, but it is {seconds!r}.'
+            f'seconds must be a number above 0, up to {MAX_SEC:.0f}, but it is {quoted(seconds)}.'
         )
     if not isinstance(count, int) or not 1 <= count <= MAX_WAITING:
         raise LabError(
-            f'count must be a whole number from 1 to {MAX_WAITING}, but it is {count!r}.'
+            f'count must be a whole number from 1 to {MAX_WAITING}, but it is {quoted(count)}.'
         )
     return Plot([parse(field) for field in fields], seconds=float(seconds), count=count)
 
 
 def _feeds(series: list[Series]) -> list[Feed]:
-    """Return one subscription for each topic."""
+    """Return one subscription per topic."""
     groups: dict[str, list[Series]] = {}
     for each in series:
         each.topic = full_topic_name(each.source.topic, helper())
@@ -251,7 +248,7 @@ def _feed(topic: str, group: list[Series]) -> Feed:
 
 
 def _refuse_wrong_fields(feed: Feed, series: list[Series]) -> None:
-    """Raise a LabError for a field that can't be drawn, if the type of its messages is known."""
+    """Raise a LabError for a field that can't be plotted, if the message type is known."""
     ends = helper().get_publishers_info_by_topic(feed.topic)
     types = {end.topic_type for end in ends}
     if len(types) == 1:

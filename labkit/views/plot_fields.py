@@ -1,4 +1,4 @@
-"""What `lab.plot` is asked for: fields of messages that are numbers, and their units.
+"""Fields for `lab.plot`: numbers in messages, and their units.
 
 A field is written as the topic, a dot, and the path in the message: `/scan.ranges[0]`.
 """
@@ -11,20 +11,21 @@ from dataclasses import dataclass
 from operator import attrgetter, itemgetter
 from typing import Any
 
-from labkit.errors import LabError, nearest
-from labkit.rosgraph.interfaces import message_class, type_name
+from labkit.errors import LabError, nearest, quoted
+from labkit.rosgraph.interfaces import slot_class, slots, type_name
 from labkit.rosgraph.serialized import number_reader
 
 __all__ = ['Source', 'number_paths', 'parse', 'reader', 'resolve', 'unit_of']
 
 _PART = re.compile(r'(?P<name>[A-Za-z]\w*)(?:\[(?P<index>\d+)\])?')
-# Types of interface files that are no numbers although they are basic.
+# Basic types of interface files that are not numbers.
 _NO_NUMBERS = ('octet', 'wchar')
 
 _MOTION = {'linear': 'm/s', 'angular': 'rad/s'}
 _ACCELERATION = {'linear': 'm/s²', 'angular': 'rad/s²'}
-# Units of fields and of all that is in them, by type and name. Sources: REP 103, and the comments
-# in the files of these messages.
+# Units of fields and everything in them, by type and name. Sources: REP 103, and the comments in
+# the
+# message files.
 UNITS = {
     'builtin_interfaces/msg/Time': {'sec': 's', 'nanosec': 'ns'},
     'builtin_interfaces/msg/Duration': {'sec': 's', 'nanosec': 'ns'},
@@ -50,7 +51,7 @@ UNITS = {
     'sensor_msgs/msg/FluidPressure': {'fluid_pressure': 'Pa', 'variance': 'Pa²'},
     'sensor_msgs/msg/Illuminance': {'illuminance': 'lx', 'variance': 'lx²'},
     'sensor_msgs/msg/Imu': {'angular_velocity': 'rad/s', 'linear_acceleration': 'm/s²'},
-    # The position of a joint that slides is in metres.
+    # The position of a prismatic joint is in metres.
     'sensor_msgs/msg/JointState': {'position': 'rad or m'},
     'sensor_msgs/msg/LaserScan': {
         **dict.fromkeys(('angle_min', 'angle_max', 'angle_increment'), 'rad'),
@@ -71,11 +72,11 @@ UNITS = {
 
 @dataclass(frozen=True)
 class Source:
-    """Where the numbers of one line come from.
+    """A field to plot.
 
     Attributes:
-        text: The field as it was written.
-        topic: The topic as it was written.
+        text: The field as written.
+        topic: The topic as written.
         path: The path of the field in a message.
     """
 
@@ -85,26 +86,26 @@ class Source:
 
 
 def parse(text: object) -> Source:
-    """Take a field such as `'/odom.pose.pose.position.x'` apart.
+    """Parse a field such as `'/odom.pose.pose.position.x'`.
 
     Raises:
-        LabError: It is not written like that.
+        LabError: The syntax is wrong.
     """
     if not isinstance(text, str):
         raise LabError(
-            f'A field must be a text, but it is {text!r}.',
+            f'A field must be a text, but it is {quoted(text)}.',
             todo="Write the topic, a dot and the field: '/odom.pose.pose.position.x'",
         )
     topic, _, path = text.strip().partition('.')
     if topic and not path:
         raise LabError(
-            f'{text!r} names a topic, but no field of its messages.',
+            f'{quoted(text)} names a topic, but no field of its messages.',
             todo=f"Add a dot and the field, such as '{topic}.data'. "
             'ros2 interface show tells the fields of a type.',
         )
     if not topic or not all(_PART.fullmatch(word) for word in path.split('.')):
         raise LabError(
-            f'{text!r} names no field of a message.',
+            f'{quoted(text)} names no field of a message.',
             todo="Write the topic, a dot and the field: '/odom.pose.pose.position.x' or "
             "'/scan.ranges[0]'",
         )
@@ -112,24 +113,24 @@ def parse(text: object) -> Source:
 
 
 def resolve(source: Source, msg_type: Any) -> Callable[[Any], Any]:
-    """Return the function that takes the field out of a message.
-
-    Args:
-        source: The field.
-        msg_type: The class of the messages.
+    """Return a function that reads the field of a message.
 
     Raises:
-        LabError: There is no such field, or it is not a number. It says which one is near.
+        LabError: There is no such field, or it is not a number. Suggests a similar one.
     """
     getters: list[Callable[[Any], Any]] = []
     slot: Any = None
     inner: Any = msg_type
     words = [found.groupdict() for found in _PART.finditer(source.path)]
     for word in words:
-        slots = _slots(inner) if inner is not None else {}
-        if word['name'] not in slots:
-            raise _no_field(source, msg_type)
-        slot = slots[word['name']]
+        fields = slots(inner) if inner is not None else {}
+        if word['name'] not in fields:
+            raise LabError(
+                f'{quoted(source.text)}: {type_name(msg_type)} has no field '
+                f'{quoted(source.path)}.',
+                todo=_near(source, msg_type),
+            )
+        slot = fields[word['name']]
         getters.append(attrgetter(word['name']))
         if word['index'] is not None:
             if not hasattr(slot, 'value_type'):
@@ -137,7 +138,7 @@ def resolve(source: Source, msg_type: Any) -> Callable[[Any], Any]:
             _check_index(source, slot, int(word['index']))
             slot = slot.value_type
             getters.append(itemgetter(int(word['index'])))
-        inner = _class_of(slot)
+        inner = slot_class(slot)
     what = _why_no_number(slot, inner)
     if what:
         raise _no_number(source, msg_type, what)
@@ -145,11 +146,7 @@ def resolve(source: Source, msg_type: Any) -> Callable[[Any], Any]:
 
 
 def reader(source: Source, msg_type: Any) -> Callable[[bytes], Any]:
-    """Return the function that takes the field out of a serialized message.
-
-    Args:
-        source: The field.
-        msg_type: The class of the messages.
+    """Return a function that reads the field of a serialized message.
 
     Raises:
         LabError: As `resolve` does.
@@ -165,12 +162,12 @@ def reader(source: Source, msg_type: Any) -> Callable[[bytes], Any]:
 
 
 def number_paths(msg_type: Any, start: str = '') -> Iterator[str]:
-    """Yield the paths of all fields that are numbers; of an array, that of its first element."""
-    for name, field_slot in _slots(msg_type).items():
+    """Yield the paths of all numbers; of an array, that of its first element."""
+    for name, field_slot in slots(msg_type).items():
         path, slot = f'{start}{name}', field_slot
         if hasattr(slot, 'value_type'):
             path, slot = f'{path}[0]', slot.value_type
-        inner = _class_of(slot)
+        inner = slot_class(slot)
         if inner is not None:
             yield from number_paths(inner, f'{path}.')
         elif not _why_no_number(slot, None):
@@ -178,27 +175,17 @@ def number_paths(msg_type: Any, start: str = '') -> Iterator[str]:
 
 
 def unit_of(path: str, msg_type: Any) -> str:
-    """Return the unit of a field that exists, '' if none is known."""
+    """Return the unit of an existing field, '' if unknown."""
     inner = msg_type
     for found in _PART.finditer(path):
         unit = UNITS.get(type_name(inner), {}).get(found['name'], '')
         if unit:
             return unit
-        slot = _slots(inner)[found['name']]
-        inner = _class_of(getattr(slot, 'value_type', slot))
+        slot = slots(inner)[found['name']]
+        inner = slot_class(getattr(slot, 'value_type', slot))
         if inner is None:
             return ''
     return ''
-
-
-def _slots(msg_type: Any) -> dict[str, Any]:
-    return dict(zip(msg_type.get_fields_and_field_types(), msg_type.SLOT_TYPES, strict=True))
-
-
-def _class_of(slot: Any) -> Any:
-    """Return the class of a field that is a message, None if it is none."""
-    names = getattr(slot, 'namespaced_name', None)
-    return message_class('/'.join(names())) if names is not None else None
 
 
 def _why_no_number(slot: Any, inner: Any) -> str:
@@ -216,13 +203,13 @@ def _check_index(source: Source, slot: Any, index: int) -> None:
     size = getattr(slot, 'size', None) or getattr(slot, 'maximum_size', None)
     if size is not None and index >= size:
         raise LabError(
-            f'{source.text!r} asks for element {index}, but there are at most {size}.',
+            f'{quoted(source.text)} asks for element {index}, but there are at most {size}.',
             todo=f'They are counted from 0: the last one is [{size - 1}].',
         )
 
 
 def _joined(words: list[Any], getters: list[Callable[[Any], Any]]) -> Callable[[Any], Any]:
-    # The usual case in one step, because it is done for every message.
+    # The usual case in one step: it runs for every message.
     if all(word['index'] is None for word in words):
         return attrgetter('.'.join(word['name'] for word in words))
 
@@ -234,21 +221,15 @@ def _joined(words: list[Any], getters: list[Callable[[Any], Any]]) -> Callable[[
     return get
 
 
-def _no_field(source: Source, msg_type: Any) -> LabError:
+def _no_number(source: Source, msg_type: Any, what: str) -> LabError:
     return LabError(
-        f'{source.text!r}: {type_name(msg_type)} has no field {source.path!r}.',
+        f'{quoted(source.text)} is {what}. Only numbers can be drawn.',
         todo=_near(source, msg_type),
     )
 
 
-def _no_number(source: Source, msg_type: Any, what: str) -> LabError:
-    return LabError(
-        f'{source.text!r} is {what}. Only numbers can be drawn.', todo=_near(source, msg_type)
-    )
-
-
 def _near(source: Source, msg_type: Any) -> str:
-    """Return which field may be meant."""
+    """Return a suggestion of the intended field."""
     paths = list(number_paths(msg_type))
     inside = [p for p in paths if p.startswith(source.path)]
     ending = [p for p in paths if p.endswith(f'.{source.path}')]

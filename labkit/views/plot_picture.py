@@ -1,12 +1,13 @@
-"""Lines as a still picture, one panel a unit: numbers over time, or over the number of a message.
+"""Lines as a still picture, one panel per unit: numbers over time, or over the message number.
 
-The latter where what is stored in a notebook has to be the same each time.
+The latter where stored outputs have to be the same each time.
 """
 
 from __future__ import annotations
 
 import html
 import math
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
@@ -18,17 +19,20 @@ __all__ = ['COLOURS', 'DASHES', 'Line', 'in_words', 'limits', 'thin', 'ticks', '
 
 Floats = NDArray[np.float64]
 
-# Okabe and Ito, "Color Universal Design" (2008), those that are dark enough on white. The dashes
-# tell lines apart without any colour.
+# From Okabe and Ito, "Color Universal Design" (2008), those that are dark enough on white. Dashes
+# tell lines apart without colour.
 COLOURS = ('#0072b2', '#d55e00', '#007a59', '#a8427f', '#3d3d3d', '#8a6d00')
 DASHES = ('', '8 4', '2 3', '10 3 2 3', '5 2', '1 4')
+
+# Ranges beyond these would be infinite, or too small to be divided.
+_HUGE, _TINY = sys.float_info.max, 1e-302
 
 WIDTH, PANEL, LEFT, RIGHT, TOP, BOTTOM = 640, 170, 64, 12, 14, 40
 
 
 @dataclass(frozen=True)
 class Line:
-    """One line: what it is called, its unit, its values, and maybe when they came, s."""
+    """One line: label, unit, values, and optionally their times, s."""
 
     label: str
     unit: str
@@ -37,7 +41,7 @@ class Line:
 
 
 def in_words(values: Sequence[float], unit: str) -> str:
-    """Return the first, the last, the least and the greatest of numbers as words."""
+    """Return the first, the last, the least and the greatest of numbers as text."""
     unit = f' {unit}' if unit else ''
     numbers = [float(f'{value:.4g}') + 0.0 for value in values]
     finite = [number for number in numbers if math.isfinite(number)]
@@ -48,19 +52,18 @@ def in_words(values: Sequence[float], unit: str) -> str:
 
 
 def limits(values: Sequence[float]) -> tuple[float, float]:
-    """Return what an axis shows: all finite values, and some room."""
+    """Return the range of an axis: all finite values, and a margin."""
     finite = [value for value in values if math.isfinite(value)] or [0.0]
     low, high = min(finite), max(finite)
-    if low == high:
-        room = abs(low) / 2 or 0.5
-        return low - room, high + room
-    room = (high - low) * 0.06
-    return low - room, high + room
+    # Numbers that are closer together than floats can divide are one.
+    room = min(high - low, _HUGE) * 0.06 if high - low > _TINY else abs(low) / 2
+    room = room if room > _TINY else 0.5
+    return max(low - room, -_HUGE), min(high + room, _HUGE)
 
 
 def ticks(low: float, high: float, most: int = 5) -> list[float]:
-    """Return round numbers between two others, at most so many and two at least."""
-    rough = (high - low) / most
+    """Return at most `most` round numbers between two others, and at least two."""
+    rough = min(high - low, _HUGE) / most
     power = 10.0 ** math.floor(math.log10(rough))
     step = next(step * power for step in (1, 2, 5, 10) if step * power >= rough * 0.999)
     first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
@@ -68,14 +71,14 @@ def ticks(low: float, high: float, most: int = 5) -> list[float]:
 
 
 def thin(times: Floats, values: Floats, step: float) -> tuple[Floats, Floats]:
-    """Return fewer samples that look the same: least and greatest of each step of time.
+    """Return fewer samples that look the same: the least and the greatest per column.
 
-    A gap, which is a value of NaN, stays one, however close to it values come.
+    A gap, which is a NaN, is kept, however close the values around it.
 
     Args:
-        times: When they came, s, ascending.
-        values: What came.
-        step: How long the time is that one column of the picture shows, s.
+        times: Times in ascending order, s.
+        values: Values, NaN for a gap.
+        step: Time per column of the picture, s.
     """
     columns = np.floor(times / step)
     starts = np.flatnonzero(np.diff(columns, prepend=np.nan))
@@ -87,17 +90,12 @@ def thin(times: Floats, values: Floats, step: float) -> tuple[Floats, Floats]:
     kept = np.stack([np.full_like(gap, True), gap, np.full_like(gap, True)], axis=1)
     few_times = np.stack([times[starts], times[starts], times[ends]], axis=1)[kept]
     few = np.stack([least, np.full_like(least, np.nan), greatest], axis=1)[kept]
-    # The last one, too: it is what is shown as the latest value.
+    # Keep the last sample: it is shown as the latest value.
     return np.append(few_times, times[-1]), np.append(few, values[-1])
 
 
 def to_svg(lines: Sequence[Line], text: str) -> str:
-    """Return lines as an SVG picture.
-
-    Args:
-        lines: The lines.
-        text: The picture's text alternative.
-    """
+    """Return lines as an SVG picture with a text alternative."""
     units = list(dict.fromkeys(line.unit for line in lines))
     legend = 18 * len(lines) + 8
     height = legend + len(units) * (PANEL + TOP) + BOTTOM
@@ -125,7 +123,7 @@ def to_svg(lines: Sequence[Line], text: str) -> str:
 
 
 def _span(lines: Sequence[Line]) -> tuple[float, float]:
-    """Return the first and the last time, or number of a message, that is drawn."""
+    """Return the first and the last time, or message number, to draw."""
     times = [time for line in lines for time in line.times]
     if not times:
         return 1, max([len(line.values) for line in lines] + [2])
@@ -141,7 +139,8 @@ def _panel(
         return LEFT + 8 + (WIDTH - RIGHT - LEFT - 16) * (number - span[0]) / (span[1] - span[0])
 
     def py(value: float) -> float:
-        return top + PANEL * (high - value) / (high - low)
+        # Smaller by a power of two, since the difference of great numbers is infinite.
+        return top + PANEL * (high / 1024 - value / 1024) / (high / 1024 - low / 1024)
 
     parts = []
     for value in ticks(low, high):
@@ -179,12 +178,12 @@ def _panel(
 
 
 def _path(points: Sequence[tuple[float, float] | None]) -> str:
-    """Return lines through points, with a gap where there is none."""
+    """Return an SVG path through points, with a gap where there is none."""
     path = ''
     for is_gap, group in groupby(points, key=lambda point: point is None):
         if not is_gap:
             part = [f'{point[0]:.1f} {point[1]:.1f}' for point in group if point is not None]
-            # A single value is a short line: one of no length can't be seen.
+            # A single value becomes a short line: one of zero length would be invisible.
             path += 'M' + 'L'.join(part) + 'h3' * (len(part) == 1)
     return path
 

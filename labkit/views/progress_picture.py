@@ -1,7 +1,7 @@
-"""The picture of a learner's progress: one line a lesson, one mark an exercise.
+"""The picture of a learner's progress: one row per lesson, one mark per exercise.
 
-A mark says by its sign, not only by its colour, whether an exercise is done, tried or open, and
-leads to it. The same stands in text for those who do not see it.
+A mark is a link to the exercise, and shows by its sign, not only by colour, whether it is done,
+tried or open. Text says the same.
 """
 
 from __future__ import annotations
@@ -39,9 +39,8 @@ class Item:
 
     Attributes:
         kind: `'exercise'` or `'question'`.
-        name: Its name.
         state: `'done'`, `'tried'` or `'open'`.
-        href: Where it is, `''` if that is not known.
+        href: Link to it, `''` if unknown.
     """
 
     kind: str
@@ -55,10 +54,9 @@ class Row:
     """A lesson.
 
     Attributes:
-        title: Its name.
-        items: What it asks for.
-        href: Where it is, `''` if that is not known.
-        teaches: What one learns in it.
+        items: Its exercises and questions.
+        href: Link to it, `''` if unknown.
+        teaches: What it teaches.
     """
 
     title: str
@@ -67,14 +65,14 @@ class Row:
     teaches: str = ''
 
     def counts(self) -> str:
-        """Return how much is done, in words: `'1 of 3 exercises, 0 of 8 questions'`."""
+        """Return the completed items in words: `'1 of 3 exercises, 0 of 8 questions'`."""
         return ', '.join(
             f'{_done(group)} of {len(group)} {kind}' + 's' * (len(group) != 1)
             for kind, group in self.groups()
         )
 
     def groups(self) -> list[tuple[str, list[Item]]]:
-        """Return the items by kind; kinds that do not occur are left out."""
+        """Return the items by kind, without empty kinds."""
         kinds = ('exercise', 'question')
         found = [(kind, self.of_kind(kind)) for kind in kinds]
         return [(kind, group) for kind, group in found if group]
@@ -85,8 +83,9 @@ class Row:
 
 
 def percent(items: Sequence[Item]) -> int:
-    """Return how much is done, in percent: 100 only if it is all."""
-    return 100 * _done(items) // max(len(items), 1)
+    """Return the completed share in percent: 0 only if none is done, 100 only if all are."""
+    done = _done(items)
+    return max(100 * done // max(len(items), 1), min(done, 1))
 
 
 def text_form(rows: Sequence[Row], note: str = '') -> str:
@@ -105,12 +104,12 @@ def text_form(rows: Sequence[Row], note: str = '') -> str:
 
 
 def picture(rows: Sequence[Row], note: str = '', onward: Sequence[tuple[str, str]] = ()) -> str:
-    """Return progress as HTML: what is done of all lessons, and of each of them.
+    """Return progress as HTML: in total, and by lesson.
 
     Args:
         rows: The lessons.
-        note: Something beside the point.
-        onward: What comes next: pairs of a text and where it is.
+        note: A remark below the table.
+        onward: Links to what comes next: pairs of text and target.
     """
     everything = _everything(rows)
     share = percent(everything.items)
@@ -136,17 +135,17 @@ def picture(rows: Sequence[Row], note: str = '', onward: Sequence[tuple[str, str
 
 
 def marks(items: Sequence[Item]) -> str:
-    """Return a mark for each item as HTML: its sign, its name, and a link to it."""
+    """Return a mark per item as HTML: its sign, name and link."""
     return ' '.join(map(_mark, items))
 
 
 def sign(item: Item) -> str:
-    """Return the sign that says whether an item is done, tried or open."""
+    """Return the sign of an item's state."""
     return _STATES[item.state][0]
 
 
 def link(text: str, href: str) -> str:
-    """Return a link as HTML; only the text, if it leads nowhere."""
+    """Return a link as HTML; only the text without a target."""
     if not href:
         return html.escape(text)
     return f'<a href="{html.escape(href)}" style="{_LINK}">{html.escape(text)}</a>'
@@ -174,7 +173,7 @@ def _mark(item: Item) -> str:
     _, colour, word = _STATES[item.state]
     text = f'<span aria-hidden="true">{sign(item)}</span> {html.escape(item.name)}'
     label = html.escape(f'{item.kind} {item.name}: {word}')
-    # The colour is that of the edge: what is written can be read in any theme.
+    # Only the border is coloured: the text stays readable in any theme.
     style = f'style="{_MARK.format(colour=colour)}" title="{label}"'
     if not item.href:
         return f'<span role="img" aria-label="{label}" {style}>{text}</span>'

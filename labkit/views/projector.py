@@ -1,7 +1,7 @@
-"""Larger type for those who sit far away: `lab.projector()`.
+"""Larger type for a projector: `lab.projector()`.
 
-The page puts a class on the notebook, and a style of the page gives it larger type. All that
-labkit shows takes its size from the notebook, so nothing is drawn otherwise by the kernel.
+The page puts a class on the notebook, and a style sheet enlarges the type. Everything labkit shows
+is sized relative to the notebook, so the kernel need not change anything.
 """
 
 from __future__ import annotations
@@ -17,11 +17,7 @@ __all__ = ['Projector', 'projector']
 
 
 class Projector:
-    """Whether the notebook has larger type; see `projector`.
-
-    Attributes:
-        on: Whether it has.
-    """
+    """Whether the notebook has larger type (`on`); see `projector`."""
 
     def __init__(self, *, on: bool) -> None:
         self.on = on
@@ -44,7 +40,7 @@ class Projector:
 
 @functools.cache
 def _page() -> PageWidget:
-    """Return the one widget of this kernel: each of its places in the page says the same."""
+    """Return the kernel's one widget: all of its views show the same state."""
     script, style = page_files('projector')
     parts = {
         '_esm': script,
@@ -57,14 +53,14 @@ def _page() -> PageWidget:
 
 
 def projector(on: bool = True) -> Projector:
-    """Give this notebook larger type, in code, outputs, views and plots, for a projector.
+    """Give this notebook larger type: code, outputs, views and plots.
 
-    It lasts until it is switched off, or the page is loaded anew without the output of this cell.
+    It lasts until it is switched off, or the page is reloaded without the output of this cell.
 
     Args:
         on: Whether the type is larger; False for the usual size.
 
     Returns:
-        Which of both it is, to be shown by the notebook.
+        The current mode, shown as a sentence.
     """
     return Projector(on=bool(on))

@@ -216,7 +216,18 @@ function render({ model, el }) {
   show();
   take();
   model.on('change:answers', take);
+  // Who has run its cell answers next, unless they are typing elsewhere by then.
+  const takeKeyboard = new ResizeObserver(() => {
+    if (!el.isConnected) return;
+    takeKeyboard.disconnect();
+    const typing = document.activeElement?.closest('input, textarea, [contenteditable="true"]');
+    if (model.get('fresh') && !typing && at < end) cards[at].focus();
+    model.set('fresh', false);
+    model.save_changes();
+  });
+  takeKeyboard.observe(el);
   return () => {
+    takeKeyboard.disconnect();
     stopWaiting();
     model.off('change:answers', take);
     disconnect();

@@ -1,7 +1,7 @@
-"""A quiz as a form in the notebook: real form elements, so keyboard and screen reader work.
+"""A quiz as a form in the notebook, of real form elements for keyboard and screen reader.
 
-The page knows the questions only. An answer goes to the kernel, which says what it thinks of it.
-A form listens to nothing, so it has no end: nothing is left behind when its page is gone.
+The page knows only the questions. Answers go to the kernel, which judges them. A form subscribes
+to nothing, so it needs no end: nothing is left behind when its page is gone.
 """
 
 from __future__ import annotations
@@ -21,17 +21,19 @@ __all__ = ['QuizForm', 'quiz_form']
 
 
 class QuizForm(PageWidget):
-    """The form. It knows nothing of quizzes but what it is given.
+    """A form of questions.
 
     Attributes:
-        questions: For each one its text, how to answer it, kind of input and labels.
-        answers: For each question that was answered, by number: what was `given`, the `tone` and
-            the `word` of what is thought of it, its `rows`, and a `count` that is new each time.
+        questions: For each one its text, instructions, kind of input and labels.
+        answers: Judged answers by question number: what was `given`, the `tone` and `word` of the
+            verdict, its `rows`, and a `count` that is new each time.
+        fresh: Whether no page has shown it yet. The first one takes the keyboard.
     """
 
     _esm, _css = page_files('quiz')
     questions: traitlets.List[dict[str, Any]] = traitlets.List().tag(sync=True)
     answers: traitlets.Dict[str, dict[str, Any]] = traitlets.Dict().tag(sync=True)
+    fresh = traitlets.Bool(True).tag(sync=True)
 
     def __init__(
         self,
@@ -56,7 +58,7 @@ class QuizForm(PageWidget):
         except LabError as error:
             rows = [('', error.message), ('', error.todo)]
             card = Card('warn', 'NO ANSWER', '', rows=rows)
-        except Exception as error:  # an answer that is read off the graph, which is not there
+        except Exception as error:  # the right answer comes from a graph that can't be read
             rows = [('', f'The graph could not be asked: {type(error).__name__}: {error}')]
             card = Card('warn', 'CANNOT TELL', '', rows=rows)
         self._show(number, str(given), card)
@@ -73,7 +75,7 @@ class QuizForm(PageWidget):
         self.answers = {**self.answers, str(number): answer}
 
     def show(self, text: str) -> None:
-        """Show the form under the current cell, and this text where no kernel can judge."""
+        """Show the form under the current cell; the text is for viewers without a kernel."""
         Stored(self).show({'text/plain': text})
 
 
@@ -82,15 +84,12 @@ def quiz_form(
     answer: Callable[[int, Any], Card],
     earlier: Mapping[int, tuple[str, bool]] = MappingProxyType({}),
 ) -> QuizForm:
-    """Return a form.
+    """Return a form, which `show()` shows under a cell.
 
     Args:
         questions: For each one `text`, `how`, `kind` (`'radio'`, `'checkbox'` or `'text'`) and
             `labels`.
-        answer: Called with the number of a question, from 1, and the answer: letters, or text.
-        earlier: What was answered before, by number, and whether it was right.
-
-    Returns:
-        The form; `show()` shows it under a cell.
+        answer: Judge of an answer: called with the question number, from 1, and letters or text.
+        earlier: Earlier answers by question number, and whether they were right.
     """
     return QuizForm(questions, answer, earlier)

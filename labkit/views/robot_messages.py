@@ -1,4 +1,4 @@
-"""What a robot's messages say, as numbers to be drawn."""
+"""Numbers for drawing from a robot's messages."""
 
 from __future__ import annotations
 
@@ -16,24 +16,23 @@ if TYPE_CHECKING:
 __all__ = ['beam_ends', 'motion_of', 'nearest_of', 'scanner_place']
 
 
+# The page has numbers of single precision.
+_MOST = 3.4e38
+
+
 def motion_of(message: Odometry) -> tuple[Pose, Twist2] | None:
-    """Return where a robot is and how fast it moves; None if its odometry is no number."""
+    """Return pose and velocity from odometry; None if a number is too large for a picture."""
     position, turn = message.pose.pose.position, message.pose.pose.orientation
     yaw = yaw_from_quaternion(turn.x, turn.y, turn.z, turn.w)
     speeds = message.twist.twist
     numbers = (position.x, position.y, yaw, speeds.linear.x, speeds.angular.z)
-    if not all(map(math.isfinite, numbers)):
+    if not all(abs(number) <= _MOST for number in numbers):  # nor NaN
         return None
     return Pose(*numbers[:3]), Twist2(*numbers[3:])
 
 
 def beam_ends(message: LaserScan, pose: Pose) -> Any:
-    """Return where the beams of a scan end: x and y, m; not a number where one met nothing.
-
-    Args:
-        message: The scan.
-        pose: Where the robot is.
-    """
+    """Return the ends of a scan's beams: x and y, m; NaN where a beam hit nothing."""
     ranges, angles = _beams(message)
     eye_x, eye_y = scanner_place(pose)
     x, y = eye_x + ranges * np.cos(pose.yaw + angles), eye_y + ranges * np.sin(pose.yaw + angles)
@@ -41,13 +40,13 @@ def beam_ends(message: LaserScan, pose: Pose) -> Any:
 
 
 def scanner_place(pose: Pose) -> tuple[float, float]:
-    """Return where the scanner of a robot is, x and y in m."""
+    """Return the position of a robot's scanner, x and y in m."""
     ahead = BURGER.scan_x
     return pose.x + ahead * math.cos(pose.yaw), pose.y + ahead * math.sin(pose.yaw)
 
 
 def nearest_of(message: LaserScan) -> tuple[float, float] | None:
-    """Return distance and direction of what is nearest, None if nothing is seen."""
+    """Return distance and direction of the nearest obstacle, None if there is none."""
     ranges, angles = _beams(message)
     if np.isnan(ranges).all():
         return None
@@ -56,7 +55,7 @@ def nearest_of(message: LaserScan) -> tuple[float, float] | None:
 
 
 def _beams(message: LaserScan) -> tuple[Any, Any]:
-    """Return distances, m, not a number where there is none, and directions, rad."""
+    """Return ranges, m, NaN where invalid, and directions, rad."""
     ranges = np.array(message.ranges, dtype=np.float64)
     # REP 117: +inf is nothing, -inf too near. Some drivers write 0 for nothing.
     good = np.isfinite(ranges) & (ranges >= message.range_min) & (ranges <= message.range_max)

@@ -1,7 +1,4 @@
-"""The card of a solution: its code in the colours of JupyterLab's editor, and a button to copy it.
-
-Elsewhere the code has the page's own colour.
-"""
+"""The card of a solution: highlighted like JupyterLab's editor, with a copy button."""
 
 from __future__ import annotations
 
@@ -12,8 +9,7 @@ from labkit.views.card import CODE_STYLE, Card
 
 __all__ = ['SolutionCard']
 
-# Kinds of words, as Pygments names them, and the variable of JupyterLab that has their colour.
-# The longest name that fits counts.
+# Token types of Pygments, and the JupyterLab variable with their colour. The longest match counts.
 _COLOURS = {
     'Token.Comment': 'comment',
     'Token.Keyword': 'keyword',
@@ -31,20 +27,18 @@ _BOLD = ('keyword', 'operator')
 
 
 class SolutionCard(Card):
-    """A card whose code is Python, to be read and copied. In text it is a card as any other."""
+    """A card with Python code to read and copy; as text, an ordinary card."""
 
     def _repr_html_(self) -> str:
-        """Return the card as HTML; everything in it is escaped."""
         card = Card(self.tone, self.word, self.title, self.text, self.rows)
         start, _, _ = card._repr_html_().rpartition('</div>')
         script = (Path(__file__).parent / 'copy.js').read_text(encoding='utf-8')
-        # Reachable by keyboard, because a wide one scrolls.
+        # Focusable, because a wide one scrolls.
         code = f'<pre tabindex="0" style="{CODE_STYLE}">{_highlighted(self.code.rstrip())}</pre>'
         return f'{start}<div>{code}<script>{script}</script></div>\n</div>'
 
 
 def _highlighted(code: str) -> str:
-    """Return Python code as HTML, with the colours of JupyterLab's theme."""
     from pygments.lexers import PythonLexer
 
     return ''.join(

@@ -1,11 +1,11 @@
-"""What stays of a live view in the notebook: its last text or picture, and what to do.
+"""The stored form of a live view: its last text or picture, and what to do.
 
-A widget lives as long as its kernel. In a notebook that is opened the next day JupyterLab finds
-none, and what it keeps of widgets by itself (`saveState`) is lost again when the notebook is saved
-without the kernel. So a view has two outputs under its cell: its stored form, which is plain HTML
-that every viewer can show, and its widget. The style that comes with the stored form shows one of
-them: the widget while it is there, else the stored form. On paper it is the stored form always:
-what a widget draws is as dark as the page's theme.
+A widget lives as long as its kernel. In a notebook opened the next day JupyterLab finds none, and
+its own widget state (`saveState`) is lost when the notebook is saved without the kernel. So a view
+has two outputs under its cell: its stored form, which is plain HTML that every viewer can show,
+and its widget. The style sheet of the stored form shows one of them: the widget while it exists,
+else the stored form. While the widget is in the panel of `lab.dock()`, there is only a line that
+says so. On paper it is always the stored form: a widget is as dark as the page's theme.
 """
 
 from __future__ import annotations
@@ -24,60 +24,63 @@ if TYPE_CHECKING:
 __all__ = ['Stored']
 
 TODO = 'Run this cell again.'
+DOCKED = 'The {} is in the panel on the right. Close the panel to have it here.'
 
 
 class Stored:
     """The stored form of one view.
 
     Args:
-        widget: The view's part in the page.
+        widget: The view's widget.
     """
 
     def __init__(self, widget: PageWidget) -> None:
         self._widget = widget
-        # The page puts it on the view, so that the style knows whether it is there.
+        # The page puts it on the view, so that the style sheet can tell whether it exists.
         self._mark = widget.mark
-        # What is in the notebook; None as long as nothing is shown.
-        self._kept: dict[str, str] | None = None
+        # The current content of the output; None before it is shown.
+        self._shown: dict[str, str] | None = None
 
     def show(self, still: Mapping[str, str]) -> None:
-        """Show both under the current cell.
+        """Show both outputs under the current cell.
 
         Args:
             still: Text, `text/plain`, and maybe a picture, `image/svg+xml` or `image/png`.
         """
         from IPython.display import display
 
-        self._kept = dict(still)
+        self._shown = dict(still)
         display(self._bundle(), raw=True, display_id=self._mark)  # type: ignore[no-untyped-call]
         view = {'application/vnd.jupyter.widget-view+json': self._widget.get_view_spec()}
         display(view, raw=True)  # type: ignore[no-untyped-call]
 
-    def keep(self, still: Mapping[str, str]) -> None:
-        """Keep another text and picture from now on, wherever the view is shown."""
+    def update(self, still: Mapping[str, str]) -> None:
+        """Replace text and picture in every place where the view is shown."""
         from IPython.display import update_display
 
-        if self._kept is not None and self._kept != still:
-            self._kept = dict(still)
+        if self._shown is not None and self._shown != still:
+            self._shown = dict(still)
             update_display(self._bundle(), raw=True, display_id=self._mark)  # type: ignore[no-untyped-call]
 
     def _bundle(self) -> dict[str, str]:
-        assert self._kept is not None
-        text = self._kept['text/plain']
+        assert self._shown is not None
+        text = self._shown['text/plain']
         body = f'<pre>{html.escape(text)}</pre>'
-        for kind, data in self._kept.items():
+        for kind, data in self._shown.items():
             if kind.startswith('image/'):
-                # As a picture of its own: names inside do not meet those of the live one.
+                # As a separate image: its ids must not clash with those of the live one.
                 source = data if kind == 'image/png' else b64encode(data.encode()).decode()
                 words = html.escape(text)
                 body = f'<img src="data:{kind};base64,{source}" alt="{words}">'
+        docked = DOCKED.format(type(self._widget).__name__.removesuffix('Page').lower())
         now = datetime.now()
         words = f'Stored on {now.day} {now:%B %Y} at {now:%H:%M:%S}. <span>{TODO}</span>'
         page = (
             f'<style class="labkit-style">{_style(self._mark)}</style>'
+            f'<p class="{self._mark}-docked" hidden>{docked}</p>'
             f'<div class="labkit-stored {self._mark}-stored"><p>{words}</p>{body}</div>'
         )
-        return {**self._kept, 'text/html': page}
+        return {**self._shown, 'text/html': page}
 
 
 @functools.lru_cache(maxsize=1)
@@ -86,10 +89,15 @@ def _rules() -> str:
 
 
 def _style(mark: str) -> str:
-    """Return the style of the stored form, and what hides it while the view is there."""
+    """Return the style of the stored form, and the rules that hide it while the widget exists."""
     here = f'.jp-OutputArea:has(> .jp-OutputArea-child .{mark}.labkit-view)'
     stored = f'> .jp-OutputArea-child:has(.{mark}-stored)'
+    in_panel = f':has(.jupyterlab-sidecar .{mark}.labkit-view)'
+    docked = f'body{in_panel} .jp-Notebook'
     return (
-        f'{_rules()}\n@media screen {{ {here} {stored} {{ display: none; }} }}'
+        f'{_rules()}\n@media screen {{ body:not({in_panel}) {here} {stored}, '
+        f'{docked} .{mark}-stored, '
+        f'{docked} .jp-OutputArea-child:has(.{mark}.labkit-view) {{ display: none; }}\n'
+        f'{docked} .{mark}-docked {{ display: block; }} }}'
         f'\n@media print {{ .{mark}.labkit-view {{ display: none !important; }} }}'
     )

@@ -1,8 +1,8 @@
 """Drive a robot by hand: keys, mouse or touch become Twist messages. `lab.teleop()`.
 
-The page says which way to go as long as a key is held; the node publishes. Whatever goes wrong
-between the two, the robot stops: the page stops it when it is left, and the node stops it when it
-hears nothing of the page.
+The page sends a direction while a key is held; the node publishes. If anything goes wrong between
+them, the robot stops: the page stops it when it loses focus, and the node stops it when the page
+falls silent.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 from labkit.background.nodes import destroy_node, helper_node, node_exists
 from labkit.background.runtime import runtime
-from labkit.errors import LabError
+from labkit.errors import LabError, first_few, quoted
 from labkit.rosgraph.names import full_node_name
 from labkit.sim.kinematics import BURGER
 from labkit.views.arena_picture import two
-from labkit.views.live import living
-from labkit.views.live_page import LivePage, News
+from labkit.views.live import live_views
+from labkit.views.live_page import LivePage, Update
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -27,10 +27,10 @@ __all__ = ['Teleop', 'teleop']
 
 # Commands are published this often while a key is held, Hz.
 RATE = 10.0
-# The page repeats itself ten times a second. When it does not, it is gone, or can't be heard.
+# The page repeats itself ten times a second. If it does not, it is gone or unreachable.
 SILENCE_SEC = 0.5
 QUEUE_DEPTH = 10
-# What `+` and `-` step through: shares of the highest speeds.
+# Speeds that `+` and `-` step through, as shares of the maximum.
 STEPS = (0.25, 0.5, 0.75, 1.0)
 FIRST_STEP = 3
 # A key turns at this share of the turning rate: a tap of 0.1 s turns a Burger by 8 degrees.
@@ -43,15 +43,14 @@ _KEYS = """\
 
 
 class Teleop(LivePage):
-    """A node that publishes what a person does, to be shown in a cell; see `teleop`.
+    """A node that publishes a person's commands, to be shown in a cell; see `teleop`.
 
-    The page sends which way to go, as two numbers from -1 to 1: `v` forwards and `w` to the left.
+    The page sends a direction as two numbers from -1 to 1: `v` forwards and `w` to the left.
 
     Attributes:
-        node: The node.
         topic: Full name of its topic.
-        published: The speeds of the last command, in m/s and rad/s; None if there was none.
-        count: How many commands have been published.
+        published: Speeds of the last command, m/s and rad/s; None before the first.
+        count: Number of published commands.
     """
 
     _name = 'teleop'
@@ -70,26 +69,26 @@ class Teleop(LivePage):
     ) -> None:
         for label, value in (('max_speed', max_speed), ('max_turn', max_turn)):
             if not (isinstance(value, (int, float)) and 0 < value < math.inf):
-                raise LabError(f'{label} must be a number above 0, but it is {value!r}.')
+                raise LabError(f'{label} must be a number above 0, but it is {quoted(value)}.')
         runtime.start()
         self.max_speed, self.max_turn = float(max_speed), float(max_turn)
         self.published: tuple[float, float] | None = None
         self.count = 0
-        # The way to go, None while no key is held; and when the page said so.
-        self._way: tuple[float, float] | None = None
+        # The current direction, None while no key is held; and when the page sent it.
+        self._direction: tuple[float, float] | None = None
         self._heard_at = 0.0
         self._listeners = 0
         self._msg_type = _message_class(stamped)
-        # First: where its cell was run before, this ends what is left of that.
+        # First: this closes the view of an earlier run of the cell.
         super().__init__()
         self._open_node(name, namespace, topic)
-        # Where no page shows it too: its node is there.
-        self._take_place()
+        # Even without a page: its node runs.
+        self._start()
 
     def _open_node(self, name: str, namespace: str, topic: str) -> None:
         full_name = full_node_name(name, namespace)
         others = [view for view in _teleops() if view.node.get_fully_qualified_name() == full_name]
-        # Several have one node: the one that is held drives.
+        # Teleops of one name share a node: the one in use drives.
         self.node = (
             others[0].node
             if others
@@ -98,17 +97,17 @@ class Teleop(LivePage):
         self._publisher = self.node.create_publisher(self._msg_type, topic, QUEUE_DEPTH)
         self.topic: str = self._publisher.topic_name
         self._repeat = self.node.create_timer(1 / RATE, self._drive)
-        # A new way is published at once, in the background, and not when the timer comes round.
-        self._new_way = self.node.create_guard_condition(self._drive_now)
+        # A new direction is published at once, in the background, not at the next timer tick.
+        self._new_direction = self.node.create_guard_condition(self._drive_now)
         if not others:
             runtime.add(self.node)
 
     # -- for cells ------------------------------------------------------------------------------
 
     def stop(self) -> None:
-        """Let the robot stop, whatever key is held."""
+        """Stop the robot, even if a key is held."""
         with self._lock:
-            self._way = None
+            self._direction = None
             self._publish(0.0, 0.0)
 
     def close(self) -> None:
@@ -124,20 +123,20 @@ class Teleop(LivePage):
             f'{two(share * KEY_TURN * self.max_turn)} rad/s'
         )
 
-    def _still(self) -> dict[str, str]:
+    def _static(self) -> dict[str, str]:
         return {'text/plain': repr(self)}
 
     # -- the end --------------------------------------------------------------------------------
 
     def _close(self) -> None:
         with self._lock:
-            # Nobody looks any more, so nobody holds a key.
-            if self._way is not None:
+            # Nobody is looking, so nobody holds a key.
+            if self._direction is not None:
                 self.stop()
             super()._close()
 
-    def _cut_off(self) -> str:
-        words = super()._cut_off()
+    def _why_stopped(self) -> str:
+        words = super()._why_stopped()
         if not words and self.node is not None and not node_exists(self.node):
             words = 'The node of this teleop has ended. Run this cell to start it again.'
         return words
@@ -151,7 +150,7 @@ class Teleop(LivePage):
             return
         if shared:
             self.node.destroy_timer(self._repeat)
-            self.node.destroy_guard_condition(self._new_way)
+            self.node.destroy_guard_condition(self._new_direction)
             self.node.destroy_publisher(self._publisher)
             return
         entry = runtime.entry_of(self.node)
@@ -162,19 +161,19 @@ class Teleop(LivePage):
 
     # -- the page -------------------------------------------------------------------------------
 
-    def _hear(self, content: dict[str, Any]) -> None:
-        """The page says which way to go, or to stop."""
-        way = content.get('v'), content.get('w')
+    def _handle_request(self, content: dict[str, Any]) -> None:
+        """Handle a direction, or a stop."""
+        direction = content.get('v'), content.get('w')
         if content.get('stop'):
             self.stop()
-        elif all(isinstance(part, (int, float)) and math.isfinite(part) for part in way):
-            v, w = (max(-1.0, min(1.0, float(part))) for part in way if part is not None)
-            is_new = self._way != (v, w)
-            self._way, self._heard_at = (v, w), time.monotonic()
+        elif all(isinstance(part, (int, float)) and math.isfinite(part) for part in direction):
+            v, w = (max(-1.0, min(1.0, float(part))) for part in direction if part is not None)
+            is_new = self._direction != (v, w)
+            self._direction, self._heard_at = (v, w), time.monotonic()
             if is_new and node_exists(self.node):
-                self._new_way.trigger()  # type: ignore[no-untyped-call]
+                self._new_direction.trigger()  # type: ignore[no-untyped-call]
 
-    def _news(self, everything: bool) -> News:
+    def _update(self, everything: bool) -> Update:
         deaf = self.published is not None and not self._listeners
         state = {
             'topic': self.topic,
@@ -184,9 +183,26 @@ class Teleop(LivePage):
             'turn': KEY_TURN,
             'published': self.published,
             'count': self.count,
-            'note': f'Nobody listens on {self.topic}. Is the robot running?' if deaf else '',
+            'note': self._why_nobody_listens() if deaf else '',
         }
-        return self._new_of(state), []
+        return self._changes(state), []
+
+    def _why_nobody_listens(self) -> str:
+        end = self.topic[self.topic.rindex('/') :]
+        names = self.node.get_topic_names_and_types() if node_exists(self.node) else []
+        heard = sorted(
+            topic
+            for topic, _ in names
+            if topic.endswith(end) and self.node.count_subscribers(topic)
+        )
+        words = f'Nobody listens on {self.topic}. '
+        if not heard:
+            return f'{words}Is the robot running?'
+        space = heard[0].removesuffix(end).strip('/')
+        return (
+            f'{words}Somebody does on {first_few(heard)}. '
+            f'Choose a robot: lab.teleop(namespace={space!r})'
+        )
 
     # -- driving --------------------------------------------------------------------------------
 
@@ -197,10 +213,10 @@ class Teleop(LivePage):
 
     def _drive(self) -> None:
         with self._lock:
-            if self._way is None:
+            if self._direction is None:
                 return
             if time.monotonic() - self._heard_at <= SILENCE_SEC:
-                v, w = self._way
+                v, w = self._direction
                 self._publish(v * self.max_speed, w * self.max_turn)
             else:
                 self.stop()
@@ -219,13 +235,12 @@ class Teleop(LivePage):
 
 
 def _teleops() -> list[Teleop]:
-    """Return the teleops that live, and have a node."""
-    found = [view for view in living() if isinstance(view, Teleop)]
+    """Return the live teleops that have a node."""
+    found = [view for view in live_views() if isinstance(view, Teleop)]
     return [view for view in found if view.node is not None and node_exists(view.node)]
 
 
 def _message_class(stamped: bool) -> type:
-    """Return the class of what is published."""
     from geometry_msgs.msg import Twist, TwistStamped
 
     found: type = TwistStamped if stamped else Twist
@@ -244,11 +259,11 @@ def teleop(
     """Drive a robot with keys, mouse or touch.
 
     A node publishes `geometry_msgs/msg/Twist` ten times a second while a key is held. The robot
-    stops when the key is let go, when the page is left, and when the page can't be heard.
+    stops when the key is released, when the page loses focus, and when the page is unreachable.
 
     Args:
-        topic: Where the commands go.
-        namespace: For one of several robots: `'robot1'` makes it `/robot1/cmd_vel`.
+        topic: Topic of the commands.
+        namespace: One of several robots: `'robot1'` makes it `/robot1/cmd_vel`.
         name: Name of the node.
         max_speed: Full speed, m/s.
         max_turn: Full turning rate, rad/s.
@@ -256,10 +271,10 @@ def teleop(
             Jazzy expect by default, on the robot and in Gazebo.
 
     Returns:
-        What a cell shows as keys and a pad. `.close()` ends it.
+        Keys and a pad in a cell. `.close()` ends it.
 
     Raises:
-        LabError: A speed makes no sense.
+        LabError: A speed is not a positive number.
     """
     return Teleop(
         topic=topic,

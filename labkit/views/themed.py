@@ -1,8 +1,7 @@
-"""A still picture in the colours of the page: JupyterLab shows one as it is, whatever the theme.
+"""Still pictures in the colours of the page: JupyterLab shows images the same in any theme.
 
-An SVG that is part of the page's HTML knows the page's variables, one that is shown as a picture
-does not. A page that does not trust a notebook takes drawings out of its HTML; for such a page,
-the picture as it is stands beside the drawing.
+An inline SVG can use the page's variables, an image can't. A page that does not trust a notebook
+strips inline drawings; for such a page, the plain image stands beside the drawing.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from html import escape
 
 __all__ = ['as_source', 'picture', 'themed']
 
-# Grey, black and white of our own drawings and of matplotlib's, and what each is in a page.
+# Greys, black and white of our drawings and matplotlib's, and their variables in a page.
 _THEME = {
     '#ffffff': 'var(--jp-layout-color0, #ffffff)',
     '#000000': 'var(--jp-content-font-color1, #000000)',
@@ -33,9 +32,9 @@ def themed(drawing: str, words: str, source: str) -> str:
     """Return a drawing as HTML that follows the page's theme.
 
     Args:
-        drawing: An SVG picture; an element's colours are all attributes, or all in its style.
+        drawing: An SVG; an element's colours are all attributes, or all in its style.
         words: Its text alternative.
-        source: The same as a picture, see `as_source`, for pages that do not trust the notebook.
+        source: The same as an image, see `as_source`, for pages that do not trust the notebook.
     """
     drawing = drawing[drawing.index('<svg') :]
     drawing = drawing.replace('<svg', f'<svg aria-hidden="true" style="{_STYLE}"', 1)
@@ -49,7 +48,7 @@ def themed(drawing: str, words: str, source: str) -> str:
 
 
 def _with_style(tag: re.Match[str]) -> str:
-    """Return a tag with its colours in a style: an attribute can not hold a variable."""
+    """Return a tag with its colours in a style: an attribute can't hold a variable."""
     paints = _PAINT.findall(tag[0])
     if not paints or 'style=' in tag[0]:
         return tag[0]
@@ -60,15 +59,10 @@ def _with_style(tag: re.Match[str]) -> str:
 
 
 def picture(words: str, source: str) -> str:
-    """Return a picture as HTML.
-
-    Args:
-        words: Its text alternative.
-        source: What it shows, see `as_source`.
-    """
+    """Return an image as HTML, with a text alternative; see `as_source`."""
     return f'<img alt="{escape(words)}" src="{source}" style="{_STYLE}">'
 
 
 def as_source(kind: str, data: bytes) -> str:
-    """Return a file, such as one of the kind `image/png`, as the source of a picture."""
+    """Return a file of a kind such as `image/png` as a data URL."""
     return f'data:{kind};base64,{b64encode(data).decode()}'

@@ -1,4 +1,4 @@
-"""The part of a view that lives in the page: its files, and what makes a notebook show it."""
+"""The browser side of a view: its files, and the widget that loads them."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from labkit.background.compat import hear_while_cells_run
 
 __all__ = ['PageWidget', 'page_files', 'widget_class']
 
-# What else the page's part of a view is made of. It goes before its own.
-_SHARED = {'arena': ('map', 'seen'), 'bag': ('map', 'lines'), 'plot': ('lines',)}
+# Files that several views share, loaded before the view's own.
+_SHARED = {'arena': ('map', 'occupancy_grid'), 'bag': ('map', 'lines'), 'plot': ('lines',)}
 
 
 def page_files(name: str) -> tuple[str, str]:
-    """Return JavaScript and style of a view's part in the page.
+    """Return JavaScript and style of a view.
 
     Args:
-        name: Its files are `NAME.js` and `NAME.css`; what several views share goes before.
+        name: Its files are `NAME.js` and `NAME.css`; shared ones come first.
     """
     folder = Path(__file__).parent
     parts = ('live', *_SHARED.get(name, ()), name)
@@ -33,16 +33,18 @@ def page_files(name: str) -> tuple[str, str]:
 
 
 class PageWidget(anywidget.AnyWidget):
-    """The part of a view in the page.
+    """The browser side of a view.
 
     Attributes:
-        mark: A class of the view's place in the page, which no other one has.
+        mark: A unique class of its element in the page.
+        panel: The id of the panel that shows it, '' without one. See `labkit.views.dock`.
     """
 
     mark = traitlets.Unicode().tag(sync=True)
+    panel = traitlets.Unicode().tag(sync=True)
 
     def open(self) -> None:
-        """Let the page know of it."""
+        """Open the connection to the page."""
         super().open()
         hear_while_cells_run(self.comm)
 
@@ -53,12 +55,8 @@ class PageWidget(anywidget.AnyWidget):
 
 @functools.cache
 def widget_class(name: str) -> type[PageWidget]:
-    """Return the class of a view's part in the page.
-
-    Args:
-        name: See `page_files`.
-    """
+    """Return the widget class of a view; `name` as for `page_files`."""
     script, style = page_files(name)
     files = {'_esm': script, '_css': style}
-    # anywidget takes the name of the class for that of its style.
+    # anywidget names the style after the class.
     return type(f'{name.capitalize()}Page', (PageWidget,), files)

@@ -9,6 +9,7 @@ memory. It is a script, so that it can be asked for any number:
 from __future__ import annotations
 
 import fcntl
+import io
 import json
 import os
 import signal
@@ -18,6 +19,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Sequence
+from contextlib import redirect_stdout
 from pathlib import Path
 from typing import Any
 
@@ -26,19 +28,19 @@ IN_NAMESPACE = 'LABKIT_TEST_IN_NAMESPACE'
 UNSHARE = ['unshare', '--net', '--mount', '--pid', '--fork', '--kill-child', '--mount-proc']
 OTHER_USER = 12345
 HEARD_SEC = 300.0
-# So many newcomers: memory is for those who stay.
+# Number of newcomers: memory is for those who stay.
 AT_ONCE = 16
 
 
 def unshare() -> list[str]:
-    """Return the command before the command, [] if this system does not allow namespaces."""
+    """Return the command prefix for a namespace, [] if this system does not allow one."""
     command = [*UNSHARE, *([] if os.geteuid() == 0 else ['--map-root-user'])]
     done = subprocess.run([*command, 'true'], capture_output=True)
     return command if done.returncode == 0 else []
 
 
 def run(*words: object, env: dict[str, str]) -> Any:
-    """Run a crowd in a namespace, and return what it has found."""
+    """Run a crowd in a namespace, and return its results."""
     command = [*unshare(), sys.executable, __file__, *map(str, words)]
     done = subprocess.run(command, env={**env, IN_NAMESPACE: '1'}, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -46,7 +48,7 @@ def run(*words: object, env: dict[str, str]) -> Any:
 
 
 class Member:
-    """A process that does something, line by line told what has come of it.
+    """A process that reports its progress line by line.
 
     Args:
         work: What it does. It is given a function that tells a result, and one that waits until
@@ -89,7 +91,7 @@ class Member:
 
 
 def claim(user_id: int = 0) -> Member:
-    """Make a process that claims a domain when it is asked, and keeps it."""
+    """Make a process that claims a domain on request, and keeps it."""
 
     def work(tell: Callable[[Any], object], wait: Callable[[], object]) -> None:
         from labkit.background.domains import claim_domain
@@ -97,28 +99,70 @@ def claim(user_id: int = 0) -> Member:
         if user_id:
             os.setuid(user_id)
         wait()
-        held = claim_domain()
-        tell(held.domain_id)
+        with redirect_stdout(io.StringIO()) as said:
+            held = claim_domain()
+        tell([held.domain_id, said.getvalue()] if said.getvalue() else held.domain_id)
         wait()
 
     return Member(work)
 
 
+def hog(user_id: int, address: str) -> Member:
+    """Make a process that takes the ports of all claims, and keeps them.
+
+    Args:
+        user_id: Whose it is.
+        address: Where it takes them; with `to` before it, it connects to them.
+    """
+
+    def work(tell: Callable[[Any], object], wait: Callable[[], object]) -> None:
+        from labkit.background.domains import _KNOWN, _claim_port
+        from labkit.domain_ids import BETWEEN
+
+        os.setuid(user_id)
+        word, _, place = address.rpartition(' ')
+        sockets = []
+        for domain_id in (*_KNOWN, *BETWEEN):
+            family = socket.AF_INET6 if ':' in place else socket.AF_INET
+            sockets.append(socket.socket(family, socket.SOCK_DGRAM))
+            getattr(sockets[-1], 'connect' if word else 'bind')((place, _claim_port(domain_id)))
+        tell('all taken')
+        wait()
+
+    return Member(work)
+
+
+def greed(address: str) -> dict[str, Any]:
+    """Let one account take all domains, and then notebooks of two others come."""
+    from labkit.background.domains import claimed_domains
+
+    if not _knows_users():
+        return {}
+    thief = hog(OTHER_USER, address)
+    assert thief.next() == 'all taken'
+    members = [claim(user) for user in (0, 0, 0, OTHER_USER + 1, OTHER_USER + 1, OTHER_USER)]
+    found: dict[str, Any] = {'taken': at_once(members), 'own': list(claimed_domains())}
+    thief.end()
+    newcomer = claim()
+    found['later'] = at_once([newcomer])
+    return found
+
+
 def at_once(members: Sequence[Member]) -> list[Any]:
-    """Let them all go on at the same time; return their next results."""
+    """Let all processes continue at the same time; return their next results."""
     for member in members:
         member.ask()
     return [member.next() for member in members]
 
 
 def _knows_users() -> bool:
-    """Tell whether the namespace has more than the one user who has made it."""
+    """Tell whether the namespace has other users than the one who made it."""
     _, _, count = Path('/proc/self/uid_map').read_text(encoding='ascii').split()[:3]
     return int(count) > OTHER_USER
 
 
 def claims(count: int) -> dict[str, Any]:
-    """Let notebooks of two users claim domains at once, some be killed, and then all be taken."""
+    """Let notebooks of two users claim domains at once, kill some, and then claim all domains."""
     from labkit.background.domains import claimed_domains
 
     # One name, so that each of them begins with the same domain.
@@ -144,7 +188,7 @@ def claims(count: int) -> dict[str, Any]:
 
 
 def notebook(domain_id: int | None, name: str, period_sec: float) -> Member:
-    """Make a process with a talker and a listener; it tells its domain, then what it hears."""
+    """Make a process with a talker and a listener; it reports its domain, then its messages."""
 
     def work(tell: Callable[[Any], object], wait: Callable[[], object]) -> None:
         from rclpy.node import Node
@@ -223,7 +267,7 @@ def talk(domain_ids: list[int | None], period_sec: float) -> dict[str, Any]:
 
 
 def _memory(pid: int) -> int:
-    """Return the memory of a process, its part of what it shares included, in bytes."""
+    """Return the memory of a process with its share of shared memory, in bytes."""
     with open(f'/proc/{pid}/smaps_rollup', encoding='ascii') as file:
         return sum(1024 * int(line.split()[1]) for line in file if line.startswith('Pss:'))
 
@@ -232,7 +276,7 @@ def _memory(pid: int) -> int:
 
 
 def prepare() -> None:
-    """Make the namespace what a machine is: loopback, and shared memory."""
+    """Set up loopback and shared memory in the namespace."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:
         up = struct.pack('16sh', b'lo', 1)  # ifreq with IFF_UP
         fcntl.ioctl(any_socket, 0x8914, up)  # SIOCSIFFLAGS
@@ -241,7 +285,7 @@ def prepare() -> None:
 
 
 def main(what: str, *numbers: str) -> None:
-    """Do it, in a namespace, and print what was found."""
+    """Run the crowd in a namespace, and print its results."""
     if not os.environ.get(IN_NAMESPACE):
         print(json.dumps(run(what, *numbers, env=dict(os.environ))))
         return
@@ -249,6 +293,8 @@ def main(what: str, *numbers: str) -> None:
     found = claims(int(numbers[0])) if what == 'claims' else None
     if what == 'talk':
         found = talk([None] * int(numbers[0]), 1.0)
+    if what == 'greed':
+        found = greed(' '.join(numbers))
     if what == 'neighbours':
         found = talk([int(number) for number in numbers], 0.1)
     print(json.dumps(found))

@@ -84,7 +84,7 @@ def test_cells_that_are_run_again_leave_one_server_and_one_client(kernel):
         kernel.run(START)
     result = kernel.run("""
 from labkit.background.runtime import runtime
-from labkit.rosgraph.actions import action_ends
+from labkit.rosgraph.servers import action_ends
 print(action_ends(runtime.helper, '/count'))
 print(runtime.helper.count_publishers('/count/_action/feedback'))
 print(runtime.helper.count_services('/count/_action/send_goal'))
@@ -249,3 +249,29 @@ print(runtime.executor.settle(60))
 def test_a_client_that_is_destroyed_when_something_waits_for_it_is_no_error(script):
     result = script(DESTROYED)
     assert (result.stdout, result.stderr) == ('True\nTrue\n', '')
+
+
+def test_ros_stops_while_an_action_executes(kernel):
+    kernel.run(NODES)
+    kernel.run(
+        'import threading, time\n'
+        'begun, ends = threading.Event(), threading.Event()\n'
+        'class Busy(Counter):\n'
+        '    def execute(self, handle):\n'
+        '        begun.set()\n'
+        '        ends.wait()\n'
+        '        return Fibonacci.Result()'
+    )
+    kernel.run('busy, asker = lab.spin(Busy()), lab.spin(Asker())')
+    stopped = kernel.run(
+        'lab.wait_until(asker.client.server_is_ready)\n'
+        'asker.client.send_goal_async(Fibonacci.Goal(order=3))\n'
+        'begun.wait()\n'
+        'lab.stop()\n'
+        'ends.set()'
+    )
+    assert (stopped.error, stopped.text) == ('', '')
+    again = kernel.run(
+        START + '\nprint(list(asker.client.send_goal(Fibonacci.Goal(order=3)).result.sequence))'
+    )
+    assert (again.error, again.text) == ('', '[0, 1, 2]\n')

@@ -1,4 +1,4 @@
-"""What labkit relies on in rclpy and ipykernel that has no public name: a test for each."""
+"""Contract tests for the private names of rclpy and ipykernel that labkit uses."""
 
 from __future__ import annotations
 
@@ -235,42 +235,6 @@ print(node.get_parameter('use_sim_time').value, len(list(node.subscriptions)) ==
     assert result.stdout == '5000000000 True\nTrue False\nFalse True\n', result.stderr
 
 
-def test_a_rate_is_awaited_while_a_thread_sleeps_in_it(script):
-    result = script(
-        READY
-        + """
-import os, threading, time
-rate = node.create_rate(100)
-(timer,) = node.timers
-other = node.create_timer(1.0, lambda: None)
-print(compat.rate_is_awaited(other), compat.rate_is_awaited(timer))
-go, done = threading.Event(), threading.Event()
-
-def work():
-    rate.sleep()
-    done.set()
-    go.wait()
-    while True:
-        rate.sleep()
-
-sleeper = threading.Thread(target=work, daemon=True)
-sleeper.start()
-while not compat.rate_is_awaited(timer):
-    time.sleep(0.001)
-print(compat.rate_sleepers(timer) == {sleeper.ident}, compat.rate_sleepers(other))
-while not done.is_set():
-    executor.spin_once(timeout_sec=0.1)
-print(compat.rate_is_awaited(timer))
-go.set()
-while not compat.rate_is_awaited(timer):
-    time.sleep(0.001)
-print('asleep', flush=True)
-os._exit(0)
-"""
-    )
-    assert result.stdout == 'None False\nTrue set()\nFalse\nasleep\n', result.stderr
-
-
 def test_every_private_name_is_here():
     from labkit.background import compat
 
@@ -455,3 +419,96 @@ thread.join()
     )
     assert (later.error, later.text) == ('', '')
     assert kernel.wait_for_output(first.msg_id, 'third') == 'first\nthird\n'
+
+
+def test_what_a_callback_awaits_is_known(script):
+    result = script(
+        READY
+        + """
+from rclpy.task import Future
+future = Future()
+async def inner():
+    return await future
+async def outer():
+    return await inner()
+task = Task(outer)
+print(compat.awaited_by(task))
+task()
+print(compat.awaited_by(task) is future)
+future.set_result(1)
+task()
+print(task.result(), compat.awaited_by(task))
+"""
+    )
+    assert result.stdout == 'None\nTrue\n1 None\n', result.stderr
+
+
+def test_an_action_client_and_the_timer_of_a_rate_are_known(script):
+    result = script(
+        READY
+        + """
+from rclpy.action import ActionClient
+from rclpy.action.client import ClientGoalHandle
+from test_msgs.action import Fibonacci
+client = ActionClient(node, Fibonacci, 'fibonacci')
+response = Fibonacci.Impl.SendGoalService.Response()
+handle = ClientGoalHandle(client, [0] * 16, response)
+print(compat.action_type_of(client) is Fibonacci, compat.client_of_goal(handle) is client)
+made, create_timer = [], node.create_timer
+def create(period, callback, *args):
+    made.append(compat.is_of_rate(node, *args))
+    return create_timer(period, callback, *args)
+node.create_timer = create
+node.create_rate(10)
+node.create_timer(1.0, print)
+node.create_timer(1.0, print, node.default_callback_group)
+print(made)
+"""
+    )
+    assert result.stdout == 'True True\n[True, False, False]\n', result.stderr
+
+
+def test_feedback_of_a_goal_outlives_its_result(script):
+    result = script(
+        READY
+        + """
+from rclpy.action import ActionClient
+from rclpy.action.client import ClientGoalHandle
+from rclpy.task import Future
+from test_msgs.action import Fibonacci
+from unique_identifier_msgs.msg import UUID
+client = ActionClient(node, Fibonacci, 'fibonacci')
+goal = bytes(16)
+future = Future()
+# As rclpy does with the result.
+future.add_done_callback(lambda _: client._feedback_callbacks.pop(goal))
+client._feedback_callbacks[goal] = print
+handle = ClientGoalHandle(client, UUID(), Fibonacci.Impl.SendGoalService.Response())
+forget = compat.keep_feedback(handle, future)
+future.set_result(None)
+print(client._feedback_callbacks == {goal: print})
+forget()
+print(client._feedback_callbacks)
+"""
+    )
+    assert result.stdout == 'True\n{}\n', result.stderr
+
+
+def test_parameters_requests_and_the_timer_of_a_rate_are_known(script):
+    result = script(
+        READY
+        + """
+from rclpy.parameter import Parameter
+from std_srvs.srv import Trigger
+node = Node('given', parameter_overrides=[Parameter('speed', value=1)])
+node.declare_parameter('size', 2)
+given, declared = compat.parameters_of(node)
+print(given, 'size' in declared, 'speed' in declared)
+client = node.create_client(Trigger, 'work')
+print(compat.pending_requests(client))
+client.call_async(Trigger.Request())
+print(compat.pending_requests(client))
+print(compat.timer_of_rate(node.create_rate(10)) in node.timers)
+"""
+    )
+    assert result.stdout == "['speed'] True False\n0\n1\nTrue\n", result.stderr

@@ -1,4 +1,4 @@
-"""What callbacks write: under the cell of their node, whatever stands in sys.stdout."""
+"""Output of callbacks appears under the cell of their node, whatever sys.stdout is."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_an_error_is_shown_again_when_its_cell_is_run_again(kernel):
         assert not kernel.run('lab.wait_until(lambda: loud.count >= 3)').error
         shown = kernel.wait_for_output(cell.msg_id, 'ValueError: broken')
         assert shown.count('The callback on_timer of /loud failed') == 1
-    # What is known of it is not kept three times.
+    # Only one record of it is kept.
     errors = 'from labkit.background.runtime import runtime\nprint(len(runtime.console.errors))'
     assert kernel.run(errors).text == '1\n'
 

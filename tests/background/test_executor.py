@@ -1,4 +1,4 @@
-"""The background thread: nothing ends it, nobody waits for it in vain."""
+"""The background thread: nothing ends it, and no wait for it is in vain."""
 
 from __future__ import annotations
 
@@ -195,3 +195,27 @@ print(runtime.executor.settle(5.0), heard)
 """
     )
     assert (result.exit_code, result.stdout) == (0, "True ['a']\n"), result.stderr
+
+
+def test_no_one_who_waits_for_quiet_is_forgotten(script):
+    out = script("""
+import sys, threading
+import labkit as lab
+from labkit.background.runtime import runtime
+lab.start()
+sys.setswitchinterval(1e-6)
+done = threading.Event()
+
+def ask_in_passing():
+    while not done.is_set():
+        runtime.executor.settle(2e-5)
+
+thread = threading.Thread(target=ask_in_passing)
+thread.start()
+try:
+    print({runtime.executor.settle(5) for _ in range(2000)})
+finally:
+    done.set()
+    thread.join()
+""")
+    assert (out.exit_code, out.stdout) == (0, '{True}\n'), out.stderr

@@ -1,4 +1,4 @@
-"""However a program ends while nodes are running: it ends soon, and with its own exit code."""
+"""A program with running nodes ends soon and with its own exit code, however it ends."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-# What the background thread is doing when the program ends.
+# Activities of the background thread at the end of the program.
 FAST = 'callbacks run fast'
 BUSY = {
     FAST: 'self.publisher.publish(String(data="x"))',
@@ -46,7 +46,7 @@ busy = lab.spin(Busy())
 at_work.wait()
 """
 READY = "print('ready', flush=True)\n"
-# How the program ends -> its last lines, and the exit code it must have.
+# Kind of end -> the last lines of the program, and its expected exit code.
 ENDS = {
     'end of the script': ('', 0),
     'sys.exit(3)': ('sys.exit(3)', 3),
@@ -67,7 +67,7 @@ TIMEOUT_SEC = 120
 
 @contextmanager
 def started(command: list[str], env: dict[str, str]) -> Iterator[subprocess.Popen[str]]:
-    """Start a process; kill it at the end, should it still be there."""
+    """Start a process; kill it at the end if it is still running."""
     pipe = subprocess.PIPE
     with subprocess.Popen(command, env=env, stdout=pipe, stderr=pipe, text=True) as process:
         try:

@@ -1,4 +1,4 @@
-"""Lines of nodes are counted, in a box of their own, and stay a stream of plain text."""
+"""Lines of nodes are counted and boxed, and stay a stream of plain text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The functions that stand in for those of rclpy: same parameters, and they go back."""
+"""The replacements of rclpy's functions: same parameters, and undone by `uninstall()`."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_parameters_are_those_of_the_original(name: str) -> None:
     for key, value in named.items():
         assert key in original, f'{name} has no parameter {key}'
         assert (value.kind, value.default) == (original[key].kind, original[key].default), key
-    # What is not named has to be passed on, and what is named has to come first.
+    # Parameters without a name are passed on; those with one come first.
     assert list(named) == list(original)[: len(named)]
     assert passes_on or len(named) == len(original)
 
@@ -36,14 +36,13 @@ def test_parameters_are_those_of_the_original(name: str) -> None:
 def test_originals_come_back(kernel):
     kernel.run('import rclpy, rclpy.client, rclpy.executors, rclpy.node\nbefore = rclpy.init')
     code = """
-import labkit as lab
-from labkit.background import notebook_rclpy
+import labkit as lab, sys
 def replaced():
+    notebook_rclpy = sys.modules['labkit.background.notebook_rclpy']
     return [getattr(getattr(owner, name), '_labkit', False)
             for owner, name, _ in notebook_rclpy.REPLACED]
 print(replaced())
-lab.start()
-print(replaced())
+from labkit.background import notebook_rclpy
 notebook_rclpy.uninstall()
 print(replaced(), rclpy.init is before)
 lab.stop()
@@ -51,7 +50,6 @@ lab.start()
 print(replaced())
 """
     assert kernel.run(code).text.splitlines() == [
-        str([False] * len(REPLACED)),
         str([True] * len(REPLACED)),
         f'{[False] * len(REPLACED)} True',
         str([True] * len(REPLACED)),
@@ -154,6 +152,13 @@ ending = lab.spin(Ending('ending'))
 """
 
 
+# It is the end of it that is waited for, whatever that raises.
+ENDED = ENDING.replace(
+    '            {how}\n',
+    '            try:\n                {how}\n            finally:\n                ended.set()\n',
+)
+
+
 @pytest.mark.parametrize('how', ['rclpy.shutdown()', 'rclpy.try_shutdown()'])
 def test_shutdown_in_a_callback_ends_its_node_alone(kernel, how):
     kernel.run(NODES)
@@ -169,7 +174,9 @@ def test_shutdown_in_a_callback_ends_its_node_alone(kernel, how):
         'new = lab.spin(Ticker("ending"))\nlab.wait_until(lambda: new.ticks > 3)\n'
         'print(goes_on(), runtime.ended)\nrclpy.shutdown()\nprint(rclpy.ok())'
     )
-    assert (again.error, again.text) == ('', "['/other', '/ending'] {}\nFalse\n")
+    said = again.text.splitlines()
+    assert (again.error, said[0], said[-1]) == ('', "['/other', '/ending'] {}", 'False')
+    assert said[1].startswith('rclpy.shutdown() has ended /other, started by other cells.')
 
 
 def test_shutdown_in_a_callback_ends_spin_in_the_cell(kernel):
@@ -199,8 +206,8 @@ def test_shutdown_in_a_callback_ends_spin_in_the_cell(kernel):
 def test_nodes_can_be_spun_again_whatever_a_callback_has_ended(kernel, how):
     kernel.run(NODES)
     for _ in range(2):
-        cell = kernel.run(ENDING.format(how=how) + 'ended = lambda: ending.ticks > 1')
-        kernel.run('import time\nwhile not ended():\n    time.sleep(0.01)')
+        cell = kernel.run(f'import threading\nended = threading.Event()\n{ENDED.format(how=how)}')
+        assert kernel.run('ended.wait(50)').text == 'True\n'
         result = kernel.run('other = lab.spin(Ticker())\nprint(goes_on())')
         assert (result.error, "'/other'" in result.text) == ('', True)
         assert 'labkit itself' not in result.text
@@ -287,3 +294,106 @@ def test_after_the_stop_button_a_node_is_counted_as_what_it_is(kernel, spun):
         assert (state.error, state.text) == ('', f'{spun} {spun} {spun} {not spun} {spun}\n')
     names = kernel.run('lab.wait_until(lambda: node_names(ticker).count("/ticker") == 1)')
     assert names.error == ''
+
+
+HIDING = """
+class Hiding(Node):
+    {name} = lambda self: 1
+    def __init__(self):
+        super().__init__('hiding')
+"""
+
+
+@pytest.mark.parametrize('name', ['handle', 'timers', 'publishers', 'context'])
+def test_a_class_that_hides_what_a_node_has_is_refused_and_all_else_works(kernel, name):
+    kernel.run(NODES)
+    refused = kernel.run(HIDING.format(name=name) + 'lab.spin(Hiding())')
+    assert f'Hiding has something called {name}' in refused.error
+    assert kernel.run('print(goes_on())').text == "['/other']\n"
+    done = kernel.run('lab.graph()\nlab.spin(Ticker("third"))\nlab.stop()')
+    assert done.error == ''
+
+
+@pytest.mark.parametrize(
+    ('method', 'refused'),
+    [
+        ('get_name(self, msg): ...', True),
+        ('create_timer(self): ...', True),
+        ('get_parameter(self, msg): ...', True),
+        ('get_parameter(self, key): return super().get_parameter(key)', False),
+        ('create_rate(self, frequency): ...', False),
+        ('destroy_node(self, *more): ...', False),
+        ('create_client(self, *args, **rest): ...', False),
+    ],
+)
+def test_a_method_that_is_no_stand_in_for_one_of_rclpy_is_refused(kernel, method, refused):
+    kernel.run(NODES)
+    kernel.run(f'class Own(Ticker):\n    def {method}')
+    name = method.partition('(')[0]
+    assert (f'Own has something called {name}' in kernel.run('own = Own("own")').error) is refused
+
+
+@pytest.mark.parametrize('name', ['handle', 'timers'])
+def test_a_name_that_a_node_has_is_told_to_be_taken(kernel, name):
+    kernel.run(NODES)
+    said = f'rclpy uses the name {name} in each node'
+    assert said in kernel.run(f'other.{name} = 1').traceback
+    cell = kernel.run(
+        'class Wrong(Ticker):\n'
+        '    def on_timer(self):\n'
+        f'        self.{name} = 1\n'
+        "wrong = lab.spin(Wrong('wrong'))"
+    )
+    assert said in kernel.wait_for_output(cell.msg_id, 'rclpy uses')
+
+
+def test_a_name_of_something_else_than_a_node_is_not_told_to_be_taken(kernel):
+    kernel.run(
+        'class Box:\n'
+        '    @property\n'
+        '    def context(self): return 1\n'
+        '    def set(self): self.context = 2\n'
+        '    def __getattr__(self, name): raise AttributeError(name)\n'
+    )
+    for code in ('Box().set()', 'Box().timers'):
+        result = kernel.run(f'import labkit as lab\nlab.start()\n{code}')
+        assert result.error.startswith('AttributeError')
+        assert 'rclpy' not in result.traceback
+
+
+def test_a_node_without_a_name_is_told_so_in_words_of_rclpy(kernel):
+    kernel.run(NODES)
+    error = kernel.run('class Bare(Node): ...\nBare()').error
+    assert "Node.__init__() missing 1 required positional argument: 'node_name'" in error
+    assert '_NotebookSafe' not in error
+
+
+def test_what_was_set_on_a_class_of_messages_is_undone(kernel):
+    kernel.run(NODES)
+    assert kernel.run('from std_msgs.msg import Int16\nmsg = Int16\nmsg.data = 1').error == ''
+    told = kernel.run('msg = Int16()\nmsg.data = 1')
+    assert 'An earlier cell has set data on the class Int16 itself' in told.traceback
+    again = kernel.run('msg = Int16()\nmsg.data = 1\nprint(msg.data, Int16(data=2).data)')
+    assert (again.error, again.text) == ('', '1 2\n')
+
+
+def test_subscribers_can_be_waited_for_in_a_callback(kernel):
+    kernel.run(NODES)
+    found = kernel.run(
+        'from std_msgs.msg import String\n'
+        'said = []\n'
+        'hear = lambda msg: said.append(msg.data)\n'
+        "heard = other.create_subscription(String, 'news', hear, 10)\n"
+        'class Late(Ticker):\n'
+        '    def on_timer(self):\n'
+        '        super().on_timer()\n'
+        '        if self.ticks > 1:\n'
+        '            return\n'
+        "        publisher = self.create_publisher(String, 'news', 10)\n"
+        '        lab.wait_for_subscribers(publisher)\n'
+        "        publisher.publish(String(data='late'))\n"
+        "late = lab.spin(Late('late'))\n"
+        'lab.wait_until(lambda: said)\n'
+        'print(said)'
+    )
+    assert (found.error, found.text) == ('', "['late']\n")

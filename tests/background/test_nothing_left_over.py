@@ -1,4 +1,4 @@
-"""Nodes that are hard to be rid of: whatever ends a node, it is gone, and its error is shown."""
+"""Nodes that are hard to destroy: they are gone all the same, and their error is shown."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Mover(Node):
 """
 SPIN = 'mover = lab.spin(Mover())\nlab.wait_until(lambda: mover.ticks)\n'
 RIGHT = MOVER.format(wrong='super().destroy_node()') + SPIN
-# What a learner's destroy_node does -> what is shown of it.
+# Body of a learner's destroy_node -> the error shown.
 WRONG = {
     'self.publisher.publish(Twist)': 'TypeError',
     'Twist().linear.x = 1': "The 'x' field must be of type 'float'",
@@ -80,7 +80,7 @@ def test_a_node_whose_end_fails_is_gone_and_its_error_is_shown(kernel, wrong):
 
 @pytest.mark.parametrize('how', LEAVES)
 def test_no_service_of_a_node_that_has_ended_is_left(kernel, how):
-    """rclpy leaves the one that describes the node's types, and what it takes of memory."""
+    """rclpy leaves the type description service, and its memory."""
 
     def services():
         lines = kernel.run('%ros2 service list').text.splitlines()

@@ -1,4 +1,4 @@
-"""A cell that is run again: the new node stands in the graph under its own name."""
+"""A cell is run again: the new node is in the graph under its own name."""
 
 from __future__ import annotations
 

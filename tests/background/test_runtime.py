@@ -26,7 +26,7 @@ def test_cells_run_100_times_leave_one_node_of_each_kind(kernel):
         result = kernel.run(TALKER + LISTENER)
         assert not result.error, result.traceback
     assert kernel.run('lab.wait_until(lambda: len(listener.heard) > 20)').error == ''
-    # What is destroyed leaves the graph once the background thread has let go of it.
+    # A destroyed node leaves the graph once the background thread has released it.
     kernel.run('lab.wait_until(lambda: len(runtime.helper.get_node_names()) == 3)')
     assert kernel.run(COUNTS).text.strip() == f"['listener', 'talker'] 1 1 {threads}"
     once = kernel.run('print(len(listener.heard) == len(set(listener.heard)))')
@@ -202,7 +202,11 @@ def test_wrong_arguments_are_answered_in_words(kernel):
         ('lab.remove("talcer")', "Did you mean '/talker'?"),
         ('lab.start(domain_id=500)', 'domain_id must be a whole number from 0 to 101'),
         (f'lab.start(domain_id={elsewhere})', f'move to domain {elsewhere} only without nodes'),
-        ('lab.remove(talker)\nlab.spin(talker)', 'This Talker exists no more'),
+        ('lab.remove(talker)\nlab.spin(talker)', 'This Talker exists no more: it was destroyed.'),
+        (
+            'class Mute(Node):\n    def __init__(self):\n        pass\nlab.spin(Mute())',
+            'This Mute is not a node yet: its __init__ has not called the one of Node.',
+        ),
     ):
         result = kernel.run(code)
         assert expected in result.error, code

@@ -1,4 +1,4 @@
-"""What a learner sees of an error: their own lines, and the message."""
+"""A learner sees their own lines of a traceback, and the message."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LIBRARIES = ('site-packages', 'labkit/', 'threading.py')
     ('code', 'message'),
     [
         ('Int16(data=40000)', "AssertionError: The 'data' field must be an integer in"),
-        ("Node('a').create_publisher(3, 'b', 10)", 'Error'),
+        ("Node('a').create_publisher(Int16, 'b', 'deep')", 'TypeError: '),
         ("Node('a b')", 'InvalidNodeNameException: Invalid node name'),
         ('lab.wait_until(lambda: 1 / 0)', 'ZeroDivisionError: division by zero'),
     ],
@@ -30,6 +30,82 @@ def test_errors_inside_ros_are_shown_as_the_learners_lines(kernel, code, message
     assert 'mine()' in result.traceback
     for name in LIBRARIES:
         assert name not in result.traceback, result.traceback
+
+
+GONE = """
+class Talker(Node):
+    def __init__(self):
+        super().__init__('talker')
+        self.publisher = self.create_publisher(String, 'chatter', 10)
+
+class User(Node):
+    def __init__(self):
+        super().__init__('user')
+        self.create_timer(0.01, self.on_timer)
+
+    def on_timer(self):
+        old.publisher.publish(String())
+
+old = Talker()
+new = lab.spin(old), lab.spin(Talker())
+"""
+
+
+def test_what_was_destroyed_is_told_to_exist_no_more(kernel):
+    kernel.run(SETUP)
+    kernel.run(GONE)
+    assert 'This Talker exists no more' in kernel.run('old.get_name()').traceback
+    assert 'This Publisher exists no more' in kernel.run('old.publisher.topic_name').traceback
+    cell = kernel.run('user = lab.spin(User())')
+    said = kernel.wait_for_output(cell.msg_id, 'exists no more')
+    assert 'This Publisher exists no more' in said and ', in on_timer' in said
+    # Which of two things does not exist is not known here, and the node does.
+    other = kernel.run(
+        'class Other(User):\n'
+        '    def use(self):\n'
+        '        with old.publisher.handle: ...\n'
+        'Other().use()'
+    )
+    assert other.error.startswith('InvalidHandle') and 'no more' not in other.traceback
+
+
+@pytest.mark.parametrize(
+    ('code', 'hinted'),
+    [
+        ("self.create_timer(1.0, print)\n        super().__init__('a')", True),
+        ("self.get_logger().info('here')", True),
+        ('self.nme', False),
+        ("super().__init__('a')\n        self.nme", False),
+        ('super().__init__()', False),
+    ],
+)
+def test_a_node_that_is_none_yet_is_told_as_the_cause(kernel, code, hinted):
+    kernel.run(SETUP)
+    result = kernel.run(f'class A(Node):\n    def __init__(self):\n        {code}\nA()')
+    assert ('This A is not a node yet' in result.traceback) is hinted
+    assert 'During handling' not in result.traceback and 'inspect.py' not in result.traceback
+
+
+THREAD = """
+import threading
+node = Node('a')
+publisher = node.create_publisher(String, 'b', 10)
+node.destroy_node()
+
+def work():
+    publisher.publish(String())
+
+threading.Thread(target=work).start()
+"""
+
+
+def test_an_error_in_a_thread_is_shown_as_the_learners_line(kernel):
+    kernel.run(SETUP)
+    cell = kernel.run(THREAD)
+    said = kernel.wait_for_output(cell.msg_id, 'exists no more')
+    assert 'An error has ended Thread-' in said and 'line 7, in work' in said
+    for name in LIBRARIES:
+        assert name not in said, said
 
 
 def test_stop_button_shows_the_line_that_waited(kernel):

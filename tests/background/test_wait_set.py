@@ -1,4 +1,4 @@
-"""The kept wait set: what is destroyed is let go, what is new is seen, entity by entity."""
+"""The kept wait set: destroyed entities are released, new ones are noticed."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def quiet():
 
 
 def output(script, code: str) -> str:
-    """Return what a program of a node that listens to /topic prints."""
+    """Return the output of a program with a node that listens to /topic."""
     result = script(SETUP + code)
     assert result.exit_code == 0, result.stderr
     assert result.stderr == ''

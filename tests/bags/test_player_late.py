@@ -49,7 +49,7 @@ clocks = []
 node.create_subscription(
     Clock, '/clock', lambda msg: clocks.append(msg.clock.sec * 10**9 + msg.clock.nanosec), 5000
 )
-tick = Playing._tick
+tick = Playing._publish_clock
 ticks = 0
 
 def held_up(self, sec):
@@ -59,7 +59,7 @@ def held_up(self, sec):
         time.sleep(0.3)
     tick(self, sec)
 
-Playing._tick = held_up
+Playing._publish_clock = held_up
 lab.play({path!r}, '/odom', rate=5.0, clock=1000.0, wait=True)
 print(len(clocks) > 50, clocks == sorted(clocks))
 """

@@ -199,9 +199,26 @@ def test_bytes_that_are_no_message_are_told(tmp_path: Path) -> None:
             assert message.message
 
 
-def _bag_of_robot(folder: Path, storage: str, data: bytes) -> Path:
+# A type without a size, in pairs of pairs of pairs.
+LEVELS = [f'Level{n}[2] pair\n' for n in range(1, 61)]
+DOUBLED = LEVELS[0] + ''.join(
+    f'{"=" * 80}\nMSG: demo_msgs/Level{n}\n{text}'
+    for n, text in enumerate([*LEVELS[1:], 'uint8[0] nothing\n'], start=1)
+)
+
+
+@pytest.mark.parametrize('definition', ['string[400000000000] many\n', DOUBLED])
+def test_a_definition_of_more_than_there_is_takes_no_time(tmp_path: Path, definition: str) -> None:
+    path = _bag_of_robot(tmp_path, 'mcap', b'\0\1\0\0' + bytes(64), definition)
+    with open_bag(path) as bag:
+        (message,) = bag.messages()
+        with pytest.raises(LabError, match='a message has at least'):
+            assert message.message
+
+
+def _bag_of_robot(folder: Path, storage: str, data: bytes, text: str = PLAIN + NESTED) -> Path:
     """Return a file with one message of a type that is not installed."""
-    kind, text = 'demo_msgs/msg/Robot', PLAIN + NESTED
+    kind = 'demo_msgs/msg/Robot'
     if storage == 'mcap':
         path = folder / 'robot.mcap'
         with open(path, 'wb') as file:

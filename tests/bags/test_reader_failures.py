@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import json
 import random
+import re
+import shutil
 import sqlite3
 from pathlib import Path
 
+import lz4.frame  # type: ignore[import-untyped]
 import pytest
 import yaml
+import zstandard
+from mcap.records import Chunk
 from mcap.writer import CompressionType
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
+from labkit.bags import unpacking
+from labkit.bags.info import describe, topic_names
 from labkit.bags.reader import open_bag
 from labkit.errors import LabError
 from tests.bags import made
@@ -17,6 +26,8 @@ from tests.bags.made import START_NS, Stored
 
 # What each compressed chunk begins with.
 ZSTD = b'\x28\xb5\x2f\xfd'
+# Whole numbers of metadata.yaml that say when and how much.
+KEYS = ('nanoseconds', 'nanoseconds_since_epoch', 'message_count')
 
 
 def complaint(path: Path) -> LabError:
@@ -68,6 +79,31 @@ def test_a_file_that_is_none(tmp_path: Path, name: str, content: bytes, words: s
         assert error.todo
 
 
+@pytest.mark.parametrize(
+    ('content', 'what', 'todo'),
+    [
+        (b'version https://git-lfs.github.com/spec/v1\noid sha256:0', 'Git LFS', 'git lfs pull'),
+        (b'\n<!DOCTYPE html><html>', 'is a web page', 'Download the file itself'),
+    ],
+)
+def test_what_lies_in_the_place_of_a_file_is_told(
+    tmp_path: Path, messages: list[Stored], content: bytes, what: str, todo: str
+) -> None:
+    for maker, file in ((made.make_mcap, 'a_0.mcap'), (made.make_sqlite, 'b_0.db3')):
+        path = maker(tmp_path / file[0], messages)
+        (path / file).write_bytes(content)
+        error = complaint(path)
+        assert what in error.message and todo in error.todo
+
+
+def test_a_file_that_was_renamed_is_read(tmp_path: Path, messages: list[Stored]) -> None:
+    path = made.make_mcap(tmp_path / 'drive', messages)
+    (path / 'drive_0.mcap').rename(path / 'my drive.mcap')
+    with open_bag(path) as bag:
+        assert 'names other files' in bag.note
+        assert len(list(bag.messages())) == bag.message_count == 100
+
+
 def test_an_sqlite3_file_of_something_else(tmp_path: Path) -> None:
     database = sqlite3.connect(tmp_path / 'drive_0.db3')
     database.execute('CREATE TABLE cats(name TEXT)')
@@ -79,7 +115,9 @@ def test_an_sqlite3_file_of_something_else(tmp_path: Path) -> None:
 def test_a_file_that_is_missing(tmp_path: Path, messages: list[Stored]) -> None:
     path = made.make_mcap(tmp_path / 'drive', messages, files=3)
     (path / 'drive_1.mcap').unlink()
-    assert 'lacks drive_1.mcap' in complaint(path).message
+    error = complaint(path)
+    assert 'lacks drive_1.mcap, which its metadata.yaml names' in error.message
+    assert 'Maybe the folder was not copied whole' in error.todo
 
 
 @pytest.mark.parametrize(
@@ -113,12 +151,69 @@ def test_metadata_that_can_not_be_understood(
         assert len(list(bag.messages())) == bag.message_count == 100
 
 
+@pytest.mark.parametrize(
+    ('key', 'number'),
+    [
+        ('message_count', '-5'),
+        *((key, number) for key in KEYS for number in ('9' * 400, '9' * 5000, '.inf', 'x', '[]')),
+    ],
+)
+def test_numbers_that_metadata_can_not_have(
+    tmp_path: Path, messages: list[Stored], key: str, number: str
+) -> None:
+    path = made.make_mcap(tmp_path / 'drive', messages)
+    text = (path / 'metadata.yaml').read_text()
+    changed = re.sub(rf'(\b{key}: *)\d+', rf'\g<1>{number}', text)
+    assert changed != text
+    (path / 'metadata.yaml').write_text(changed)
+    with open_bag(path) as bag:
+        assert bag.note.startswith('Its metadata.yaml can not be understood')
+        assert bag.message_count == 100 and describe(bag)
+
+
+def test_metadata_that_is_nested_too_deep(tmp_path: Path, messages: list[Stored]) -> None:
+    path = made.make_mcap(tmp_path / 'drive', messages)
+    (path / 'metadata.yaml').write_text('[' * 100_000 + ']' * 100_000)
+    with open_bag(path) as bag:
+        assert bag.note.startswith('Its metadata.yaml can not be understood')
+
+
+@pytest.mark.parametrize('name', ['/a\udcff', '/a\0b', '/a\x1b[31m'])
+def test_a_name_of_a_bag_can_not_move_the_cursor(tmp_path: Path, name: str) -> None:
+    path = made.make_mcap(tmp_path / 'drive', [('/count', 0, made.int16(5))])
+    text = (path / 'metadata.yaml').read_text()
+    assert 'name: /count' in text
+    (path / 'metadata.yaml').write_text(text.replace('name: /count', f'name: {json.dumps(name)}'))
+    with open_bag(path) as bag:
+        assert name in [topic.name for topic in bag.topics]
+        shown = [*describe(bag).split('\n'), *topic_names(bag)]
+        assert all(line.isprintable() for line in shown)
+
+
+def test_a_name_with_a_bad_byte_in_sqlite(tmp_path: Path, messages: list[Stored]) -> None:
+    path = made.make_sqlite(tmp_path / 'drive', messages)
+    (path / 'metadata.yaml').unlink()
+    with sqlite3.connect(path / 'drive_0.db3') as database:
+        database.execute("UPDATE topics SET name = CAST(X'2F61FF' AS TEXT) WHERE name = '/count'")
+    database.close()
+    with open_bag(path) as bag:
+        assert '/a\ufffd' in [topic.name for topic in bag.topics]
+        assert len(list(bag.messages())) == 100
+
+
+def test_a_name_with_a_bad_byte_in_mcap(tmp_path: Path, messages: list[Stored]) -> None:
+    path = made.make_mcap(tmp_path / 'drive', messages, enable_crcs=False) / 'drive_0.mcap'
+    path.write_bytes(path.read_bytes().replace(b'/count', b'/co\xffnt'))
+    with open_bag(path) as bag:
+        assert bag.note == ('drive_0.mcap has a name that is no UTF-8; it is read up to there.')
+
+
 @pytest.mark.parametrize('maker', [made.make_mcap, made.make_sqlite])
 def test_a_bag_without_metadata(tmp_path: Path, messages: list[Stored], maker: made.Maker) -> None:
     path = maker(tmp_path / 'drive', messages)
     (path / 'metadata.yaml').unlink()
     with open_bag(path) as bag:
-        assert bag.note.startswith('It was not finished (metadata.yaml is missing)')
+        assert bag.note.startswith('It is not complete (metadata.yaml is missing)')
         assert [topic.count for topic in bag.topics] == [75, 25]
         assert len(list(bag.messages())) == 100
         assert bag.topic('/count').qos_profiles[0].depth == 7
@@ -146,7 +241,7 @@ def test_a_file_that_was_cut_off_anywhere_is_read_as_far_as_it_goes(
             assert found == messages[: len(found)]
             assert len(found) == bag.message_count >= before
             if len(found) < 100:
-                assert 'was not finished; it is read as far as it goes' in bag.note
+                assert 'is not complete; it is read as far as it goes' in bag.note
         before = len(found)
     assert before == 100
 
@@ -158,7 +253,7 @@ def test_a_finished_bag_whose_file_was_cut_off(tmp_path: Path, messages: list[St
     with open_bag(path) as bag:
         count = len(list(bag.messages()))
         assert 0 < count == bag.message_count < 100
-        assert bag.note == 'drive_0.mcap was not finished; it is read as far as it goes.'
+        assert bag.note == 'drive_0.mcap is not complete; it is read as far as it goes.'
 
 
 @pytest.mark.parametrize('compression', [CompressionType.NONE, CompressionType.ZSTD])
@@ -185,6 +280,61 @@ def test_damage_is_told_where_it_is(
             for message in bag.messages():
                 seen.append(message)
         assert 0 < len(seen) < 100
+
+
+@pytest.mark.parametrize('compression', [CompressionType.ZSTD, CompressionType.LZ4])
+@pytest.mark.parametrize('whole', [True, False])
+def test_a_chunk_that_unpacks_to_very_much_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, compression: CompressionType, whole: bool
+) -> None:
+    path = made.make_mcap(
+        tmp_path / 'a', [('/chatter', 0, bytes(1 << 20))], compression=compression
+    )
+    file = path / 'a_0.mcap'
+    assert file.stat().st_size < 10_000
+    monkeypatch.setattr(unpacking, 'MOST_BYTES', 1 << 19)
+    if whole:
+        assert 'is larger than 0 MB when it is unpacked' in complaint(path).message
+        return
+    file.write_bytes(file.read_bytes()[:-100])
+    with open_bag(path) as bag:  # to find out what it holds, it is unpacked
+        assert 'read as far as it goes' in bag.note
+        assert not bag.message_count
+
+
+@pytest.mark.parametrize('mode', [CompressionMode.MESSAGE, CompressionMode.FILE])
+def test_a_bag_that_unpacks_to_very_much_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mode: CompressionMode
+) -> None:
+    writer = Writer(tmp_path / 'a', version=9, storage_plugin=StoragePlugin.MCAP)
+    writer.set_compression(mode, CompressionFormat.ZSTD)
+    with writer:
+        kind = made.TYPES['/chatter']
+        topic = writer.add_connection('/a', kind, msgdef=made.DEFINITIONS[kind], rihs01='RIHS01_0')
+        writer.write(topic, 0, bytes(1 << 20))
+    if mode is CompressionMode.MESSAGE:
+        monkeypatch.setattr(unpacking, 'MOST_BYTES', 1 << 19)
+        reason = 'is larger than 0 MB when it is unpacked'
+    else:
+        usage = shutil.disk_usage(tmp_path)._replace(free=1 << 19)
+        monkeypatch.setattr(shutil, 'disk_usage', lambda _: usage)
+        reason = 'there is no room for it in'
+    assert reason in complaint(tmp_path / 'a').message
+
+
+@pytest.mark.parametrize('end', [0, 1, 5, 3000])
+def test_a_message_that_was_cut_off_is_damaged(end: int) -> None:
+    packed = zstandard.compress(random.Random(1).randbytes(5000))
+    assert len(unpacking.unpacked(packed)) == 5000
+    with pytest.raises(ValueError, match=r'cut off|not enough data'):
+        unpacking.unpacked(packed[:end])
+
+
+def test_an_lz4_chunk_that_was_cut_off_is_damaged() -> None:
+    packed = lz4.frame.compress(random.Random(1).randbytes(5000))
+    assert len(unpacking.unpacked_chunk(Chunk('lz4', packed, 0, 0, 0, 5000)).data) == 5000
+    with pytest.raises(ValueError, match='cut off'):
+        unpacking.unpacked_chunk(Chunk('lz4', packed[:3000], 0, 0, 0, 5000))
 
 
 def test_a_damaged_sqlite3_file_is_told(tmp_path: Path) -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -136,12 +138,19 @@ def test_it_ends_after_a_count(talker: Node) -> None:
     assert '/rosbag2_recorder' not in [entry.name for entry in runtime.nodes()]
 
 
-def test_it_ends_after_a_time(talker: Node) -> None:
+def test_it_ends_after_a_time(talker: Node, monkeypatch: pytest.MonkeyPatch) -> None:
+    passed = 0.0
+    clock = SimpleNamespace(monotonic=lambda: passed, time_ns=time.time_ns)
+    monkeypatch.setattr(recorder, 'time', clock)
     publisher = talker.create_publisher(String, '/chatter', 10)
     recording = lab.record('drive', '/chatter', max_duration_sec=0.3)
-    publisher.publish(String(data='hi'))
+    for count, passed_then in enumerate((0.0, 0.29), start=1):
+        passed = passed_then
+        publisher.publish(String(data='hi'))
+        recording.wait_for(count, timeout_sec=30)
+    passed = 0.3
     lab.wait_until(lambda: recording.done, timeout_sec=30)
-    assert contents() == {'/chatter': ['hi']}
+    assert contents() == {'/chatter': ['hi', 'hi']}
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,6 @@ from rosbags.typesys import Stores, get_typestore
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import String
 
-from labkit.bags.mcap_writer import CHUNK_BYTES
 from labkit.bags.metadata import profiles_from, profiles_to_text
 from labkit.bags.reader import open_bag
 from labkit.bags.schemas import ENCODING, full_definition
@@ -213,10 +212,10 @@ def test_what_is_written_is_read(
 
 @STORAGES
 def test_a_message_larger_than_a_chunk_is_written(tmp_path: Path, storage: str) -> None:
-    large: list[Stored] = [('/chatter', number, bytes(2 * CHUNK_BYTES)) for number in range(3)]
+    large: list[Stored] = [('/chatter', number, bytes(2 << 20)) for number in range(3)]
     path = write(tmp_path / 'drive', storage, large)
     with open_bag(path) as bag:
-        assert [len(each.data) for each in bag.messages()] == [2 * CHUNK_BYTES] * 3
+        assert [len(each.data) for each in bag.messages()] == [2 << 20] * 3
 
 
 @STORAGES
@@ -229,7 +228,7 @@ def test_what_was_flushed_is_read_before_the_end(tmp_path: Path, storage: str) -
     writer.flush()
     with open_bag(tmp_path / 'drive') as bag:
         assert [each.message for each in bag.messages()] == [String(data='one')]
-        assert 'It was not finished' in bag.note
+        assert 'It is not complete' in bag.note
     writer.close()
     with open_bag(tmp_path / 'drive') as bag:
         assert (bag.note, bag.message_count) == ('', 1)

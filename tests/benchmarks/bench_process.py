@@ -53,6 +53,21 @@ listener = lab.spin(Node('listener'))
 listener.create_subscription(String, 'chatter', lambda message: None, 10)
 lab.spin(Talker())
 """
+FORTY_NODES = """
+for number in range(40):
+    node = lab.spin(Node(f'node_{number}'))
+    node.create_publisher(String, f'topic_{number}', 10)
+    node.create_subscription(String, f'topic_{(number + 1) % 40}', lambda message: None, 10)
+"""
+# Seconds of processor time of a look, and how often one is taken.
+LOOKS = """
+import time
+from labkit.silent import watch as module
+begin = time.thread_time()
+for _ in range({rounds}):
+    module.watch.look()
+print((time.thread_time() - begin) / {rounds} / module.EVERY_SEC)
+"""
 
 
 def tables(quick: bool) -> Iterator[tuple[str, list[Row]]]:
@@ -75,6 +90,9 @@ def _at_rest(seconds: float) -> list[Row]:
         measure('labkit started', 1, 150)
         kernel.run(TALKER_AND_LISTENER)
         measure('talker and listener at 2 Hz', None, None)
+        kernel.run(FORTY_NODES)
+        share = 100 * float(kernel.run(LOOKS.format(rounds=5 if seconds < 1 else 100)))
+        rows.append(Row('CPU, the watch with 40 nodes', share, '% of a core', at_most=1))
     return rows
 
 

@@ -1,17 +1,21 @@
-"""How soon `%ros2` answers in a notebook, and `ros2` in a terminal."""
+"""How soon `%ros2` answers in a notebook, and `ros2` in a terminal; how soon ten nodes speak."""
 
 from __future__ import annotations
 
 import json
 import os
+import signal
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 from kernel import Kernel
 from table import Row
+from turns import Figures, take_turns
 
 __all__ = ['tables']
 
@@ -45,6 +49,7 @@ for line in {lines!r}:
     result[line] = [first, others]
 print(json.dumps(result))
 """
+TALKERS = [f'talker_{number}' for number in range(10)]
 LINES = ['topic list', 'topic list -t', 'node list', 'node info /node_0', 'topic info /topic_0 -v']
 
 
@@ -53,6 +58,7 @@ def tables(quick: bool) -> Iterator[tuple[str, list[Row]]]:
     for count in (3, 40):
         yield f'%ros2 in a notebook with {count} nodes', _in_kernel(count, 20 if quick else 200)
     yield 'ros2 in a terminal, alone', _in_terminal(1 if quick else 3)
+    yield 'ten talkers, until each has spoken', _ten_talkers(2 if quick else 6)
 
 
 def _in_kernel(count: int, rounds: int) -> list[Row]:
@@ -86,3 +92,53 @@ def _in_terminal(rounds: int) -> list[Row]:
             times.append(1e3 * (time.perf_counter() - begin))
         rows.append(Row(f'ros2 {" ".join(words)}', statistics.median(times), 'ms'))
     return rows
+
+
+def _ten_talkers(most: int) -> list[Row]:
+    nodes = [f'<node pkg="demo_nodes_py" exec="talker" name="{name}"/>' for name in TALKERS]
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, 'ten.launch.xml')
+        file.write_text(f'<launch>{"".join(nodes)}</launch>', encoding='utf-8')
+        runs = [
+            ['run', 'demo_nodes_py', 'talker', '--ros-args', '-r', f'__node:={name}']
+            for name in TALKERS
+        ]
+        ways = {
+            'ten times ros2 run': lambda: _until_all_speak(runs),
+            'ros2 launch': lambda: _until_all_speak([['launch', str(file)]]),
+        }
+        seen = take_turns(ways, ['s'], most)
+    run, launch = ([turn['s'] for turn in turns] for turns in seen.values())
+    ratio = statistics.median(one / other for one, other in zip(launch, run, strict=True))
+    return [
+        Row('ten times ros2 run, side by side', statistics.median(run), 's'),
+        Row('ros2 launch', statistics.median(launch), 's'),
+        Row('ratio of the two', ratio, at_most=2),
+    ]
+
+
+def _until_all_speak(commands: Sequence[Sequence[str]]) -> Figures:
+    """Start commands of `ros2` at once; tell when all talkers have said something, and end them.
+
+    What they say goes into one file.
+    """
+    env = {**os.environ, 'ROS_DOMAIN_ID': '0'}
+    with tempfile.NamedTemporaryFile() as said:
+        begin = time.perf_counter()
+        started = [
+            subprocess.Popen(
+                [sys.executable, '-m', 'labkit.ros2', *words],
+                env=env,
+                stdout=said,
+                stderr=subprocess.STDOUT,
+            )
+            for words in commands
+        ]
+        while any(f'[{name}]' not in Path(said.name).read_text() for name in TALKERS):
+            time.sleep(0.01)
+        seconds = time.perf_counter() - begin
+        for process in started:
+            process.send_signal(signal.SIGINT)
+        for process in started:
+            process.wait()
+    return {'s': seconds}

@@ -54,7 +54,7 @@ commands = driver.create_publisher(Twist, 'cmd_vel', 10)
 curve = Twist()
 curve.linear.x, curve.angular.z = 0.1, 0.5
 driver.create_timer(0.1, lambda: commands.publish(curve))
-lab.wait_until(lambda: view.scene.pose.x > 0.05)
+lab.wait_until(lambda: view.scenes[''].pose.x > 0.05)
 """
 
 

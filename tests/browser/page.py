@@ -42,6 +42,17 @@ READY = """path => {
   return panel?.context?.isReady && panel.context.path.endsWith(path)
     && panel.sessionContext?.session?.kernel?.status === 'idle';
 }"""
+# Whether all widgets are drawn. JupyterLab looks for a widget's model for two seconds, and not
+# once more after them (`get_model` of its widgets' manager): where a page was busy for so long
+# while the models came, it says that there is none, and has to draw that output anew.
+_WIDGETS_DRAWN = f"""() => {{
+  const places = {_CELLS}.filter((cell) => cell.outputArea).map((cell) => cell.outputArea);
+  const says = (area, words) => [...area.node.querySelectorAll('.jp-OutputArea-output')]
+    .some((place) => place.textContent === words);
+  const lost = places.filter((area) => says(area, 'Error displaying widget: model not found'));
+  lost.forEach((area) => area.model.fromJSON(area.model.toJSON()));
+  return !lost.length && !places.some((area) => says(area, 'Loading widget...'));
+}}"""
 # Where JupyterLab lets a line be typed for `input()`.
 _ASKED = 'input.jp-Stdin-input'
 # After an error that is meant JupyterLab takes the marks from all further cells, but the kernel
@@ -126,6 +137,7 @@ class Notebook:
         path = self.page.evaluate(f'{_NOTEBOOK}.context.path')
         self.page.reload()
         self.page.wait_for_function(READY, arg=path)
+        self.page.wait_for_function(_WIDGETS_DRAWN, polling=200)
 
     @property
     def has_dialog(self) -> bool:

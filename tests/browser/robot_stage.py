@@ -42,6 +42,12 @@ while {'/odom', '/scan'} & ears():
 print('nobody listens')
 """,
     'close': 'view.close()\npilot.close()',
+    'robots': """
+for number, y in ((1, 1.0), (2, -1.0)):
+    space = f'robot{number}'
+    lab.spin(lab.Turtlebot(namespace=space, world=robot.simulator.world, y=y))
+display(lab.arena(), lab.teleop(namespace='robot2'))
+""",
     'stop': 'lab.stop()',
 }
 STANDS = 'linear.x = 0.00 m/s  angular.z = 0.00 rad/s'

@@ -6,7 +6,7 @@
 opens the lesson in JupyterLab, runs all of its cells, and saves a picture of each screenful, or of
 one that starts at a cell. Cells that ended with an error are named. The README's picture is
 
-    python -m tests.browser.screenshot 02 --cell listener-class --until listener-run --height 492
+    python -m tests.browser.screenshot 00 --cell first-node --until robot --height 730 --width 1480
 
 and those of `docs/pictures`, with `--out docs/pictures --height 760 --width 1200` (the first
 as wide as it is by itself),

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Locator, expect
 
-from tests.browser.page import Notebook
+from tests.browser.page import VIEWPORT, Notebook
 from tests.browser.test_views import CONTRAST
 from tests.views.bags import make_drive, make_foreign
 
@@ -48,7 +48,7 @@ def test_slider_goes_through_plot_and_map_by_keyboard(stage):
     expect(view.locator('.labkit-live-header').first).to_contain_text(
         'drive10.0 s from 2023-11-14 22:13:20'
     )
-    expect(view.locator('table').first.locator('tbody th button')).to_have_text(
+    expect(view.locator('.labkit-bag-topics').locator('tbody th button')).to_have_text(
         ['/cmd_vel', '/never', '/odom', '/scan']
     )
     strips = view.locator('.labkit-bag-strip canvas')
@@ -151,3 +151,14 @@ def test_it_can_be_read_in_both_themes_and_fits_into_800_pixels(stage):
 def test_no_bag_is_a_sentence(stage):
     stage.notebook.run_cell('missing')
     assert 'There is no bag' in stage.notebook.error_of('missing')
+
+
+def test_play_and_map_are_in_sight_together(stage):
+    view = stage.show('drive')
+    expect(view.locator('.labkit-arena canvas')).to_be_visible()
+    for width in (1400, 1024, 700):
+        stage.page.set_viewport_size({'width': width, 'height': 700})
+        stage.notebook.scroll_to_top('drive')
+        for place in ('.labkit-bag-controls button', '.labkit-arena canvas'):
+            expect(view.locator(place).first).to_be_in_viewport(ratio=1)
+    stage.page.set_viewport_size(VIEWPORT)

@@ -13,7 +13,7 @@ from tests.browser.page import Notebook
 CELLS = {
     'setup': """
 import labkit as lab
-from labkit.background import traffic
+from labkit.asking import traffic
 from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 from std_msgs.msg import Int16, String

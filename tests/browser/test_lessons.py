@@ -26,11 +26,6 @@ BROKEN = (
 )
 
 
-# anywidget gives a widget two seconds to begin (its runtime.ts), which a page on an overloaded
-# machine may not have. The cell is run again then, as its message asks for.
-TOO_SLOW = '[anywidget] Failed to initialize model.'
-
-
 class Running:
     """A lesson whose cells have all been started.
 
@@ -71,10 +66,6 @@ def run(request, jupyter, browser) -> Iterator[Callable[[str], Running]]:
 def test_lesson_runs_from_top_to_bottom(run, name):
     lesson = run(name)
     notebook = lesson.notebook
-    if TOO_SLOW in lesson.faults:
-        lesson.faults.clear()
-        notebook.start_all()
-        notebook.wait_for_all()
     wrong = []
     for cell in notebook.cells():
         if cell['cell_type'] == 'code':

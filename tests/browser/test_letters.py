@@ -20,7 +20,7 @@ CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
 };
 """
 DRAW = {
-    'arena': 'new Map2d(canvas).draw({ shown: [-1.5, -1, RIGHT, 1], trail: [], goals: [] })',
+    'arena': 'new Map2d(canvas).draw({ ...emptyScene(), shown: [-1.5, -1, RIGHT, 1] })',
     'plot': """new Sheet(canvas).draw([{ unit: 'm', number: 0, times: [0, RIGHT],
       values: [-1000, 1000] }], 0, RIGHT)""",
 }

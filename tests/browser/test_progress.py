@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from playwright.sync_api import expect
 
+from labkit.exercises.lesson import all_lessons
 from tests.browser.samples import SETUP, TALKER
 
 OPEN = "() => window.jupyterapp.shell.currentWidget?.context?.path ?? ''"
@@ -21,6 +22,12 @@ def test_pass_leads_to_the_next_exercise_and_progress_to_any_lesson(open_lesson)
     card = notebook.output('ones-check')
     expect(card).to_contain_text('✔ the number is always 1')
     expect(card.get_by_role('link', name='exercise ones: done')).to_be_visible()
+    turns = 'robot => getComputedStyle(robot).animationName'
+    robot = card.locator('svg.labkit-turn')
+    assert robot.evaluate(turns) == 'labkit-turn'
+    page.emulate_media(reduced_motion='reduce')
+    assert robot.evaluate(turns) == 'none'
+    page.emulate_media(reduced_motion='no-preference')
     next_task = page.get_by_role('heading', name='Exercise 2: odd numbers')
     page.keyboard.press('Escape')
     onward = card.get_by_role('link', name='Next: count_up')
@@ -28,7 +35,7 @@ def test_pass_leads_to_the_next_exercise_and_progress_to_any_lesson(open_lesson)
     notebook.page.keyboard.press('Enter')
     expect(next_task).to_be_in_viewport()
     shown = notebook.output('ones-help')
-    expect(shown.get_by_role('rowheader')).to_have_count(13)
+    expect(shown.get_by_role('rowheader')).to_have_count(len(all_lessons()))
     expect(shown.get_by_role('link', name='exercise first_node: open')).to_be_visible()
     shown.get_by_role('link', name='05 My name is').click()
     page.wait_for_function(f"({OPEN})() === '05_my_name_is.ipynb'")

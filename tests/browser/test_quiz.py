@@ -63,6 +63,17 @@ def test_enter_answers_and_goes_on_and_leaves_the_notebook_alone(open_quiz):
     assert len(notebook.cells()) == count
 
 
+def test_quiz_has_the_keyboard_when_its_cell_was_run_and_not_when_the_page_is_loaded(open_quiz):
+    notebook = open_quiz('chat')
+    quiz, keyboard = quiz_of(notebook), notebook.page.keyboard
+    expect(quiz.locator('form input').first).to_be_focused()
+    keyboard.press('Enter')
+    expect(quiz.locator('[aria-live]')).to_have_text('Choose or write an answer first.')
+    notebook.reload()
+    expect(quiz_of(notebook).locator('form')).to_be_visible()
+    expect(quiz_of(notebook).locator(':focus')).to_have_count(0)
+
+
 def test_esc_leaves_the_quiz(open_quiz):
     notebook = open_quiz('theory')
     quiz = quiz_of(notebook)

@@ -177,6 +177,13 @@ def test_map_and_keys_are_beside_each_other_where_there_is_room(stage):
         }""")
     finally:
         stage.page.set_viewport_size(size)
+    # All of the map is the map's, also where JupyterLab has its switch for scrolled outputs.
+    stage.notebook.scroll_to_top('both')
+    assert beside()
+    assert arena.evaluate("""map => {
+      const { left, top } = map.getBoundingClientRect();
+      return map.contains(document.elementFromPoint(left + 20, top + 60));
+    }""")
     # With the map, its keys go to the full screen.
     area.get_by_role('button', name='Full screen').click()
     stage.page.wait_for_function('document.fullscreenElement')
@@ -240,6 +247,32 @@ def test_two_maps_and_two_sets_of_keys_work(stage):
             arg=canvas.element_handle(),
         )
     expect(stage.page.locator('.labkit-live-note:visible')).to_have_count(0)
+
+
+def test_several_robots_share_a_map_and_keys_drive_one(stage):
+    # The map that was there before shows them, too.
+    stage.notebook.run_cell('robots')
+    area = stage.notebook.output('robots')
+    still = '0.000 {} 0.000 0.000 0.000'
+    poses = ', '.join(still.format(y) for y in ('0.000', '1.000', '-1.000'))
+    for canvas in (stage.canvas.first, area.locator('canvas')):
+        expect(canvas).to_have_attribute('data-pose', poses)
+    expect(area.locator('.labkit-arena-words')).to_contain_text('robot2 at x = 0.00 m')
+    area.locator('.labkit-teleop').click(position={'x': 4, 'y': 4})
+    stage.page.keyboard.down('w')
+    expect(area.locator('canvas')).to_have_attribute(
+        'data-pose', re.compile(rf'^{re.escape(poses[: poses.rindex(",")])}, 0\.[1-9]')
+    )
+    stage.page.keyboard.up('w')
+    # One after the other is followed, then none.
+    follow = area.get_by_role('button', name='Follow the robot')
+    for text, pressed in (
+        *(('Follow', 'true'), ('Follow robot1', 'true'), ('Follow robot2', 'true')),
+        ('Follow', 'false'),
+    ):
+        follow.click()
+        expect(follow).to_have_text(text)
+        expect(follow).to_have_attribute('aria-pressed', pressed)
 
 
 def test_closed_views_say_so(stage):

@@ -33,7 +33,8 @@ def ears(topic='/odds'):
     return len([s for s in runtime.helper.subscriptions if s.topic_name == topic])
 """,
     'talker': 'talker = lab.spin(Talker(0.02))',
-    'fast': 'talker = lab.spin(Talker(0.001))',
+    'fast': 'import time\nbegan = time.monotonic()\ntalker = lab.spin(Talker(0.001))',
+    'said': 'print(talker.count, time.monotonic() - began)',
     'robot': 'robot = lab.spin(lab.Turtlebot())',
     'monitor': "lab.monitor('/odds')",
     'odom': "lab.monitor('/odom')",
@@ -52,20 +53,16 @@ print('nobody listens')
     'sum': 'print(sum(range(1000)))',
     'stop': 'lab.stop()',
 }
-# Frames of the screen in so many seconds, and the updates of a view in that time.
+# Frames of the screen in so many seconds, and the updates of a view up to then.
 FRAMES = """([view, seconds]) => new Promise((resolve) => {
-  const begin = performance.now(), before = Number(view.dataset.updates);
+  const begin = performance.now();
   let frames = 0, longest = 0, last = begin;
   const next = (now) => {
     frames += 1;
     longest = Math.max(longest, now - last);
     last = now;
     if (now - begin < 1000 * seconds) requestAnimationFrame(next);
-    else {
-      const took = (now - begin) / 1000;
-      resolve({ frames: frames / took, longest,
-        updates: (Number(view.dataset.updates) - before) / took });
-    }
+    else resolve({ frames, longest, updates: Number(view.dataset.updates) });
   };
   requestAnimationFrame(next);
 })"""
@@ -259,7 +256,11 @@ def test_page_lives_at_a_thousand_messages_a_second(stage, cell_id):
     view = stage.view(cell_id)
     stage.wait('v => Number(v.dataset.updates) > 10', view)
     seen = stage.page.evaluate(FRAMES, [view.element_handle(), 4])
-    print(cell_id, seen)
-    # No times are judged: a busy machine has fewer of everything. But messages are far more.
-    assert 0 < seen['updates'] <= 20.5 and seen['frames'] > seen['updates'], seen
+    messages, seconds = map(float, stage.run('said').split())
+    print(cell_id, seen, messages, seconds)
+    # A busy machine has fewer of everything, and a page may get late what was sent in time. So
+    # all is counted from the beginning on: 20 updates a second at most, and some more when the
+    # page asks for all.
+    assert seen['updates'] <= 20 * seconds + 5, seen
+    assert seen['frames'] > 0 and messages > seen['updates'], seen
     assert stage.run('sum') == '499500'

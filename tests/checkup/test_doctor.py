@@ -9,6 +9,7 @@ import pytest
 from visits import NAMES, Visit, look, visit
 
 from labkit.background import domains
+from labkit.checkup.found import Found
 from labkit.checkup.report import Line, Report
 
 
@@ -83,6 +84,18 @@ def test_report_says_sign_and_word_and_what_to_do() -> None:
     )
     assert 'find it' in repr(Report(report.lines, brief=True))
     assert '3 GB' not in repr(Report(report.lines, brief=True))
+
+
+def test_each_of_several_faults_has_what_to_do_below_it() -> None:
+    found = Found([('a is deaf', 'mend a'), ('b is lost', 'find b'), ('c is deaf', 'mend a')])
+    line = Line('Nodes', False, found.message, found.todo, found.lines)
+    assert repr(Report((line, Line('Disk', False, 'full', 'delete')))) == (
+        '✘ wrong  Nodes  a is deaf\n                c is deaf\n                → mend a\n'
+        '                b is lost\n                → find b\n✘ wrong  Disk   full\n'
+        '                → delete\n\n2 of 2 lines are wrong. Begin with the first of them.'
+    )
+    page = Report((line,))._repr_html_()
+    assert 'a is deaf<br>c is deaf<br>→ mend a<br><br>b is lost<br>→ find b</td>' in page
 
 
 def test_report_is_escaped_in_a_notebook() -> None:
@@ -239,6 +252,23 @@ def test_error_in_a_callback_until_it_is_mended(kernel) -> None:
     assert re.search(r'on_timer of /talker failed \d+ times: TypeError', seen.red['Callbacks'])
     kernel.run(TALKER)
     assert look(kernel).exit_code == 0
+
+
+def test_no_fault_hides_another_one_of_its_line(kernel) -> None:
+    kernel.run(SETUP + TALKER.replace('self.count += 1', 'self.count += "one"'))
+    kernel.run(
+        'from rclpy.parameter import Parameter\n'
+        'def late(name):\n'
+        '    given = [Parameter("use_sim_time", value=True), Parameter("sped", value=1)]\n'
+        '    return Node(name, parameter_overrides=given)\n'
+        'waiting = lab.spin(late("waiting"))\nidle = late("idle")\nidle.create_timer(1.0, print)\n'
+        'lab.wait_until(lambda: runtime.console.errors)'
+    )
+    seen = look(kernel)
+    assert 'on_timer of /talker failed' in seen.red['Callbacks']
+    assert '/waiting uses simulated time' in seen.red['Callbacks']
+    assert '/idle was made, but nobody spins it' in seen.red['Nodes']
+    assert "is given the parameter 'sped', which it never" in seen.red['Nodes']
 
 
 def test_callback_that_does_not_return(kernel) -> None:

@@ -58,6 +58,7 @@ def test_packages_of_another_ros_on_the_path(lab_env: dict[str, str], tmp_path: 
     assert seen.exit_code == 1
     assert set(seen.red) == {'ROS 2 packages', 'Middleware', 'Variables'}
     assert f'Python takes rclpy from {str(other / "__init__.py")!r}' in seen.red['ROS 2 packages']
+    assert f'PYTHONPATH has {str(tmp_path)!r}' in seen.red['ROS 2 packages']
     assert 'ROS does not start: ImportError: of another Python' in seen.red['Middleware']
     assert 'PYTHONPATH leads to another ROS 2' in seen.red['Variables']
 
@@ -75,7 +76,7 @@ def test_mark_of_another_environment(lab_env: dict[str, str]) -> None:
     seen = visit(env)
     assert seen.exit_code == 1
     assert set(seen.red) == {'Middleware', 'Variables'}
-    assert 'set by another environment' in seen.red['Variables']
+    assert 'Maybe another environment has set it.' in seen.red['Variables']
     assert re.search(r'ROS does not start: ImportError: \S+\.so', seen.red['Middleware'])
 
 

@@ -28,7 +28,7 @@ from labkit.setup.machine import VERSIONS, clean_environment
 
 BINDER = ROOT / '.binder'
 TOKEN = 'robots'
-TIMEOUT_SEC = 250
+TIMEOUT_SEC = 800
 # As the values of BinderHub's chart have it, in short: JupyterLab if there is one.
 BINDERHUB = 'import os, sys, jupyterlab; os.execvp("jupyter-lab", sys.argv)'
 

@@ -36,16 +36,15 @@ def ready(tmp_path: Path) -> Course:
 
 
 def wait_for_server(base: str, process: subprocess.Popen[str]) -> None:
-    """Wait until the server listens: it names its address a moment before."""
-    host, _, port = base.removeprefix('http://').partition(':')
+    """Wait until the server answers: while it only listens, a signal would get lost."""
     end = time.monotonic() + TIMEOUT_SEC
     while process.poll() is None and time.monotonic() < end:
         try:
-            socket.create_connection((host, int(port)), timeout=TIMEOUT_SEC).close()
+            answer(f'{base}/api')
             return
-        except ConnectionRefusedError:
+        except urllib.error.URLError:
             time.sleep(0.05)
-    pytest.fail(f'JupyterLab does not listen; exit code {process.poll()}')
+    pytest.fail(f'JupyterLab does not answer; exit code {process.poll()}')
 
 
 def answer(url: str) -> Any:

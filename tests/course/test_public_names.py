@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 import labkit
-from labkit.course.public_names import PAGE, page, public_names
+from labkit.course.public_names import FAULTS, PAGE, page, public_names
+from labkit.silent.catalogue import page as page_of_faults
 
 INIT = """
 from typing import TYPE_CHECKING
@@ -51,6 +52,11 @@ def root(tmp_path: Path) -> Path:
     for name, text in (('__init__', INIT), ('robot', ROBOT), ('base', BASE)):
         (tmp_path / 'labkit' / f'{name}.py').write_text(text)
     return tmp_path
+
+
+def test_page_of_faults_is_up_to_date() -> None:
+    current = FAULTS.read_text() == page_of_faults()
+    assert current, 'Write it anew: python3 -m labkit docs'
 
 
 def test_page_is_up_to_date() -> None:

@@ -6,6 +6,7 @@ import base64
 import json
 import os
 import struct
+import threading
 import zlib
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,7 @@ from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 
 from labkit.course.lesson_run import LessonError, LessonRun, normalised
-from labkit.course.record import lesson_paths, record
+from labkit.course.record import lesson_paths, record, with_bullets, write_tasks
 from labkit.errors import LabError
 
 
@@ -101,7 +102,8 @@ def test_outputs_are_stored_in_one_form(folder: Path, capsys: pytest.CaptureFixt
 ENVIRONMENT = """
     import os
     for name in ('LABKIT_HEADLESS', 'ROS_AUTOMATIC_DISCOVERY_RANGE', 'ROS_DOMAIN_ID', 'LINES',
-                 'PYTEST_CURRENT_TEST', 'NO_COLOR', 'LABKIT_HOME', 'JPY_SESSION_NAME'):
+                 'PYTEST_CURRENT_TEST', 'NO_COLOR', 'PYTHON_COLORS', 'LABKIT_HOME',
+                 'JPY_SESSION_NAME'):
         print(os.environ.get(name))
 """
 
@@ -112,12 +114,13 @@ def test_the_kernel_does_not_depend_on_who_starts_it(
 ):
     monkeypatch.setenv('ROS_DOMAIN_ID', '7')
     monkeypatch.setenv('NO_COLOR', '1')
+    monkeypatch.setenv('PYTHON_COLORS', '1')
     monkeypatch.setenv('LABKIT_HOME', '/nowhere')
     path = write(folder / '01_one.ipynb', {'env': ENVIRONMENT}, labkit=labkit)
     with LessonRun(path) as run:
         lines = shown(run.execute(1)).splitlines()
     home, session = '$TMPDIR/labkit', '$COURSE/notebooks/01_one.ipynb'
-    assert lines == ['1', reach, 'None', '24', 'None', 'None', home, session]
+    assert lines == ['1', reach, 'None', '24', 'None', 'None', 'None', home, session]
 
 
 @pytest.mark.parametrize(
@@ -305,3 +308,53 @@ def test_a_picture_keeps_its_pixels_and_nothing_else():
     output = new_output('display_data', data={'image/png': text})
     stored = normalised([output], {})[0].data['image/png']
     assert base64.b64decode(stored) == signature + header + pixels + end
+
+
+TASK = (
+    '## Exercise\n\nDo so:\n\n- the first\n  of them\n- the second\n\n'
+    'And then:\n\n- old\n- more\n\nGood.'
+)
+
+
+@pytest.mark.parametrize(
+    ('texts', 'wanted'),
+    [
+        (['a', 'b', 'c'], 'Do so:\n\n- a\n- b\n\nAnd then:\n\n- c\n\nGood.'),
+        (['a', 'b', 'c', 'd', 'e'], 'Do so:\n\n- a\n- b\n\nAnd then:\n\n- c\n- d\n- e\n\nGood.'),
+    ],
+)
+def test_bullets_of_a_task_are_those_of_its_clauses(texts: list[str], wanted: str) -> None:
+    assert with_bullets(TASK, texts) == f'## Exercise\n\n{wanted}'
+    assert with_bullets(with_bullets(TASK, texts), texts) == with_bullets(TASK, texts)
+
+
+def test_task_without_bullets_gets_them_at_its_end() -> None:
+    assert with_bullets('## Exercise', ['a', 'b']) == '## Exercise\n\n- a\n- b'
+
+
+def test_tasks_of_the_lessons_are_as_their_clauses_say() -> None:
+    for path in lesson_paths():
+        notebook = nbformat.read(path, as_version=4)
+        before = [cell.source for cell in notebook.cells]
+        write_tasks(notebook, path.name)
+        assert [cell.source for cell in notebook.cells] == before
+
+
+def test_variables_may_go_while_a_kernel_is_started():
+    run = LessonRun.__new__(LessonRun)
+    run.notebook, run.path, run._home = new_notebook(), Path('lesson.ipynb'), Path('home')
+    ended = threading.Event()
+
+    def come_and_go():
+        while not ended.is_set():
+            os.environ['COMES_AND_GOES'] = '1'
+            del os.environ['COMES_AND_GOES']
+
+    other = threading.Thread(target=come_and_go)
+    other.start()
+    try:
+        found = [run._environment() for _ in range(5000)]
+    finally:
+        ended.set()
+        other.join()
+    assert {variables['LABKIT_HEADLESS'] for variables in found} == {'1'}

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import re
+import shutil
+import subprocess
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -65,7 +69,9 @@ def test_each_part_of_the_command_is_a_job(workflow: dict[Any, Any]) -> None:
 
 def test_each_python_of_the_course_is_tried(workflow: dict[Any, Any]) -> None:
     versions = ['{}.{}'.format(*version) for version in sorted(VERSIONS)]
-    assert workflow['jobs']['test']['strategy']['matrix']['python'] == versions
+    for job in workflow['jobs'].values():
+        assert job['strategy']['matrix']['python'] == versions
+    assert f'for version in {" ".join(versions)}; do' in (ROOT / '.ci' / 'run').read_text()
 
 
 def test_quick_checks_come_first(workflow: dict[Any, Any]) -> None:
@@ -110,6 +116,70 @@ def test_bug_reports_ask_for_what_the_doctor_says() -> None:
     assert doctor['validations'] == {'required': True}
 
 
-def test_one_command_runs_everything() -> None:
-    last = (ROOT / '.ci' / 'run').read_text().splitlines()[-1]
-    assert last == 'exec python3 -m labkit test "$@" </dev/null'
+# Stands for a Python of a version: says so, and writes down in which folder it runs what.
+PYTHON = """#!/bin/sh
+case "$*" in
+  -c*) echo {version} ;;
+  --version) echo Python {version}.0 ;;
+  *) echo "{version} $(pwd) $*" >> {log} ;;
+esac
+"""
+
+
+@pytest.fixture
+def machine(tmp_path: Path) -> Callable[..., tuple[str, list[str]]]:
+    """Give a function that runs `.ci/run` on a machine with 3.11 selected, 3.10 and 3.13."""
+    log = tmp_path / 'log'
+    course, programs = tmp_path / 'course', tmp_path / 'bin'
+    pyenv = tmp_path / 'pyenv' / 'versions' / '3.13.1' / 'bin'
+    for folder in (course / '.ci', course / '.venv', programs, pyenv):
+        folder.mkdir(parents=True)
+    script = shutil.copy(ROOT / '.ci' / 'run', course / '.ci')
+    pythons = {programs / 'python3': '3.11', programs / 'python3.10': '3.10'}
+    for path, version in {**pythons, pyenv / 'python3': '3.13'}.items():
+        path.write_text(PYTHON.format(version=version, log=log))
+        path.chmod(0o755)
+    # One of pyenv that is not selected; and nothing is to be installed here.
+    looked_for = re.findall(r'command -v (\S+)', Path(script).read_text())
+    for name in ('python3.12', 'python3.13', *looked_for):
+        (programs / name).write_text('#!/bin/sh\nexit 127\n')
+        (programs / name).chmod(0o755)
+
+    def run(*words: str) -> tuple[str, list[str]]:
+        done = subprocess.run(
+            ['bash', script, *words],
+            env={'PATH': f'{programs}:/usr/bin:/bin', 'PYENV_ROOT': str(tmp_path / 'pyenv')},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        return done.stdout, log.read_text().splitlines()
+
+    return run
+
+
+def test_one_command_runs_everything_on_each_python(
+    tmp_path: Path, machine: Callable[..., tuple[str, list[str]]]
+) -> None:
+    said, ran = machine()
+    assert ran[0] == f'3.11 {tmp_path}/course -m labkit test'
+    words = [line.split(' ', 2) for line in ran[1:]]
+    assert [(version, command) for version, _, command in words] == [
+        ('3.10', '-m labkit test --fast'),
+        ('3.10', '-m labkit test notebooks'),
+        ('3.13', '-m labkit test --fast'),
+        ('3.13', '-m labkit test notebooks'),
+    ]
+    folders = {folder for _, folder, _ in words}
+    assert f'{tmp_path}/course' not in folders
+    assert not any(Path(folder).exists() for folder in folders)
+    assert said.endswith(
+        '.ci/run: all passed. Python: 3.11 (everything), 3.10 (quick checks, notebooks), '
+        '3.12 (not here), 3.13 (quick checks, notebooks).\n'
+    )
+
+
+def test_a_part_runs_on_one_python(
+    tmp_path: Path, machine: Callable[..., tuple[str, list[str]]]
+) -> None:
+    assert machine('--shard', 'ros')[1] == [f'3.11 {tmp_path}/course -m labkit test --shard ros']

@@ -1,4 +1,4 @@
-"""What the tests of the exercises share: a state folder of their own, ROS that ends."""
+"""Fixtures for the tests of exercises: a separate state folder, and ROS that is stopped."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from types import ModuleType
 import pytest
 
 import labkit
-from labkit.background.runtime import runtime
+from labkit import settings
+from labkit.exercises import learner_time
 
 # With pytest's importlib mode a test can't import the file beside it by itself.
 sys.path.insert(0, str(Path(__file__).resolve().parent))
@@ -30,5 +31,6 @@ def lab() -> Iterator[ModuleType]:
     labkit.start()
     yield labkit
     labkit.stop()
-    # What the next test starts is not for the exercises of this one.
-    runtime.after_start.clear()
+    learner_time.uninstall()
+    # Exercises of this test must not follow what the next one starts.
+    settings.after_start.clear()

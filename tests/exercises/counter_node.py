@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 import time
 
@@ -25,14 +26,19 @@ class Counter(Node):
 
 
 def main() -> None:
-    """Run it under a name; with `late` after it, publish only when a check looks at it."""
+    """Run it under a name; with `late`, publish only when a check looks at it.
+
+    At SIGUSR1 it has other things to do for 10 s. It is not stopped: Fast DDS takes the shared
+    memory of a stopped process for dead, and each process that starts then prints an error.
+    """
     name, *late = sys.argv[1:]
+    signal.signal(signal.SIGUSR1, lambda *_: time.sleep(10.0))
     rclpy.init()
     if late:
         node = Node(name)
         while f'_check_{name}' not in node.get_node_names():
             time.sleep(0.01)
-        time.sleep(0.5)
+        time.sleep(3.0)  # a busy machine takes as long
         publisher = node.create_publisher(Int16, 'odds', 10)
         node.create_timer(0.02, lambda: publisher.publish(Int16(data=1)))
         rclpy.spin(node)

@@ -1,4 +1,4 @@
-"""Clauses on actions: what becomes of goals, and what is said of servers that do it wrongly."""
+"""Clauses on actions: outcomes of goals, and verdicts on wrong servers."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ exercise = Exercise(
             Goal({'order': 3}), Goal({'order': 0}), Goal({'order': 30}, cancel_after=2),
         ], seen.extend),
     ],
-    hints=['.'], answer=Solution('', ''))
+    hints=['.'], answer=Solution('', '', ''))
 Lesson('odds', '04_odds.ipynb', exercises=[exercise]).begin()
 lab.start()
 

@@ -1,31 +1,44 @@
-"""What counts as an answer, or a line: what came before a check began is answered in it, too."""
+"""Answers and log lines: those to messages from before the check count, too."""
 
 from __future__ import annotations
 
-from types import SimpleNamespace
+import threading
+from collections.abc import Generator
+from dataclasses import replace
+from functools import partial
+from types import ModuleType, SimpleNamespace
 from typing import Any, cast
 
 import pytest
+from rclpy.node import Node
+from std_msgs.msg import Int16
 
-from labkit.exercises import Fail
-from labkit.exercises.clauses import Answers, Evidence, Logs, answering
-from labkit.exercises.life import Life, Sent
-from labkit.exercises.watch import Lived
-from labkit.lessons.my_name_is.two_names_clauses import EachAnswers
+from labkit.exercises import Fail, Probe, words
+from labkit.exercises.clauses import Answers, Evidence, Logs, Says, Stream, answering
+from labkit.exercises.life import Life, Sent, Stimulus, live
+from labkit.exercises.mistakes import Mistake
+from labkit.exercises.scope import Scope
+from labkit.exercises.watch import Lived, Watch
+from labkit.lessons.my_name_is.two_names import two_names
 
-CLAUSE = Answers('/odds', '/evens', 'add 1', answer=lambda n: n + 1, draw=lambda: [1])
+INT16 = 'std_msgs/msg/Int16'
+CLAUSE = Answers('/odds', '/evens', INT16, 'add 1', answer=lambda n: n + 1, draw=lambda: [1])
 Timed = list[tuple[float, int]]
+# The probe where no node but the one that answers has an end.
+NOBODY_ELSE: Any = SimpleNamespace(
+    scope=Scope(), publishers=lambda topic: [], node_object=lambda name: None
+)
 
 
 def evidence(heard: Timed, came: Timed) -> Evidence:
-    """Return evidence of half a minute in which these numbers were heard and answered."""
+    """Return evidence of half a minute with these numbers and answers."""
 
     def samples(numbers: Timed) -> list[Lived]:
         return [Lived(SimpleNamespace(data=value), 0.0, 0, at) for at, value in numbers]
 
     life = Life(30.0, {'/odds': samples(heard), '/evens': samples(came)})
     ends = {('subscription', '/odds', ''): SimpleNamespace(node='/postman')}
-    return Evidence(cast(Any, None), ends=cast(Any, ends), life=life)
+    return Evidence(NOBODY_ELSE, ends=cast(Any, ends), life=life)
 
 
 def test_answer_to_what_came_before_the_check_is_no_extra_message() -> None:
@@ -33,9 +46,117 @@ def test_answer_to_what_came_before_the_check_is_no_extra_message() -> None:
     assert CLAUSE.judge(seen).startswith('/postman has answered 1 messages')
 
 
+def test_answer_to_what_came_as_time_began_is_no_extra_message(lab: ModuleType) -> None:
+    """Another node goes on in real time, as a stage that hears another process does."""
+
+    class Postman(Node):
+        def __init__(self) -> None:
+            super().__init__('postman')
+            self.publisher = self.create_publisher(Int16, 'evens', 10)
+            self.create_subscription(Int16, 'odds', self.on_odd, 10)
+
+        def on_odd(self, msg: Int16) -> None:
+            sum(range(1_000_000))  # time begins meanwhile
+            self.publisher.publish(Int16(data=msg.data + 1))
+
+    other = Node('other')
+    speaks = other.create_publisher(Int16, 'odds', 10)
+    lab.spin(other)
+    lab.spin(Postman())
+    topics = {'/odds': INT16, '/evens': INT16}
+    test = Stimulus(1.0, '/odds', INT16, {'data': 5}, ['/evens'])
+    with Probe('evens', Scope(publishes=topics)) as probe:
+        life = live(
+            probe,
+            topics,
+            5.0,
+            stimuli=[test],
+            nodes={'/postman'},
+            before=lambda passing: speaks.publish(Int16(data=7)),
+        )
+    ends: Any = {('subscription', '/odds', ''): SimpleNamespace(node='/postman')}
+    assert [s.message.data for s in life.on('/odds')] == [5]
+    said = CLAUSE.judge(Evidence(NOBODY_ELSE, ends=ends, life=life))
+    assert said.startswith('/postman has answered 2 messages')
+
+
+def test_message_whose_answer_is_not_seen_is_left_out(
+    lab: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It came when the check listened to the one topic, and not yet to the other."""
+    answered = threading.Event()
+
+    class Postman(Node):
+        def __init__(self) -> None:
+            super().__init__('postman')
+            self.publisher = self.create_publisher(Int16, 'evens', 10)
+            self.create_subscription(Int16, 'odds', self.on_odd, 10)
+
+        def on_odd(self, msg: Int16) -> None:
+            self.publisher.publish(Int16(data=msg.data + 1))
+            answered.set()
+
+    speaks = Node('other').create_publisher(Int16, 'odds', 10)
+    lab.spin(Postman())
+    listen = Probe.watch
+
+    def listen_meanwhile(probe: Probe, topic: str, *names: str) -> Watch:
+        watch = listen(probe, topic, *names)
+        if topic == '/odds':
+            speaks.publish(Int16(data=7))
+            assert answered.wait(60)
+        return watch
+
+    monkeypatch.setattr(Probe, 'watch', listen_meanwhile)
+    topics = {'/odds': INT16, '/evens': INT16}
+    test = Stimulus(1.0, '/odds', INT16, {'data': 5}, ['/evens'])
+    with Probe('evens', Scope(publishes=topics)) as probe:
+        life = live(probe, topics, 3.0, stimuli=[test], nodes={'/postman'})
+    (before,) = [s for s in life.on('/odds', before=True) if s.at < 0]
+    assert (before.message.data, before.at < life.since < 0) == (7, True)
+
+
+def test_memory_begins_where_answers_are_seen() -> None:
+    def total(before: int) -> Generator[int, int, None]:
+        while True:
+            before += yield before
+
+    clause = with_memory(total, resume=lambda value, said: [said - value])
+    seen = evidence([(-0.2, 3), (1.0, 5), (2.0, 1)], [(1.1, 8), (2.1, 9)])
+    seen.life.since = -0.1
+    assert clause.judge(seen)
+
+
+def test_node_of_each_message_of_this_process_is_known(lab: ModuleType) -> None:
+    class Postman(Node):
+        def __init__(self, name: str) -> None:
+            super().__init__(name)
+            self.publisher = self.create_publisher(Int16, 'evens', 10)
+            self.create_subscription(Int16, 'odds', self.pass_on, 10)
+
+        def pass_on(self, msg: Int16) -> None:
+            self.publisher.publish(msg)
+
+    for name in ('ann', 'ben'):
+        lab.spin(Postman(name))
+    topics = {'/odds': INT16, '/evens': INT16}
+    tests = [Stimulus(at, '/odds', INT16, {'data': 5}, ['/evens']) for at in (1.0, 1.005)]
+    with Probe('evens', Scope(publishes=topics)) as probe:
+        life = live(probe, topics, 2.0, stimuli=tests, nodes={'/ann', '/ben'})
+    said = sorted((round(sample.at, 3), sample.node) for sample in life.on('/evens'))
+    assert said == [(at, node) for at in (1.0, 1.005) for node in ('/ann', '/ben')]
+    assert not {sample.node for sample in life.on('/odds')} & {'/ann', '/ben'}
+
+
 def test_message_that_answers_nothing_is_one_too_many() -> None:
     with pytest.raises(Fail, match='1 more on /evens'):
         CLAUSE.judge(evidence([(1.0, 5)], [(1.05, 6), (4.0, 652)]))
+
+
+def test_late_answer_to_what_was_sent_before_time_passed_is_no_extra_message() -> None:
+    seen = evidence([(1.0, 5)], [(1.05, 6), (4.0, 652)])
+    seen.asked = {'/odds': [{'data': 651}]}
+    assert CLAUSE.judge(seen).startswith('/postman has answered 1 messages')
 
 
 def test_stranger_who_has_not_found_the_node_takes_no_answer_of_a_test() -> None:
@@ -49,27 +170,79 @@ def test_stranger_who_has_not_found_the_node_takes_no_answer_of_a_test() -> None
         CLAUSE.judge(seen)
 
 
-def test_one_of_two_who_say_a_name_has_not_been_found_by_a_stranger() -> None:
-    def said(*texts: tuple[float, str]) -> list[Lived]:
-        return [Lived(SimpleNamespace(data=text), 0.0, 0, at) for at, text in texts]
+OPENING, OTHER = 'My name is ', 'I am '
+ADA, BOB = '/ada', '/bob'
+Said = tuple[float, str, str, int]
 
-    opening, other = 'My name is ', 'I am '
-    came = [(2.1, opening + 'Bob'), (2.1, opening + 'Ada'), (3.1, other + 'Ada')]
-    life = Life(
-        30.0,
-        {
-            '/incomplete': said((1.9, opening), (2.0, opening), (3.0, other)),
-            '/names': said(*came, (3.1, other + 'Bob')),
-        },
-        [Sent(2.0, '/incomplete', {'data': opening}), Sent(3.0, '/incomplete', {'data': other})],
-        strangers={'/incomplete': 1},
-    )
-    ends = {('publisher', '/names', name): SimpleNamespace(node=name) for name in ('/ada', '/bob')}
-    seen = Evidence(cast(Any, None), ends=cast(Any, ends), life=life)
-    assert EachAnswers().judge(seen).startswith('Each of 2 texts was completed by 2 nodes')
-    life.samples['/names'] = said(*came)
-    with pytest.raises(Fail, match='Only 1 of 2 nodes answered'):
-        EachAnswers().judge(seen)
+
+def introduced(*answers: Said) -> Evidence:
+    """Return evidence of two nodes that say names: when, what, the node, and its number."""
+
+    def said(*texts: Said) -> list[Lived]:
+        return [Lived(SimpleNamespace(data=text), 0.0, n, at, by) for at, text, by, n in texts]
+
+    tests = [(2.0, OPENING), (3.0, OTHER)]
+    heard = said(*[(at, text, '/check', 0) for at, text in [(1.9, OPENING), *tests]])
+    life = Life(30.0, {'/incomplete': heard, '/names': said(*answers)})
+    life.sent = [Sent(at, '/incomplete', {'data': text}) for at, text in tests]
+    life.strangers = {'/incomplete': 1}
+    ends = {
+        (kind, topic, name): SimpleNamespace(node=name)
+        for kind, topic in (('publisher', '/names'), ('subscription', '/incomplete'))
+        for name in (ADA, BOB)
+    }
+    return Evidence(NOBODY_ELSE, ends=cast(Any, ends), life=life)
+
+
+_, EACH, DIFFER = two_names.clauses
+
+
+@pytest.mark.parametrize('here', [True, False])
+def test_one_of_two_who_say_a_name_has_not_been_found_by_a_stranger(here: bool) -> None:
+    ada, bob = (ADA, BOB) if here else ('', '')
+    came = [(2.1, OPENING + 'Bob', bob, 1), (2.1, OPENING + 'Ada', ada, 1)]
+    came += [(3.1, OTHER + 'Ada', ada, 2)]
+    seen = introduced(*came, (3.1, OTHER + 'Bob', bob, 2))
+    assert EACH.judge(seen).startswith('Each text was completed by 2 nodes')
+    assert not DIFFER.judge(seen)
+    with pytest.raises(Fail, match='1 of 2 messages were answered correctly'):
+        EACH.judge(introduced(*came))
+
+
+@pytest.mark.parametrize('here', [True, False])
+def test_node_that_speaks_for_a_silent_one_is_one_of_two(here: bool) -> None:
+    ada = ADA if here else ''
+    names = [OPENING + 'Ada', OPENING + 'Bob', OTHER + 'Ada', OTHER + 'Bob']
+    came = [(2.1 + i // 2, text, ada, i + 1) for i, text in enumerate(names)]
+    with pytest.raises(Fail, match='1 of 2') as refused:
+        EACH.judge(introduced(*came))
+    assert refused.value.mistake is not None
+    assert refused.value.mistake.id == 'two-names/only-some'
+
+
+def test_node_that_has_spoken_before_the_check_is_none_that_never_answers(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    seen = introduced((2.1, OPENING + 'Bob', BOB, 1), (3.1, OTHER + 'Bob', BOB, 2))
+    monkeypatch.setattr(seen, 'said_by', lambda node, _: [node] if node == ADA else [])
+    with pytest.raises(Fail) as refused:
+        EACH.judge(seen)
+    assert refused.value.seen == 'nothing on /names'
+
+
+def test_nodes_that_take_turns_with_their_names_do_not_stay_with_them() -> None:
+    came = [(2.1, OPENING + 'Ada', ADA, 1), (2.1, OPENING + 'Bob', BOB, 1)]
+    with pytest.raises(Fail) as refused:
+        EACH.judge(introduced(*came, (3.1, OTHER + 'Bob', ADA, 2), (3.1, OTHER + 'Ada', BOB, 2)))
+    assert refused.value.mistake is not None
+    assert refused.value.mistake.id == 'stages/changed'
+
+
+def test_answer_to_a_stranger_who_speaks_with_a_test_may_seem_late() -> None:
+    seen = evidence([(1.0, 5), (1.0, 5)], [(1.0, 6), (4.0, 6)])
+    seen.life.sent = [Sent(1.0, '/odds', {'data': 5})]
+    seen.life.strangers = {'/odds': 1}
+    assert CLAUSE.judge(seen).startswith('/postman has answered 2 messages')
 
 
 def test_answer_that_comes_late_is_refused() -> None:
@@ -78,6 +251,11 @@ def test_answer_that_comes_late_is_refused() -> None:
     with pytest.raises(Fail, match='within 1 s') as refused:
         CLAUSE.judge(seen)
     assert refused.value.seen == '3.0 s from data = 5 to its answer'
+    seen.life.real = seen.life.lost = ['/postman']
+    with pytest.raises(Fail, match='within 1 s'):
+        CLAUSE.judge(seen)
+    seen.life.lost = ()
+    assert CLAUSE.judge(seen)
 
 
 def test_answer_to_somebody_else_may_seem_late_because_time_flies() -> None:
@@ -92,6 +270,21 @@ def test_reason_for_more_messages_names_the_topic_that_is_answered_too() -> None
     assert refused.value.why.startswith('What comes on /ones is answered, too.')
 
 
+def test_reason_in_a_text_is_seen_beside_the_answer_to_somebody_else() -> None:
+    """A stage answers what the other stages say, too, now and then together with a test."""
+    clause = Answers('/odds', '/evens', 'std_msgs/msg/String', '', answer='{}.'.format)
+    seen = evidence(*cast(Any, ([(1.0, 'Zoe'), (1.002, 'Ada')], [(1.005, 'Zoe'), (1.006, 'Ada')])))
+    with pytest.raises(Fail) as refused:
+        clause.judge(seen)
+    assert refused.value.why.startswith("The text ends too early: '.' is missing.")
+
+
+def test_echo_is_the_reason_though_somebody_else_spoke_in_between() -> None:
+    with pytest.raises(Fail) as refused:
+        CLAUSE.judge(evidence([(1.0, 5), (1.0, 20)], [(1.0, 5), (1.0, 6), (1.0, 21)]))
+    assert refused.value.why.startswith('The input is published too')
+
+
 def test_reason_for_the_same_answer_again_and_again_is_a_timer() -> None:
     came = [(1.0 + i / 10, 6) for i in range(5)] + [(2.0 + i / 10, 8) for i in range(5)]
     with pytest.raises(Fail) as refused:
@@ -99,11 +292,75 @@ def test_reason_for_the_same_answer_again_and_again_is_a_timer() -> None:
     assert refused.value.why.startswith('The answer is repeated')
 
 
+def test_timer_that_misses_most_messages_is_still_the_reason() -> None:
+    heard = [(n / 6, n) for n in range(6, 174)]
+    ticks = [1.1 + i / 2 + more for i in range(57) for more in (0.0, 0.01, 0.02, 0.03)]
+    came = [(at, 1 + max(n for t, n in heard if t < at)) for at in ticks]
+    with pytest.raises(Fail) as refused:
+        CLAUSE.judge(evidence(heard, came))
+    assert refused.value.why.startswith('The answer is repeated')
+
+
+def test_answer_to_a_stranger_between_is_no_reason_against_a_timer() -> None:
+    """When a stranger was heard is not known: the node may have heard it later."""
+    heard = [(1.0, 5), (1.9, 21), (2.0, 7), (2.1, 9), (3.0, 11)]
+    came = [(1.4, 6), (1.6, 6), (1.8, 6), (1.95, 6), (2.05, 22), (2.4, 10), (2.6, 10), (3.1, 12)]
+    seen = evidence(heard, came)
+    seen.life.sent = [Sent(at, '/odds', {'data': n}) for at, n in heard if n != 21]
+    seen.life.strangers = {'/odds': 1}
+    with pytest.raises(Fail) as refused:
+        CLAUSE.judge(seen)
+    assert refused.value.why.startswith('The answer is repeated')
+
+
+def test_stranger_who_repeats_a_test_may_have_said_it_once_more() -> None:
+    """The check may know the stranger later than the node does."""
+    heard = [(1.0, 5), (1.4, 5), (2.0, 7)]
+    came = [(1.0, 6), (1.4, 6), (1.8, 6), (2.0, 8)]
+    seen = evidence(heard, came)
+    seen.life.sent = [Sent(1.0, '/odds', {'data': 5}), Sent(2.0, '/odds', {'data': 7})]
+    seen.life.strangers = {'/odds': 1}
+    assert CLAUSE.judge(seen)
+    with pytest.raises(Fail, match='answered more than once'):
+        CLAUSE.judge(evidence(heard, came))
+
+
+def test_stranger_may_be_heard_after_several_tests() -> None:
+    heard = [(1.0, 5), (1.9, 21), (2.0, 7), (2.005, 9), (3.0, 11)]
+    came = [*((1.1 + i / 5, 6) for i in range(4)), (2.2, 22), (2.4, 22), (3.1, 12)]
+    seen = evidence(heard, came)
+    seen.life.sent = [Sent(at, '/odds', {'data': n}) for at, n in heard if n != 21]
+    seen.life.strangers = {'/odds': 1}
+    with pytest.raises(Fail) as refused:
+        CLAUSE.judge(seen)
+    assert refused.value.why.startswith('The answer is repeated')
+
+
+def test_answer_that_is_always_the_same_is_no_answer_to_the_last_message() -> None:
+    heard = [(1.0, 5), *((at + 0.0, 2 * at + 5) for at in range(2, 12)), (11.9, 5)]
+    seen = evidence(heard, [(at, 6) for at, _ in heard])
+    seen.life.sent = [Sent(at, '/odds', {'data': n}) for at, n in heard[:-1]]
+    seen.life.strangers = {'/odds': 1}
+    with pytest.raises(Fail) as refused:
+        CLAUSE.judge(seen)
+    assert refused.value.seen == 'data = 6'
+
+
+def test_answer_to_a_stranger_in_the_moment_of_a_test_is_not_for_the_test() -> None:
+    heard = [(1.0, 5), (1.9, 21), (2.0, 7)]
+    seen = evidence(heard, [(1.0, 6), (2.0, 22)])
+    seen.life.sent = [Sent(1.0, '/odds', {'data': 5}), Sent(2.0, '/odds', {'data': 7})]
+    seen.life.strangers = {'/odds': 1}
+    with pytest.raises(Fail) as refused:
+        CLAUSE.judge(seen)
+    assert refused.value.seen == 'nothing on /evens'
+
+
 def test_answer_that_is_left_out_now_and_then_is_still_one_of_a_timer() -> None:
     """Two messages came between two ticks of the timer, so that it has answered the second."""
     heard = [(1.0, 5), (2.0, 7), (2.1, 9), (3.0, 11)]
     came = [
-        (at / 2, n) for n, start in ((6, 2), (10, 5), (12, 7)) for at in range(start, start + 5)
+        (at / 2, n) for n, ats in ((6, (2, 3, 4)), (10, (5, 6)), (12, range(7, 20))) for at in ats
     ]
     with pytest.raises(Fail) as refused:
         CLAUSE.judge(evidence(heard, came))
@@ -120,13 +377,13 @@ def test_message_that_came_too_late_to_be_judged_is_not_called_answered(
     assert refused.value.why.endswith('its callback did not publish.')
     with pytest.raises(Fail) as refused:
         CLAUSE.judge(evidence(heard, [(1.05, 6)]))
-    assert refused.value.why.startswith('1 of 2 messages were answered rightly')
+    assert refused.value.why.startswith('1 of 2 messages were answered correctly')
     seen = evidence(heard, [(1.05, 6), (1.55, 8)])
     assert CLAUSE.judge(seen).startswith('/postman has answered 2 messages')
 
 
 def lines(heard: list[tuple[float, str]], logged: list[tuple[float, str]]) -> Evidence:
-    """Return evidence of half a minute in which these texts were heard, and lines were logged."""
+    """Return evidence of half a minute with these texts and log lines."""
     life = Life(
         30.0,
         {
@@ -141,19 +398,190 @@ def lines(heard: list[tuple[float, str]], logged: list[tuple[float, str]]) -> Ev
 
 
 def test_line_about_what_came_before_the_check_is_no_extra_line() -> None:
-    clause = Logs('/chatter', 'log it', draw=lambda: ['hello'])
+    clause = Logs('/chatter', 'std_msgs/msg/String', 'log it', draw=lambda: ['hello'])
     seen = lines([(2.0, 'hello')], [(0.05, 'from before'), (2.1, 'I heard hello')])
-    assert clause.judge(seen) == '/ear logged each of 1 texts in a line.'
+    assert clause.judge(seen) == (
+        '/ear logged each of 1 texts in a line. Of lines from before the check, only those of '
+        'timers were looked at.'
+    )
     seen = lines([(2.0, 'hello')], [(1.05, 'from nowhere'), (2.1, 'I heard hello')])
-    with pytest.raises(Fail, match='1 lines when none had come'):
+    with pytest.raises(Fail, match='1 more lines'):
         clause.judge(seen)
 
 
+def test_empty_text_takes_the_line_that_is_like_the_others() -> None:
+    clause = Logs('/chatter', 'std_msgs/msg/String', 'log it')
+    logged = [(2.0, 'I heard: one'), (2.5, 'here'), (3.05, 'here'), (3.1, 'I heard: ')]
+    with pytest.raises(Fail, match="'here', 'here'"):
+        clause.judge(lines([(2.0, 'one'), (3.0, '')], logged))
+
+
 def test_line_about_a_test_is_enough_where_a_stranger_says_the_same() -> None:
-    clause = Logs('/chatter', 'log it', draw=lambda: ['hello'])
+    clause = Logs('/chatter', 'std_msgs/msg/String', 'log it', draw=lambda: ['hello'])
     seen = lines([(2.0, 'hello'), (2.0, 'hello')], [(2.1, 'I heard hello')])
     with pytest.raises(Fail):
         clause.judge(seen)
     seen.life.sent = [Sent(2.0, '/chatter', {'data': 'hello'})]
     seen.life.strangers = {'/chatter': 1}
     assert clause.judge(seen)
+
+
+def largest(best: int | None) -> Generator[int | None, int, None]:
+    while True:
+        value = yield best
+        best = value if best is None else max(best, value)
+
+
+def every_third(before: int) -> Generator[int | None, int, None]:
+    answer = None
+    while True:
+        value = yield answer
+        before += 1
+        answer = value if before % 3 == 0 else None
+
+
+def with_memory(answer: Any, **options: Any) -> Answers:
+    return Answers('/odds', '/evens', INT16, 'as it remembers', answer, **options)
+
+
+@pytest.mark.parametrize('before', [3, 7, 40])
+def test_node_that_remembers_may_have_heard_something_before(before: int) -> None:
+    heard = [(1.0, 5), (2.0, 9), (3.0, 2)]
+    best = [max(before, 5), max(before, 9), max(before, 9)]
+    came = [(at + 0.1, value) for (at, _), value in zip(heard, best, strict=True)]
+    assert with_memory(largest).judge(evidence(heard, came))
+    for number in range(3):
+        wrong = [*came[:number], (came[number][0], 1), *came[number + 1 :]]
+        with pytest.raises(Fail):
+            with_memory(largest).judge(evidence(heard, wrong))
+
+
+@pytest.mark.parametrize('first', [0, 1, 2])
+def test_of_several_memories_one_has_to_fit(first: int) -> None:
+    heard = [(float(n), n) for n in range(1, 10)]
+    clause = with_memory(every_third, resume=lambda value, said: range(3))
+    came = [(at + 0.1, n) for at, n in heard if n % 3 == first]
+    assert clause.judge(evidence(heard, came))
+    with pytest.raises(Fail):
+        clause.judge(evidence(heard, came[1:]))
+    with pytest.raises(Fail):
+        clause.judge(evidence(heard, [*came, (4.2, 4), (5.2, 5)]))
+
+
+def test_model_of_a_mistake_is_the_reason() -> None:
+    doubled = Mistake('test/doubled', 'It is doubled.', 'Add 1.', model=lambda n: 2 * n)
+    clause = Answers('/odds', '/evens', INT16, 'add 1', lambda n: n + 1, mistakes=[doubled])
+    with pytest.raises(Fail) as refused:
+        clause.judge(evidence([(1.0, 5)], [(1.1, 10)]))
+    assert refused.value.mistake is doubled
+
+
+def test_wrong_answer_that_is_right_for_another_message_does_not_hide_the_reason() -> None:
+    """Each number is passed on as it came, and the answer to 12 would be 120."""
+    passed = Mistake('test/passed', 'It is passed on.', 'Multiply.', model=int)
+    clause = Answers('/odds', '/evens', INT16, 'times 10', lambda n: 10 * n, mistakes=[passed])
+    numbers = [(1.0, 0), (1.2, 12), (1.4, 120), (1.6, 1498)]
+    with pytest.raises(Fail) as refused:
+        clause.judge(evidence(numbers, numbers))
+    assert refused.value.mistake is passed
+
+
+def total(begun: int | None, factor: int = 1) -> Generator[int | None, int, None]:
+    said = begun or 0
+    value = yield None
+    while True:
+        said += factor * value
+        value = yield said
+
+
+def test_model_with_a_memory_is_the_reason() -> None:
+    twice = Mistake('test/twice', 'Counted twice.', model=partial(total, factor=2))
+    clause = with_memory(total, mistakes=[twice], resume=lambda value, said: [0])
+    with pytest.raises(Fail) as refused:
+        clause.judge(evidence([(1.0, 5), (2.0, 4)], [(1.1, 10), (2.1, 18)]))
+    assert refused.value.mistake is twice
+
+
+@pytest.mark.parametrize('number', [1, 2])
+def test_node_whose_first_answer_is_seen_has_heard_nothing_before(number: int) -> None:
+    clause = with_memory(total, resume=lambda value, said: [said - value], answers_all=True)
+    seen = evidence([(1.0, 5), (2.0, 4)], [(1.1, 6), (2.1, 10)])
+    samples = seen.life.samples['/evens']
+    samples[:] = [replace(sample, number=number + i) for i, sample in enumerate(samples)]
+    if number > 1:
+        assert clause.judge(seen)
+    else:
+        with pytest.raises(Fail):
+            clause.judge(seen)
+
+
+def test_number_may_be_off_as_far_as_the_task_allows() -> None:
+    clause = Answers('/odds', '/evens', 'std_msgs/msg/Float64', '', lambda n: n / 3, near=1e-6)
+    assert clause.judge(evidence([(1.0, 1)], [(1.1, cast(Any, 0.3333333))]))
+    with pytest.raises(Fail):
+        clause.judge(evidence([(1.0, 1)], [(1.1, cast(Any, 0.3333))]))
+
+
+SMALL = Mistake('test/small', 'Not with a small h.', model=lambda t: 'Hi' if 'h' in t else None)
+ONCE = Mistake('test/once', 'Another hello.', model=lambda t: 'Hi' if t == 'Hello' else None)
+GREETS = Answers(
+    '/lobby',
+    '/lobby',
+    'std_msgs/msg/String',
+    'reply to Hello',
+    answer=lambda text: 'Hi' if 'H' in text else None,
+    mistakes=[SMALL, ONCE],
+)
+
+
+@pytest.mark.parametrize(
+    ('replies', 'mistake'),
+    [
+        ([(1.1, 'Hi'), (2.1, 'Hi')], None),
+        ([(1.1, 'Hi')], ONCE),
+        ([(1.1, 'Hi'), (2.1, 'Hi'), (3.1, 'Hi')], SMALL),
+        ([(1.1, 'Hi'), (1.1, 'oh'), (2.1, 'Hi')], answering.ITSELF),
+        ([(1.1, 'Hi'), (1.2, 'Hi'), (2.1, 'Hi'), (2.2, 'Hi')], answering.TWICE),
+    ],
+)
+def test_node_may_reply_where_it_listens(
+    replies: list[tuple[float, str]], mistake: Mistake | None
+) -> None:
+    sent = [(1.0, 'Hello'), (2.0, 'Hello you'), (3.0, 'hello')]
+    said = sorted([*sent, *replies])
+    life = Life(30.0, {'/lobby': [Lived(SimpleNamespace(data=t), 0.0, 0, at) for at, t in said]})
+    life.sent = [Sent(at, '/lobby', {'data': text}) for at, text in sent]
+    ends = {('subscription', '/lobby', ''): SimpleNamespace(node='/ada')}
+    seen = Evidence(cast(Any, None), ends=cast(Any, ends), life=life)
+    if mistake is None:
+        assert GREETS.judge(seen)
+        return
+    with pytest.raises(Fail) as refused:
+        GREETS.judge(seen)
+    assert refused.value.mistake is not None
+    assert refused.value.mistake.id == mistake.id
+
+
+def test_model_of_a_mistake_stands_in_a_line() -> None:
+    upper = Mistake('test/upper', 'In capital letters.', model=str.upper)
+    clause = Logs('/chatter', 'std_msgs/msg/String', 'log it', mistakes=[upper])
+    for line, mistake in (('I heard HELLO', upper), ('I heard it', words.LOGS_ELSE)):
+        with pytest.raises(Fail) as refused:
+            clause.judge(lines([(2.0, 'hello')], [(2.1, line)]))
+        assert refused.value.mistake is mistake
+
+
+def test_model_of_a_mistake_is_said_each_time() -> None:
+    zero = Mistake('test/zero', 'It was never set.', model=lambda: 0)
+    clause = Says('/ones', 1, mistakes=[zero])
+    for values, mistake in (
+        ([0, 0], zero),
+        ([1, 0, 0], words.LATER_WRONG),
+        ([1, 2, 3], words.CHANGES),
+    ):
+        seen = Evidence(cast(Any, None))
+        samples = [Lived(SimpleNamespace(data=value), 0.0, 0, 0.0) for value in values]
+        seen.streams['/ones', ''] = Stream('/ones', samples, True, 30.0)
+        with pytest.raises(Fail) as refused:
+            clause.judge(seen)
+        assert refused.value.mistake is mistake

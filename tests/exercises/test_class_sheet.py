@@ -1,4 +1,4 @@
-"""What a learner shares: all that is in it, and all that is refused when it is read."""
+"""The sheet that a learner shares: its contents, and what readers refuse."""
 
 from __future__ import annotations
 
@@ -8,15 +8,16 @@ from typing import Any
 
 import pytest
 
-from labkit.exercises.attempts import LONGEST_WHY, ProgressStore
 from labkit.exercises.class_sheet import MOST_BYTES, Entry, catalogue, read_sheet, sheet_text
 from labkit.exercises.lesson import all_lessons
+from labkit.exercises.mistakes import known_mistakes
 from labkit.exercises.progress_file import Store
-from labkit.exercises.sentences import known_sentences
+from labkit.exercises.progress_store import ProgressStore
+from labkit.exercises.words import TWO_COPIES
 
 SINCE = datetime(2026, 1, 2, 3, 4, 5, tzinfo=timezone.utc)
 TIME = '2026-01-02T03:04:05+00:00'
-WHY = 'Two copies of the node run at once, and their messages mix on the topic.'
+WHY = TWO_COPIES.sentence
 KEY = ('odds', 'exercise', 'count_up')
 
 
@@ -30,7 +31,7 @@ def text_of(store: ProgressStore) -> str:
 
 
 def test_what_is_sent_is_read(store: ProgressStore) -> None:
-    store.note_check('odds', 'count_up', 'FAIL', clause='whatever', why=WHY)
+    store.note_check('odds', 'count_up', 'FAIL', clause='whatever', mistake=TWO_COPIES.id)
     store.note_hint('odds', 'count_up', 2)
     store.note_solution('odds', 'count_up')
     store.note_check('odds', 'evens', 'PASS')
@@ -65,11 +66,11 @@ def test_a_clause_is_said_where_there_is_no_reason(store: ProgressStore) -> None
 
 
 def test_all_of_the_course_fits(store: ProgressStore) -> None:
-    why = ' '.join(sorted(known_sentences(), key=len)[-3:])[:LONGEST_WHY]
+    longest = max(known_mistakes().values(), key=lambda mistake: len(mistake.sentence))
     for lesson, kind, name in catalogue():
         if kind == 'exercise':
             store.note_check(lesson, name, 'PASS')
-            store.note_check(lesson, name, 'FAIL', why=why)
+            store.note_check(lesson, name, 'FAIL', mistake=longest.id)
             store.note_hint(lesson, name, 3)
             store.note_solution(lesson, name)
         else:

@@ -42,15 +42,18 @@ def test_a_moment_in_which_nobody_worked_does_not_count() -> None:
 
 @contextmanager
 def crowded(cpu: int) -> Iterator[None]:
-    """Let one processor be shared with others who are always busy."""
-    code = f'import os; os.sched_setaffinity(0, {{{cpu}}})\nwhile True: pass'
-    others = [subprocess.Popen([sys.executable, '-c', code]) for _ in range(4)]
+    """Share one processor with busy processes."""
+    code = f'import os; os.sched_setaffinity(0, {{{cpu}}}); print(flush=True)\nwhile True: pass'
+    command = [sys.executable, '-c', code]
+    others = [subprocess.Popen(command, stdout=subprocess.PIPE) for _ in range(4)]
     try:
+        for other in others:
+            assert other.stdout is not None and other.stdout.readline()
         yield
     finally:
         for other in others:
             other.kill()
-            other.wait()
+            other.communicate()
 
 
 @pytest.mark.skipif(sys.platform != 'linux', reason='only Linux tells it')
@@ -81,8 +84,9 @@ def test_a_thread_that_waits_for_its_turn_has_not_had_the_time() -> None:
 
 
 class Held(Node):
-    def __init__(self) -> None:
+    def __init__(self, *, blocks_at: int | None = 20) -> None:
         super().__init__('held')
+        self.blocks_at = blocks_at
         self.publisher = self.create_publisher(Int16, 'numbers', 10)
         self.create_timer(0.1, self.on_timer)
         self.released = threading.Event()
@@ -90,7 +94,7 @@ class Held(Node):
 
     def on_timer(self) -> None:
         self.count += 1
-        if self.count == 20:
+        if self.count == self.blocks_at:
             self.released.wait()
         self.publisher.publish(Int16())
 
@@ -114,7 +118,7 @@ def test_a_callback_that_has_not_returned_in_time_is_named_afterwards(lab: Modul
 
 
 def test_a_condition_that_keeps_all_callbacks_from_running_is_told(lab: ModuleType) -> None:
-    lab.spin(Held())
+    lab.spin(Held(blocks_at=None))
     released = threading.Event()
     looking = threading.Event()
 
@@ -144,10 +148,12 @@ class Worker(Node):
         self.longest = 0.0
 
     def on_timer(self) -> None:
-        began, end = time.monotonic(), time.thread_time() + 0.04
+        began = time.clock_gettime(time.CLOCK_MONOTONIC)
+        end = time.thread_time() + 0.04
         while time.thread_time() < end:
             pass
-        self.longest = max(self.longest, time.monotonic() - began)
+        took = time.clock_gettime(time.CLOCK_MONOTONIC) - began
+        self.longest = max(self.longest, took)
         self.publisher.publish(Int16())
 
 

@@ -4,28 +4,30 @@ from pathlib import Path
 
 import jedi
 import pytest
+from by_hand import ByHand
 
 from labkit.errors import LabError
-from labkit.exercises.exercise import Exercise, Solution, changed
+from labkit.exercises.exercise import Exercise, Solution
 from labkit.exercises.lesson import Lesson, NoSuchNameError, load
 from labkit.exercises.quiz import Quiz
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 
 
+def exercise(name: str) -> Exercise:
+    return Exercise(
+        name=name,
+        task=f'The task of {name}.',
+        publishes={f'/{name}': 'std_msgs/msg/Int16'},
+        stage=ByHand(lambda probe: None),
+        hints=['A hint.'],
+        answer=Solution('', '', 'So.'),
+    )
+
+
 @pytest.fixture
 def lesson() -> Lesson:
-    exercises = [
-        Exercise(
-            name=name,
-            task=f'The task of {name}.',
-            publishes={f'/{name}': 'std_msgs/msg/Int16'},
-            judge=lambda probe: None,
-            hints=['A hint.'],
-            answer=Solution('pass', 'So.'),
-        )
-        for name in ('count_up', 'evens')
-    ]
+    exercises = [exercise(name) for name in ('count_up', 'evens')]
     quizzes = [Quiz('types'), Quiz('rates')]
     return Lesson('odds', '04_odds.ipynb', exercises=exercises, quizzes=quizzes, topics=['/x'])
 
@@ -54,6 +56,19 @@ def test_quiz_is_found_by_name(lesson: Lesson) -> None:
         lesson.quiz()
 
 
+@pytest.mark.parametrize('name', ['title', 'quiz', 'notebook', 'heading', 'begin', '_hidden'])
+def test_an_exercise_that_could_not_be_reached_is_refused(name: str) -> None:
+    with pytest.raises(LabError, match=f"An exercise of lesson 'odds' can not be called '{name}'"):
+        Lesson('odds', '04_odds.ipynb', exercises=[exercise(name)])
+
+
+def test_two_of_one_name_are_refused() -> None:
+    with pytest.raises(LabError, match="Lesson 'odds' has two exercises called 'evens'"):
+        Lesson('odds', '04_odds.ipynb', exercises=[exercise('evens'), exercise('evens')])
+    with pytest.raises(LabError, match="Lesson 'odds' has two quizzes called 'types'"):
+        Lesson('odds', '04_odds.ipynb', quizzes=[Quiz('types'), Quiz('types')])
+
+
 def test_exercises_know_all_topics_of_the_lesson(lesson: Lesson) -> None:
     assert lesson.count_up.scope.known == {'/count_up', '/evens', '/x'}
 
@@ -63,10 +78,13 @@ def test_unknown_lesson_is_said() -> None:
         load('nothing_like_it')
 
 
-def test_changed_refuses_what_is_not_there() -> None:
-    assert changed('a = 1', ('1', '2')) == 'a = 2'
-    with pytest.raises(ValueError, match="'3' is not in the code"):
-        changed('a = 1', ('3', '2'))
+def test_solution_is_shown_without_the_import_that_the_notebook_has(tmp_path: Path) -> None:
+    (tmp_path / 'solutions').mkdir()
+    text = 'import x\n\nimport labkit as lab\n\nx = 1\n'
+    (tmp_path / 'solutions' / 'ones.py').write_text(text)
+    solution = Solution(str(tmp_path / 'odds.py'), 'ones.py', 'So.')
+    assert solution.code == 'import x\n\nx = 1\n'
+    assert solution.changed(('1', '2')).code == 'import x\n\nx = 2\n'
 
 
 @pytest.mark.parametrize(

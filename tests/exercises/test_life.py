@@ -3,37 +3,13 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
+from std_msgs.msg import Int16
 
-from labkit.exercises.life import ON_THE_WAY, Life, Sent, _Course
+from labkit.exercises.clauses import Publishes
+from labkit.exercises.life import ON_THE_WAY, Life, Sent
 from labkit.exercises.watch import Lived
-
-
-class Endless:
-    """A topic on which one more message has come each time that somebody looks."""
-
-    def __init__(self) -> None:
-        self.count = 0
-
-    def pump(self) -> None:
-        self.count += 1
-        assert self.count < 500, 'still waiting'
-
-    def __len__(self) -> int:
-        return self.count
-
-
-def test_a_topic_that_is_never_quiet_is_not_waited_for_without_an_end():
-    """A sensor that the lesson gives publishes on, in real time."""
-    topic = Endless()
-    probe: Any = SimpleNamespace(look=lambda seconds: None)
-    passing: Any = SimpleNamespace(seconds=30.0)
-    watches: Any = {'/range': topic}
-    course = _Course(probe, passing, watches, moments=[], until=None)
-    course.wait_for_late_ones()
-    assert topic.count
 
 
 @pytest.mark.parametrize(
@@ -84,3 +60,40 @@ def test_a_message_of_a_stranger_in_the_moment_of_a_test_is_no_test(text: str) -
         strangers={'/range': 1},
     )
     assert life.heard('/range', 1.0) == [(test, True), (stranger, False)]
+
+
+def test_time_line_has_tests_and_what_others_said_in_turn() -> None:
+    def said(at: float, value: int, node: str) -> Lived:
+        return Lived(Int16(data=value), 0.0, 0, at, node)
+
+    life = Life(30.0, sent=[Sent(float(at), '/odds', {'data': at}) for at in range(1, 20)])
+    life.samples['/odds'] = [said(sent.at, sent.fields['data'], '') for sent in life.sent]
+    life.samples['/evens'] = [said(at + 0.5, at + 1, '/evener') for at in range(1, 18)]
+    line = life.time_line(18.0)
+    assert line is not None
+    assert {lane: len(moments) for lane, moments in line.lanes.items()} == {
+        ('/odds', 'this check'): 19,
+        ('/evens', '/evener'): 17,
+    }
+    shown = [(event.at, event.by, event.text) for event in line.events]
+    assert (17.5, '/evener', 'data: 18') in shown and (18.0, 'this check', 'data: 18') in shown
+    assert shown == sorted(shown, key=lambda each: each[0])
+    assert Life(30.0).time_line(None) is None
+
+
+def test_time_line_shows_no_character_that_moves_a_terminal() -> None:
+    line = SimpleNamespace(name='ear.left', msg='a\x1b[31m b', level=20)
+    life = Life(30.0, {'/rosout': [Lived(line, 0.0, 0, 1.0)]})
+    told = life.time_line(None)
+    assert told is not None
+    assert [(event.by, event.text) for event in told.events] == [('/ear/left', 'a?[31m b')]
+
+
+def test_publishers_are_told_apart_by_what_came_before() -> None:
+    left = [(at / 5, number) for at, number in zip(range(150), range(2, 152), strict=True)]
+    right = [(-0.1, 2), *((at, number + 1) for at, number in left)]
+    samples = [Lived(None, at, number, at) for at, number in sorted([*left, *right])]
+    life = Life(30.0, {'/sound': samples})
+    found = Publishes('/sound', 5.0, 'std_msgs/msg/String')._right(life)
+    numbers = [[sample.number for sample in stream.samples] for stream in found]
+    assert sorted(numbers) == [[*range(2, 152)], [*range(3, 153)]]

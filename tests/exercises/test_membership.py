@@ -1,4 +1,4 @@
-"""A learner joins a class, goes on, leaves; in this process and in kernels of their own."""
+"""A learner joins a class, continues, leaves; in this process and in separate kernels."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ import pytest
 from labkit import settings
 from labkit.errors import LabError
 from labkit.exercises import membership
-from labkit.exercises.attempts import ProgressStore, progress_store
 from labkit.exercises.class_sheet import FILE_NAME
 from labkit.exercises.membership import follow_class, join_class, leave_class, wait_until_sent
 from labkit.exercises.progress_file import Store
+from labkit.exercises.progress_store import ProgressStore, progress_store
 
 
 @pytest.fixture(autouse=True)
 def alone(monkeypatch: pytest.MonkeyPatch, home: Path) -> None:
-    """No class is known, and nothing of another test is followed."""
+    """Start without a class, and without followers from other tests."""
     for name in ('LABKIT_CLASS_FOLDER', 'JUPYTERHUB_USER', 'LABKIT_HEADLESS'):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(settings, 'audience', lambda: settings.TERMINAL)
@@ -44,7 +44,7 @@ def entries(folder: Path, name: str) -> dict[str, int]:
 def test_a_learner_joins_works_and_leaves(folder: Path) -> None:
     progress_store.note_check('odds', 'count_up', 'FAIL')
     card = join_class('anna', folder=folder)
-    # What is shown is what is sent.
+    # The card shows the sheet.
     path = folder / 'anna' / FILE_NAME
     assert card.code == path.read_text()
     assert ('Where', str(path)) in card.rows and 'lab.leave_class()' in repr(card)
@@ -85,7 +85,7 @@ def test_a_program_that_runs_a_lesson_shares_nothing(folder: Path, monkeypatch) 
 def test_other_notebooks_of_a_member_share_too(folder: Path, script, home: Path) -> None:
     join_class('anna', folder=folder)
     done = script(
-        'from labkit.exercises.attempts import progress_store\n'
+        'from labkit.exercises.progress_store import progress_store\n'
         'from labkit.exercises.membership import follow_class, wait_until_sent\n'
         'follow_class("talker_listener")\n'
         'progress_store.note_check("talker_listener", "four_a_second", "PASS")\n'
@@ -114,6 +114,14 @@ def test_what_is_wrong_is_said(folder: Path, home: Path) -> None:
     with pytest.raises(LabError, match="There is a 'anna' in"):
         join_class('anna', folder=folder)
     assert not (home / 'class.json').exists()
+
+
+def test_who_can_not_be_noted_as_a_member_shares_nothing(folder: Path) -> None:
+    membership._path().mkdir(parents=True)  # as unwritable as a full disk
+    with pytest.raises(LabError, match='Nothing is shared') as caught:
+        join_class('anna', folder=folder)
+    assert 'disk full' in caught.value.todo
+    assert list(folder.iterdir()) == []
 
 
 def test_another_name_leaves_nothing_under_the_old_one(folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""A judge may ask in any order: what one matcher finds does not change what another one says."""
+"""A judge may use matchers in any order: none affects another."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from types import ModuleType
 from typing import Any
 
 import pytest
+from by_hand import ByHand
 from rclpy.node import Node
 from std_msgs.msg import Int16, String
 
@@ -100,11 +101,11 @@ def outcomes(
             for name in order:
                 MATCHERS[name](probe)
 
-        common: dict[str, Any] = {'task': '.', 'hints': ['.'], 'answer': Solution('', '')}
-        before = Exercise(name='count_up', judge=lambda probe: None, **earlier, **common)
+        common: dict[str, Any] = {'task': '.', 'hints': ['.'], 'answer': Solution('', '', '')}
+        before = Exercise(name='count_up', stage=ByHand(lambda probe: None), **earlier, **common)
         asked = Exercise(
             name='evens',
-            judge=judge,
+            stage=ByHand(judge),
             publishes={'/evens': INT16},
             subscribes={'/odds': INT16},
             nodes=[*nodes],
@@ -143,8 +144,8 @@ def test_second_publisher_that_comes_late_is_seen_whatever_was_asked(lab: Module
         name='evens',
         task='.',
         hints=['.'],
-        answer=Solution('', ''),
-        judge=judge,
+        answer=Solution('', '', ''),
+        stage=ByHand(judge),
         publishes={'/evens': INT16},
     )
     assert 'Another node publishes on the same topic.' in asked.check().why

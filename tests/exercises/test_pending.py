@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from labkit.exercises.lesson import load
+
 SETUP = """
 import asyncio
 import labkit as lab
@@ -45,3 +47,28 @@ def test_the_answer_takes_the_place_of_the_waiting(kernel: Any) -> None:
     kernel.run('checked = lesson.ones.check()\nchecked')
     assert 'PASS: ones' in kernel.run('await checked').text
     assert kernel.run('checked._handle.display_id != ""').text == 'True\n'
+
+
+def test_checks_in_a_row_judge_one_after_the_other(kernel: Any) -> None:
+    kernel.run(SETUP)
+    kernel.run(TASK.format(value=1))
+    kernel.run(load('odds').count_up.answer.code)
+    before = kernel.run('import sys; sys.getswitchinterval()').text
+    names = ['ones', 'count_up', 'ones', 'count_up']
+    kernel.run('checked = []')
+    for name in names:
+        kernel.run(f'checked.append(lesson.{name}.check())\nchecked[-1]')
+    kernel.run('verdicts = [await each for each in checked]')
+    told = kernel.run('[repr(each).splitlines()[0] for each in verdicts]').text
+    assert told.strip() == str([f'PASS: {name}' for name in names])
+    assert kernel.run('sys.getswitchinterval()').text == before
+
+
+def test_a_check_without_a_task_waits_for_those_that_go_on(kernel: Any) -> None:
+    kernel.run(SETUP)
+    kernel.run(TASK.format(value=1))
+    kernel.run('checked = lesson.ones.check()\nchecked')
+    kernel.run(load('odds').count_up.answer.code)
+    kernel.run('task.cancel()\nawait asyncio.sleep(0)')
+    assert 'PASS: count_up' in kernel.run('lesson.count_up.check()').text
+    assert kernel.run('checked._thread.is_alive()').text.strip() == 'False'

@@ -1,4 +1,4 @@
-"""Checks that look into other processes: which notebook or script is it that publishes there."""
+"""Checks of other processes: which notebook or script publishes there."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ from labkit.background.domains import claim_domain
 NODE = Path(__file__).resolve().with_name('counter_node.py')
 SETUP = f"""
 import sys
-sys.path.append({str(NODE.parent)!r})
+sys.path[len(sys.path):] = [{str(NODE.parent)!r}, {str(NODE.parent.parent)!r}]
 import labkit as lab
+from by_hand import ByHand
 from counter_node import Counter
 from labkit.exercises import Exercise, Lesson, Solution
 from labkit.exercises import expect
 def judge(probe):
     expect.publisher(probe, '/odds')
-exercise = Exercise(name='ones', task='', publishes={{'/odds': 'std_msgs/msg/Int16'}}, judge=judge,
-                    hints=['.'], answer=Solution('', ''))
+exercise = Exercise(name='ones', task='', publishes={{'/odds': 'std_msgs/msg/Int16'}},
+                    stage=ByHand(judge), hints=['.'], answer=Solution('', '', ''))
 Lesson('odds', '04_odds.ipynb', exercises=[exercise]).begin()
 lab.start()
 """
@@ -36,8 +37,8 @@ process = subprocess.Popen([sys.executable, {str(NODE)!r}, 'ones'])
 LATE = START.replace("'ones'", "'ones', 'late'")
 # The process counts as one that was started long ago.
 NOT_YOUNG = """
-from labkit.background import children
-children.starting_children = lambda gids, others: (False, False)
+from labkit.programs import children
+children.starting_children = lambda *_: (False, False)
 """
 
 
@@ -84,6 +85,31 @@ def test_node_that_is_in_the_graph_before_its_publisher_is_waited_for(
     kernel.run('process.terminate(); process.wait()')
     claim.close()
     assert 'PASS: ' in found.text  # a bar may stand before it
+
+
+# The process has other things to do for a while, as on a busy machine.
+BUSY = """
+import os, signal
+from labkit.exercises.expect.spinning import runs
+def judge(probe):
+    source = expect.publisher(probe, '/odds')
+    os.kill(process.pid, signal.SIGUSR1)
+    expect.that(runs(probe, source.node), expected='an answer', seen='none')
+"""
+
+
+def test_node_that_takes_long_to_answer_counts_as_spun(start_kernel: Callable[..., Any]) -> None:
+    claim = claim_domain()
+    kernel = start_kernel(
+        ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST', ROS_DOMAIN_ID=str(claim.domain_id)
+    )
+    begin, end = SETUP.split('exercise = ')
+    kernel.run(f'{begin}{BUSY}exercise = {end}')
+    kernel.run(f'{SEES}{START}\nlab.wait_until(lambda: sees("/ones"), timeout_sec=30)')
+    found = kernel.run('exercise.check()')
+    kernel.run('process.terminate(); process.wait()')
+    claim.close()
+    assert 'PASS: ' in found.text, found.text
 
 
 def test_cell_that_raised_is_an_error_and_not_an_attempt_left_out(kernel: Any) -> None:

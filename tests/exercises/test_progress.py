@@ -5,13 +5,14 @@ import io
 from pathlib import Path
 
 import pytest
+from by_hand import ByHand
 
 from labkit.exercises import lesson as lesson_module
 from labkit.exercises import progress as progress_module
-from labkit.exercises.attempts import progress_store
-from labkit.exercises.exercise import Exercise, Solution
-from labkit.exercises.lesson import Lesson
+from labkit.exercises.exercise import Exercise
+from labkit.exercises.lesson import Lesson, load
 from labkit.exercises.progress import main, progress
+from labkit.exercises.progress_store import progress_store
 from labkit.exercises.questions import Choice, right, wrong
 from labkit.exercises.quiz import Quiz
 
@@ -21,9 +22,9 @@ def exercise(name: str) -> Exercise:
         name=name,
         task='A task.',
         publishes={'/odds': 'std_msgs/msg/Int16'},
-        judge=lambda probe: None,
+        stage=ByHand(lambda probe: None),
         hints=['First.', 'Second.'],
-        answer=Solution('pass', 'So.'),
+        answer=load('odds').ones.answer,
     )
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from labkit.errors import LabError
 from labkit.exercises import Choice, Number, Quiz, Several, Word, right, spelling, wrong
-from labkit.exercises.attempts import progress_store
 from labkit.exercises.lesson import all_lessons, load
+from labkit.exercises.progress_store import progress_store
 from labkit.exercises.questions import Feedback, Question
 
 ODD = Choice(

@@ -1,4 +1,4 @@
-"""What happens once, before a check, and across a stop of ROS."""
+"""Messages that are sent once, before a check, and across a stop of ROS."""
 
 from __future__ import annotations
 

@@ -33,6 +33,15 @@ while not node.get_clock().ros_time_is_active or not node.get_clock().now().nano
 time.sleep(600)
 """
 )
+# The same, until the driver lets it go on. It answers.
+BUSY = HANGS.replace(
+    "node = Counter('ones')",
+    "from std_msgs.msg import Int16\nnode = Counter('ones')\n"
+    "node.create_subscription(Int16, 'asked', node.publisher.publish, 10)",
+).replace(
+    'time.sleep(600)',
+    "import os\nwhile not os.path.exists('go_on'):\n    time.sleep(0.01)\nrclpy.spin(node)",
+)
 # Does not answer in time, but takes what it was asked later.
 SLOW = (
     COUNTS
@@ -45,6 +54,31 @@ time.sleep(8)
 rclpy.spin(node)
 """
 )
+# Says how many seconds its ROS clock has gone since it was made, and never less than before.
+CLOCKED = (
+    COUNTS
+    + """
+from std_msgs.msg import Int16
+class Clocked(Counter):
+    first = last = 0
+    def on_timer(self):
+        now = self.get_clock().now().nanoseconds // 10**9
+        self.first = self.first or now
+        if now - self.first >= self.last:
+            self.last = now - self.first
+            self.publisher.publish(Int16(data=self.last))
+rclpy.spin(Clocked('ones'))
+"""
+)
+SLEEPS = """rclpy.init()
+import time
+class Sleeps(Counter):
+    def __init__(self):
+        super().__init__('ones')
+    def on_timer(self):
+        super().on_timer()
+        time.sleep(0.5)
+"""
 DRIVER = """
 import json, subprocess, sys
 import labkit as lab
@@ -61,7 +95,7 @@ process = subprocess.Popen([sys.executable, '-c', PROGRAM])
 def see():
     with Probe('ones', Scope(publishes=TOPICS)) as probe:
         assert probe.wait(lambda: probe.publishers('/odds'))
-        return live(probe, TOPICS, nodes=['/ones'], tick=0.02, fine_sec=4.0, rest=0.02)
+        return live(probe, TOPICS, nodes=['/ones'], step=0.02)
 
 
 def say(**what):
@@ -129,6 +163,65 @@ def test_node_that_is_not_spun_is_left_in_real_time(drive: Callable[..., Any]) -
     assert said['remote'] == []
 
 
+def test_node_whose_clock_nobody_tells_is_not_woken(drive: Callable[..., Any]) -> None:
+    told = "rclpy.init(args=['--ros-args', '-p', 'use_sim_time:=true'])"
+    dead = SPUN.replace('rclpy.init()', told)
+    said = drive(
+        dead,
+        """
+life = see()
+say(remote=list(life.remote), count=len(life.on('/odds')))
+""",
+    )
+    assert said == {'remote': [], 'count': 0}
+
+
+def test_a_node_that_waits_for_a_clock_does_not_hear_that_of_a_check(
+    drive: Callable[..., Any],
+) -> None:
+    """It is not the check's business, and dead in reality."""
+    said = drive(
+        SPUN,
+        """
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+dead = lab.spin(Node('dead', parameter_overrides=[Parameter('use_sim_time', value=True)]))
+ticks = []
+dead.create_timer(0.1, lambda: ticks.append(1))
+life = see()
+say(remote=list(life.remote), ticks=len(ticks), clock=dead.get_clock().now().nanoseconds)
+""",
+    )
+    assert said == {'remote': [], 'ticks': 0, 'clock': 0}
+
+
+def test_the_next_check_begins_where_the_last_one_has_ended(drive: Callable[..., Any]) -> None:
+    said = drive(
+        CLOCKED,
+        """
+last = [see().on('/odds')[-1].message.data for _ in range(2)]
+say(gone=last[1] - last[0])
+""",
+    )
+    assert 25 <= said['gone'] <= 60
+
+
+def test_a_node_that_needs_more_time_than_it_is_told_is_seen_in_real_time(
+    drive: Callable[..., Any],
+) -> None:
+    said = drive(
+        SPUN.replace("Counter('ones')", 'Sleeps()').replace('rclpy.init()', SLEEPS),
+        """
+from labkit.exercises.learner_time import _REAL
+began = _REAL['monotonic']()
+life = see()
+long = _REAL['monotonic']() - began > 20
+say(remote=list(life.remote), lost=list(life.lost), real=list(life.real), long=long)
+""",
+    )
+    assert said == {'remote': [], 'lost': [], 'real': ['/ones'], 'long': False}
+
+
 def test_node_that_does_not_answer_any_more_is_not_asked_at_each_step(
     drive: Callable[..., Any],
 ) -> None:
@@ -141,10 +234,34 @@ with Probe('ones', Scope(publishes=TOPICS)) as probe:
         followed = list(remote.names)
         for second in range(1, 200):
             remote.set(second * 1_000_000_000)
-        say(followed=followed, names=remote.names)
+        remote.settle()
+        say(followed=followed, names=remote.names, slow=remote.slow)
 """,
     )
-    assert said == {'followed': ['/ones'], 'names': []}
+    assert said == {'followed': ['/ones'], 'names': [], 'slow': True}
+
+
+def test_node_that_was_given_up_is_waited_for_until_it_has_caught_up(
+    drive: Callable[..., Any],
+) -> None:
+    said = drive(
+        BUSY,
+        """
+import pathlib
+with Probe('ones', Scope(publishes=TOPICS)) as probe:
+    assert probe.wait(lambda: probe.publishers('/odds'))
+    watch, ask = probe.watch('/odds', TOPICS['/odds']), probe.sender('/asked', TOPICS['/odds'])
+    with RemoteTime(probe.spun_node, ['/ones']) as remote:
+        for second in range(1, 20):
+            remote.set(second * 1_000_000_000)
+        ask({'data': -7})
+        pathlib.Path('go_on').touch()
+        remote.catch_up()
+        watch.pump()
+        say(names=remote.names, answered=-7 in watch.values('data'))
+""",
+    )
+    assert said == {'names': [], 'answered': True}
 
 
 def test_node_that_answers_late_has_its_own_time_afterwards(drive: Callable[..., Any]) -> None:
@@ -158,3 +275,26 @@ say(remote=list(life.remote))
 """,
     )
     assert said == {'remote': []}
+
+
+def test_stop_button_while_time_is_given_back_waits_for_that(drive: Callable[..., Any]) -> None:
+    said = drive(
+        SPUN,
+        """
+import signal
+from labkit.background.runtime import runtime
+stopped = False
+try:
+    with Probe('ones', Scope(publishes=TOPICS)) as probe:
+        assert probe.wait(lambda: probe.publishers('/odds'))
+        with RemoteTime(probe.spun_node, ['/ones']) as remote:
+            remote.set(1_000_000_000)
+            clients = len(list(runtime.helper.clients))
+            signal.raise_signal(signal.SIGINT)
+except KeyboardInterrupt:
+    stopped = True
+left = [clients - len(list(runtime.helper.clients)), runtime.helper.count_publishers('/clock')]
+say(stopped=stopped, left=left, guard=remote._guard.returncode)
+""",
+    )
+    assert said == {'stopped': True, 'left': [1, 0], 'guard': 0}

@@ -1,4 +1,4 @@
-"""Exercises on services and parameters: of this process, of another one, of other executors."""
+"""Exercises on services and parameters: in this process, another one, other executors."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ exercise = Exercise(
         Responds('/switch', 'echo', lambda: [[{'data': True}], [{'data': True}, {'data': False}]],
                  judge),
     ],
-    hints=['.'], answer=Solution('', ''))
+    hints=['.'], answer=Solution('', '', ''))
 later = Exercise(name='later', task='Serve /other.', serves={'/other': 'std_srvs/srv/Trigger'},
-    clauses=[Serves('/other', 'std_srvs/srv/Trigger')], hints=['.'], answer=Solution('', ''))
+    clauses=[Serves('/other', 'std_srvs/srv/Trigger')], hints=['.'], answer=Solution('', '', ''))
 Lesson('odds', '04_odds.ipynb', exercises=[exercise, later]).begin()
 
 def echo(request, response):

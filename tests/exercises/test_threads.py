@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import queue
-import sys
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
-from types import FrameType
+from types import ModuleType
 from typing import Any
 
-from labkit.background.compat import rate_is_awaited
-from labkit.exercises.threads import OtherThreads, waits
-from labkit.exercises.virtual_time import _sleepers, _wait_for_rate
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from std_msgs.msg import Int16
+
+from labkit.exercises.threads import OtherThreads
 
 
 @contextmanager
@@ -24,65 +24,6 @@ def thread_that(works: Any, ends: Any) -> Iterator[Any]:
     yield thread
     ends()
     thread.join()
-
-
-def test_a_thread_that_waits_for_an_eventwaits() -> None:
-    event = threading.Event()
-    with thread_that(event.wait, event.set) as thread:
-        while not waits(sys._current_frames()[thread.ident]):
-            time.sleep(0.001)
-
-
-def test_one_that_clears_an_event_is_at_work() -> None:
-    event = threading.Event()
-    frames: list[FrameType] = []
-
-    class Lock:
-        """A lock that notes who takes it."""
-
-        def __enter__(self) -> None:
-            frames.append(sys._getframe(1))
-
-        def __exit__(self, *_: object) -> None: ...
-
-    event._cond = Lock()  # type: ignore[attr-defined]
-    event.clear()
-    (frame,) = frames
-    assert frame.f_code is threading.Event.clear.__code__
-    assert not waits(frame)
-
-
-def test_one_that_computes_is_at_work() -> None:
-    assert not waits(sys._getframe())
-
-
-def test_a_rate_that_was_left_is_waited_for_again_as_soon_as_a_thread_sleeps_in_it() -> None:
-    class Ticks:
-        """A timer of a rate."""
-
-        callback = threading.Event().set
-
-    timer: Any = Ticks()
-    event = timer.callback.__self__
-    done: list[int] = []
-
-    def work() -> None:
-        while len(done) < 2:
-            event.wait()
-            time.sleep(0.3)
-            done.append(1)
-            event.clear()
-
-    # Nobody sleeps there.
-    _wait_for_rate(timer, set())
-    with thread_that(work, event.set) as thread:
-        while not rate_is_awaited(timer):
-            time.sleep(0.001)
-        sleepers = _sleepers([timer])
-        assert sleepers == {timer: {thread.ident}}
-        event.set()
-        _wait_for_rate(timer, sleepers[timer])
-        assert done == [1]
 
 
 def test_work_that_goes_from_thread_to_thread_is_waited_for_to_its_end() -> None:
@@ -134,6 +75,24 @@ def test_one_that_waits_for_this_thread_rests() -> None:
         # It was not given up: it is seen as soon as it runs.
         lock.release()
         assert threads.settle()
+
+
+def test_an_executor_of_the_learners_own_is_waited_for(lab: ModuleType) -> None:
+    node, executor, heard = Node('own'), SingleThreadedExecutor(), list[int]()
+
+    def on_number(msg: Int16) -> None:
+        sum(range(200_000))
+        heard.append(msg.data)
+
+    node.create_subscription(Int16, 'numbers', on_number, 10)
+    publisher = node.create_publisher(Int16, 'numbers', 10)
+    executor.add_node(node)
+    with thread_that(executor.spin, executor.shutdown), OtherThreads() as threads:
+        threads.settle()
+        for number in range(10):
+            publisher.publish(Int16(data=number))
+            assert threads.settle()
+            assert heard[-1] == number
 
 
 def test_threads_of_the_notebook_itself_are_not_waited_for(kernel):

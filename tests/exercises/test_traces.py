@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from types import ModuleType
-from typing import Any
+from types import ModuleType, SimpleNamespace
+from typing import Any, cast
 
 import pytest
 from rclpy.node import Node
@@ -11,8 +11,11 @@ from std_msgs.msg import Int16, String
 
 from labkit.exercises import Exercise, Lesson, Outcome, Solution
 from labkit.exercises.clauses import Publishes
+from labkit.exercises.scope import PUBLISHER, SUBSCRIPTION, Scope
+from labkit.exercises.traces import _may_mean
 
 INT16 = 'std_msgs/msg/Int16'
+TWIST = 'geometry_msgs/msg/Twist'
 
 
 @pytest.fixture
@@ -24,7 +27,7 @@ def lesson(lab: ModuleType) -> Lesson:
             publishes={f'/{name}': INT16},
             clauses=[Publishes(f'/{name}', 5.0, INT16)],
             hints=['', ''],
-            answer=Solution('', ''),
+            answer=Solution('', '', ''),
         )
 
     return Lesson(
@@ -71,7 +74,7 @@ def test_a_node_with_a_name_that_the_lesson_uses_is_the_learners(kernel: Any) ->
     kernel.run(made, cell_id='repair')
     assert 'NOT ATTEMPTED' in kernel.run('lesson.ones.check()').text
     kernel.run(made, cell_id='ones-starter')
-    assert 'a publisher of /announcer' in kernel.run('lesson.ones.check()').text
+    assert kernel.run('lesson.ones.check()').text.startswith('FAIL: ones')
 
 
 def test_a_process_that_has_ended_is_named(kernel: Any) -> None:
@@ -81,6 +84,15 @@ def test_a_process_that_has_ended_is_named(kernel: Any) -> None:
     kernel.run("""program = "raise SystemExit(3)  # was to publish on /ones" """)
     kernel.run("mine = subprocess.Popen([sys.executable, '-c', program]); mine.wait()")
     assert 'has ended with exit code 3' in kernel.run('lesson.ones.check()').text
+
+
+def test_a_program_of_an_earlier_exercise_is_no_trace_where_all_roles_are_theirs() -> None:
+    speaks, hears = (PUBLISHER, '/cmd_vel'), (SUBSCRIPTION, '/odom')
+    scope = Scope(publishes={'/cmd_vel': TWIST}, earlier=frozenset({speaks, hears}))
+    probe = cast(Any, SimpleNamespace(scope=scope))
+    program = "node.create_publisher(Twist, 'cmd_vel', 10)\n"
+    assert _may_mean(probe, program)
+    assert not _may_mean(probe, program + "node.create_subscription(Odometry, 'odom', f, 10)")
 
 
 def test_a_node_that_has_ended_itself_is_named(kernel: Any) -> None:

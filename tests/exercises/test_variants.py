@@ -1,4 +1,4 @@
-"""Numbers and names of one's own: who gets which, and where one is told."""
+"""Variants of exercises: each learner's numbers and names, and where they are shown."""
 
 from __future__ import annotations
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import subprocess
 import threading
 import time
 from collections.abc import Callable
@@ -10,16 +11,23 @@ from itertools import pairwise
 from types import ModuleType
 from typing import Any
 
+import psutil
 import pytest
 from rclpy.duration import Duration
 from rclpy.exceptions import ROSInterruptException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from std_msgs.msg import Int16
 
-from labkit.exercises import Probe
+from labkit.background.wait import wait_for
+from labkit.exercises import Exercise, Lesson, Outcome, Probe, Solution, expect, words
+from labkit.exercises.clauses import Publishes
+from labkit.exercises.expect import timing
 from labkit.exercises.life import Life, Stimulus, live
 from labkit.exercises.scope import Scope
+from labkit.exercises.time_guard import MOST_SEC
+from labkit.exercises.verdict import Verdict
 from labkit.exercises.virtual_time import VirtualTime
 
 INT16 = 'std_msgs/msg/Int16'
@@ -130,8 +138,8 @@ def test_a_thread_with_a_rate_that_works_for_long_once_is_not_lost(lab: ModuleTy
         number = 0
         with contextlib.suppress(ROSInterruptException):
             while not ended.is_set():
-                end = time.monotonic() + (0.8 if number == 50 else 0.0)
-                while time.monotonic() < end:
+                end = time.thread_time() + (0.8 if number == 50 else 0.0)
+                while time.thread_time() < end:
                     pass
                 publisher.publish(Int16(data=number))
                 number += 1
@@ -234,6 +242,7 @@ STOPPED = """
 import os, signal
 import labkit as lab
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from std_msgs.msg import Int16
 lesson = lab.lesson('odds')
 
@@ -267,6 +276,7 @@ def test_the_stop_button_ends_a_check_and_gives_time_back(kernel: Any) -> None:
 REMOTE = """
 import rclpy
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from std_msgs.msg import Int16
 
 class Counter(Node):
@@ -288,7 +298,6 @@ rclpy.spin(Counter())
 @pytest.fixture
 def far(monkeypatch: pytest.MonkeyPatch) -> Any:
     """A counter in a process of its own, in a domain that nobody else has."""
-    import subprocess
     import sys
 
     import labkit
@@ -311,7 +320,7 @@ def _appears(probe: Probe, name: str) -> bool:
 def test_a_node_of_another_process_follows(far: Any) -> None:
     with Probe('test', Scope(publishes={'/odds': INT16})) as probe:
         assert _appears(probe, '/far')
-        life = live(probe, {'/odds': INT16}, 10.0, nodes={'/far'}, tick=0.04, rest=0.2)
+        life = live(probe, {'/odds': INT16}, 10.0, nodes={'/far'}, step=0.04)
         assert life.remote == ['/far']
         samples = life.on('/odds')
         period = (samples[-1].at - samples[0].at) / (samples[-1].number - samples[0].number)
@@ -322,6 +331,13 @@ def test_a_node_of_another_process_follows(far: Any) -> None:
         assert probe.node.count_publishers('/clock') == 0
 
 
+def _is_over(pid: int) -> bool:
+    try:
+        return psutil.Process(pid).status() == psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return True
+
+
 def test_a_node_gets_its_time_back_when_the_examiner_is_killed(far: Any, script: Callable) -> None:
     import os
 
@@ -329,9 +345,12 @@ def test_a_node_gets_its_time_back_when_the_examiner_is_killed(far: Any, script:
         """
 import os, signal
 import labkit
-from labkit.exercises import Probe
+from labkit.exercises import Exercise, Lesson, Outcome, Probe, Solution, expect, words
+from labkit.exercises.clauses import Publishes
+from labkit.exercises.expect import timing
 from labkit.exercises.remote_time import RemoteTime
 from labkit.exercises.scope import Scope
+from labkit.exercises.verdict import Verdict
 from labkit.exercises.virtual_time import VirtualTime
 
 labkit.start()
@@ -339,12 +358,14 @@ with Probe('test', Scope(publishes={'/odds': 'std_msgs/msg/Int16'})) as probe:
     assert probe.wait(lambda: '/far' in probe.node_names(), 20.0)
     with RemoteTime(probe.spun_node, ['/far']) as remote:
         assert remote.names == ['/far']
+        print(remote._guard.pid, flush=True)
         os.kill(os.getpid(), signal.SIGKILL)
 """,
         ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST',
         ROS_DOMAIN_ID=os.environ['ROS_DOMAIN_ID'],
     )
     assert result.exit_code == -9, result.stderr
+    assert wait_for(lambda: _is_over(int(result.stdout)), MOST_SEC)  # it has done its work
     with Probe('test', Scope(publishes={'/odds': INT16})) as probe:
         assert _appears(probe, '/far')
         watch = probe.watch('/odds', INT16)
@@ -371,6 +392,19 @@ def test_time_begins_in_the_present_for_a_node_that_has_had_none(lab: ModuleType
     assert 98 <= len(life.on('/evens')) <= 110
 
 
+def test_node_whose_clock_nobody_tells_is_not_woken(lab: ModuleType) -> None:
+    node = Counter()
+    node.set_parameters([Parameter('use_sim_time', value=True)])
+    lab.spin(node)
+    assert not see({'/odds': INT16}, {'/counter'}).on('/odds')
+    scope = Scope(publishes={'/odds': INT16})
+    with Probe('test', scope) as probe:
+        found = timing.silence(probe, expect.publisher(probe, '/odds'), 0, 1.0)
+    assert found is words.NO_CLOCK
+    clock: Any = node.get_clock()
+    assert clock.ros_time_is_active
+
+
 def test_timers_are_called_at_once_when_time_is_real_again(lab: ModuleType) -> None:
     class Own(SingleThreadedExecutor):
         woken = 0
@@ -389,3 +423,80 @@ def test_timers_are_called_at_once_when_time_is_real_again(lab: ModuleType) -> N
     assert executor.woken > before
     executor.shutdown()
     thread.join()
+
+
+class Works(Node):
+    """A timer calls it four times a second, and it takes its time."""
+
+    def __init__(self, work: Callable[[], object]) -> None:
+        super().__init__('works')
+        self.publisher = self.create_publisher(Int16, 'odds', 10)
+        self.create_timer(0.25, self.on_timer)
+        self.work = work
+
+    def on_timer(self) -> None:
+        self.publisher.publish(Int16())
+        self.work()
+
+
+def compute(seconds: float) -> None:
+    end = time.thread_time() + seconds
+    while time.thread_time() < end:
+        pass
+
+
+WORKS: dict[str, Callable[[], object]] = {
+    'sleeps': lambda: time.sleep(0.5),
+    'computes': lambda: compute(0.5),
+    'waits': lambda: subprocess.run(['sleep', '0.5'], check=True),
+}
+
+
+def check_works(lab: ModuleType) -> Verdict:
+    exercise = Exercise(
+        name='works',
+        task='A task.',
+        clauses=[Publishes('/odds', 4.0, INT16)],
+        hints=['', ''],
+        answer=Solution('', '', ''),
+    )
+    Lesson('odds', '04_odds.ipynb', exercises=[exercise])
+    return exercise.examine()
+
+
+@pytest.mark.parametrize('work', WORKS)
+def test_a_callback_that_takes_longer_than_the_period_of_its_timer_is_told_so(
+    lab: ModuleType, work: str
+) -> None:
+    lab.spin(Works(WORKS[work]))
+    verdict = check_works(lab)
+    assert verdict.outcome is Outcome.FAIL
+    assert verdict.mistake is not None and verdict.mistake.id == 'spin/outlasts'
+    assert 'its timer is due every 0.25 s' in verdict.why
+
+
+@pytest.mark.parametrize('work', WORKS)
+def test_an_executor_of_the_learners_own_has_no_more_time(lab: ModuleType, work: str) -> None:
+    executor = SingleThreadedExecutor()
+    executor.add_node(Works(WORKS[work]))
+    thread = threading.Thread(target=executor.spin, daemon=True)
+    thread.start()
+    verdict = check_works(lab)
+    executor.shutdown()
+    thread.join()
+    assert verdict.outcome is Outcome.FAIL
+    assert ('2 times too slow' if work == 'sleeps' else 'a thread is at work') in verdict.seen
+
+
+def test_a_check_of_callbacks_that_compute_ends_early_and_says_so(lab: ModuleType) -> None:
+    node = lab.spin(Works(lambda: compute(0.15)))
+    verdict = check_works(lab)
+    assert verdict.passed
+    seconds = float(verdict.text.split(', ')[-1].split()[0])
+    assert 5 < seconds < 12
+    assert node.get_clock().ros_time_is_active is False
+
+
+def test_callbacks_that_take_less_than_there_is_are_not_late(lab: ModuleType) -> None:
+    lab.spin(Works(lambda: time.sleep(0.2)))
+    assert check_works(lab).passed

@@ -11,14 +11,16 @@ import os
 import random
 import shlex
 import shutil
+import socket
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from ports import free_port
 
 ROOT = Path(__file__).resolve().parents[2]
 START_SEC = 180.0
@@ -46,6 +48,7 @@ class Machine:
         for command in ('unshare', 'nsenter', 'useradd'):
             if shutil.which(command) is None:
                 pytest.skip(f'the command {command} is missing (Debian: util-linux, passwd)')
+        self._open_folders: list[Path] = []
         self._env = {k: v for k, v in os.environ.items() if not k.startswith(_FOREIGN)}
         self._init = subprocess.Popen(
             [
@@ -107,10 +110,19 @@ class Machine:
             stdin=subprocess.DEVNULL,
         )
 
+    def open_folder(self) -> Path:
+        """Return a new folder that everybody can pass through, as through /var/lib."""
+        folder = Path(tempfile.mkdtemp(prefix='labkit-hub-', dir='/var/tmp'))
+        folder.chmod(0o711)
+        self._open_folders.append(folder)
+        return folder
+
     def end(self) -> None:
         """End all that runs on the machine, and take it away."""
         self._init.kill()
         self._init.communicate()
+        for folder in self._open_folders:
+            shutil.rmtree(folder)
 
 
 def _laid_open(folder: Path) -> list[str]:
@@ -133,12 +145,25 @@ def _laid_open(folder: Path) -> list[str]:
     return lines
 
 
+def _free_port_of_root() -> int:
+    """Return a port below 1024 that nobody uses, nor the two after it."""
+    while True:
+        port = random.randrange(600, 1000)
+        with ExitStack() as probes:
+            try:
+                for number in range(port, port + 3):
+                    probes.enter_context(socket.socket()).bind(('127.0.0.1', number))
+            except OSError:
+                continue
+        return port
+
+
 class Hub:
     """A hub on such a machine, started by labkit's own command.
 
     Args:
         machine: The machine.
-        folder: An empty folder for its list and log.
+        folder: A folder for its list and log.
         names: The class.
         options: Further options of the command.
 
@@ -148,8 +173,8 @@ class Hub:
 
     def __init__(self, machine: Machine, folder: Path, class_list: str, *options: str) -> None:
         self.machine = machine
-        self.port = free_port()
-        self.state = folder / 'hub'
+        self.port = _free_port_of_root()
+        self.state = machine.open_folder() / 'hub'
         self.log_file = folder / 'hub.log'
         self._pid_file = folder / 'hub.pid'
         folder.mkdir(parents=True, exist_ok=True)
@@ -158,8 +183,6 @@ class Hub:
         self._words = [
             *(sys.executable, '-m', 'labkit', 'hub', f'--class={self.list}'),
             *(f'--folder={self.state}', f'--port={self.port}'),
-            f'--JupyterHub.hub_port={free_port()}',
-            f'--ConfigurableHTTPProxy.api_url=http://127.0.0.1:{free_port()}',
             f'--JupyterHub.pid_file={self._pid_file}',
             *options,
         ]
@@ -194,6 +217,12 @@ class Hub:
         """What the hub, its proxy and learners' servers have written."""
         there = self.log_file.exists()
         return self.log_file.read_text(errors='replace') if there else ''
+
+    def command(self, *words: str) -> tuple[int, str]:
+        """Run `labkit hub` to its end, for this hub; return its code and what it says."""
+        start = ['env', '-C', str(ROOT), sys.executable, '-m', 'labkit', 'hub']
+        done = self.machine.run(*start, f'--folder={self.state}', *words)
+        return done.returncode, done.stdout + done.stderr
 
     def password(self, name: str) -> str:
         """Return somebody's first password, as the teacher finds it."""

@@ -106,9 +106,12 @@ class Person:
         return json.loads(answer.text or 'null')
 
     def start_server(self) -> None:
-        """Press the button that starts the server, and wait until it is ready."""
+        """Press the button that starts the server, and wait until it is ready.
+
+        The page after the login starts it, too, and may have come first.
+        """
         answer = self.ask(f'/hub/api/users/{self.name}/server', 'POST', {})
-        assert answer.status in (201, 202), answer
+        assert answer.status in (201, 202) or 'is already running' in answer.text, answer
 
         def ready() -> bool:
             user = self.ask(f'/hub/api/users/{self.name}')
@@ -183,14 +186,16 @@ class Notebook:
 
     def finish(self, request: str) -> str:
         """Wait for the end of a started cell; return what it shows."""
-        shown, others = '', 0
+        shown: list[str] = []
+        displays: dict[str, int] = {}
+        others = 0
         code, connection = self._running.pop(request)
         end = time.monotonic() + START_SEC
         with closing(connection):
             while True:
                 assert time.monotonic() < end, (
                     f'no end of {code!r} in {self._address}; '
-                    f'shown: {shown!r}; other messages: {others}'
+                    f'shown: {"".join(shown)!r}; other messages: {others}'
                 )
                 try:
                     text = connection.recv()
@@ -204,13 +209,20 @@ class Notebook:
                     continue
                 kind, content = message['msg_type'], message['content']
                 if kind == 'status' and content['execution_state'] == 'idle':
-                    return shown
+                    return ''.join(shown)
                 if kind == 'stream':
-                    shown += content['text']
+                    shown.append(content['text'])
                 elif 'data' in content:
-                    shown += content['data'].get('text/plain', '')
+                    text = content['data'].get('text/plain', '')
+                    display = content.get('transient', {}).get('display_id', '')
+                    # An update takes the place of what a view or a bar has shown before.
+                    if kind != 'update_display_data':
+                        displays[display] = len(shown)
+                        shown.append(text)
+                    elif display in displays:
+                        shown[displays[display]] = text
                 elif kind == 'error':
-                    shown += f'raised {content["ename"]}: {content["evalue"]}\n'
+                    shown.append(f'raised {content["ename"]}: {content["evalue"]}\n')
 
 
 def at_once(people: list[Person], do: Callable[[Person], Any]) -> dict[str, Any]:

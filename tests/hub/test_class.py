@@ -100,7 +100,10 @@ def root(monkeypatch: pytest.MonkeyPatch) -> None:
         (['--class', 'robots.txt', '--ip', '192.168.1.7'], 'unencrypted'),
         (['--class', 'robots.txt', '--ip='], 'unencrypted'),
         (['--class', 'robots.txt', '--JupyterHub.ip=::'], 'unencrypted'),
-        (['--class', 'robots.txt', '--JupyterHub.bind_url=http://:8000'], 'unencrypted'),
+        (['--class', 'robots.txt', '--JupyterHub.bind_url=http://:800'], 'unencrypted'),
+        (['--class', 'robots.txt', '--port=8000'], 'any account of this machine could take port'),
+        (['--class', 'robots.txt', '--port', '1022'], 'Choose one up to 1021'),
+        (['--class', 'robots.txt', '--JupyterHub.bind_url=http://127.0.0.1:9000'], 'port 9000'),
     ],
 )
 def test_what_the_command_refuses(
@@ -122,10 +125,11 @@ def test_what_the_command_refuses(
     'options',
     [
         [],
-        ['--port=9000'],
+        ['--port=1021'],
+        ['--image=ros-course', '--port=9000'],
         ['--ip=127.0.0.1'],
         ['--ip=0.0.0.0', '--ssl-key=k', '--ssl-cert=c'],
-        ['--JupyterHub.bind_url=http://127.0.0.1:9000/robots'],
+        ['--JupyterHub.bind_url=http://127.0.0.1:900/robots'],
     ],
 )
 def test_what_the_command_lets_pass(
@@ -140,7 +144,8 @@ def test_what_the_command_lets_pass(
     monkeypatch.setattr(os, 'execve', lambda path, words, env: seen.append(words) or exit(0))
     with pytest.raises(SystemExit):
         main(['hub', '--class', str(path), *options])
-    assert seen[0][-len(options) - 1 :] == ['--', *options]
+    passed = [option for option in options if 'image' not in option]
+    assert seen[0][-len(passed) - 1 :] == ['--', *passed]
 
 
 def test_only_root_may_start_a_hub(tmp_path: Path) -> None:

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import shutil
-import tempfile
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from hub.machine import Hub, Machine
@@ -15,7 +12,7 @@ from labkit.exercises.class_sheet import FILE_NAME
 
 NAMES = ('anna', 'ben', 'maria')
 TRY = (
-    'from labkit.exercises.attempts import progress_store\n'
+    'from labkit.exercises.progress_store import progress_store\n'
     'from labkit.exercises.membership import wait_until_sent\n'
     'progress_store.note_check("talker_listener", "four_a_second", {!r})\n'
     'print(wait_until_sent(60))'
@@ -30,13 +27,8 @@ def machine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
 
 
 @pytest.fixture(scope='module')
-def hub(machine: Machine) -> Iterator[Hub]:
-    # Where everybody can pass through, as through /var/lib.
-    folder = Path(tempfile.mkdtemp(prefix='labkit-hub-'))
-    folder.chmod(0o711)
-    yield Hub(machine, folder, 'anna\nben\nmaria teacher\n')
-    machine.end()
-    shutil.rmtree(folder)
+def hub(machine: Machine, tmp_path_factory: pytest.TempPathFactory) -> Hub:
+    return Hub(machine, tmp_path_factory.mktemp('hub'), 'anna\nben\nmaria teacher\n')
 
 
 @pytest.fixture(scope='module')

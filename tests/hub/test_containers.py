@@ -28,7 +28,7 @@ CLASS = (Member('anna'), Member('ben_2'), Member('maria', teaches=True))
 HOME = '/home/jovyan'
 JOIN = """
 import labkit as lab
-from labkit.exercises.attempts import progress_store
+from labkit.exercises.progress_store import progress_store
 from labkit.exercises.membership import wait_until_sent
 
 print(lab.join_class())
@@ -54,6 +54,7 @@ class Containers:
         with pytest.MonkeyPatch.context() as patch:
             patch.setenv('LABKIT_CLASS', str(folder / 'robots.txt'))
             patch.setenv('LABKIT_CLASS_FOLDER', str(self.folder))
+            patch.setenv('LABKIT_HUB_TOKEN', 'secret')
             patch.setenv('LABKIT_IMAGE', 'ros-course')
             path = ROOT / 'labkit' / 'hub' / 'jupyterhub_config.py'
             self._config = PyFileConfigLoader(str(path)).load_config()

@@ -16,12 +16,11 @@ from dockerspawner import DockerSpawner
 from jupyterhub.app import JupyterHub
 from jupyterhub.auth import Authenticator
 from jupyterhub.spawner import Spawner
-from systemdspawner import SystemdSpawner
 from traitlets import HasTraits
 from traitlets.config import Config, PyFileConfigLoader
 
 from labkit.hub.command import REQUIREMENTS
-from labkit.hub.spawner import LimitedSpawner
+from labkit.hub.spawner import GroupSpawner, LimitedSpawner
 
 ROOT = Path(__file__).resolve().parents[2]
 HUB = ROOT / 'labkit' / 'hub'
@@ -35,6 +34,7 @@ def configuration(folder: Path, monkeypatch: pytest.MonkeyPatch, **env: str) -> 
     (folder / 'robots.txt').write_text('anna\nmaria teacher\n')
     monkeypatch.setenv('LABKIT_CLASS', str(folder / 'robots.txt'))
     monkeypatch.setenv('LABKIT_CLASS_FOLDER', str(folder / 'class'))
+    monkeypatch.setenv('LABKIT_HUB_TOKEN', 'secret')
     for name, value in env.items():
         monkeypatch.setenv(name, value)
     path = str(HUB / 'jupyterhub_config.py')
@@ -43,13 +43,14 @@ def configuration(folder: Path, monkeypatch: pytest.MonkeyPatch, **env: str) -> 
 
 # --- The configuration of one machine, in its three forms ----------------------------------------
 
+LEARNER = ['-I', '-m', 'labkit.hub.learner']
 KNOWN: dict[str, type] = {
     'JupyterHub': JupyterHub,
     'Authenticator': Authenticator,
     'Spawner': Spawner,
     'DockerSpawner': DockerSpawner,
     'LimitedSpawner': LimitedSpawner,
-    'SystemdSpawner': SystemdSpawner,
+    'GroupSpawner': GroupSpawner,
 }
 
 
@@ -68,7 +69,7 @@ def test_each_setting_is_one_that_jupyterhub_knows(
     )
     classes = {
         'processes': LimitedSpawner,
-        'systemd': SystemdSpawner,
+        'systemd': GroupSpawner,
         'docker': DockerSpawner,
     }
     assert config.JupyterHub.spawner_class.endswith(f'.{classes[form].__name__}')
@@ -83,6 +84,9 @@ def test_each_setting_is_one_that_jupyterhub_knows(
     # A container runs what its image says.
     assert ('cmd' in config[classes[form].__name__]) == (form != 'docker')
     assert 'cmd' not in config.Spawner
+    # Nothing about one's own server is one's own choice, such as the image.
+    offers = {'allowed_images', 'apply_user_options', 'options_form', 'options_from_form'}
+    assert not offers & {name for settings in config.values() for name in settings}
 
 
 # --- The image -----------------------------------------------------------------------------------
@@ -98,7 +102,7 @@ def test_image_is_prepared_by_the_command_of_the_hub() -> None:
     (copied,) = instructions('COPY')
     (command,) = instructions('CMD')
     folder = copied.split()[1]
-    assert json.loads(command) == [f'{folder}/.venv/bin/python', '-m', 'labkit.hub.learner']
+    assert json.loads(command) == [f'{folder}/.venv/bin/python', *LEARNER]
 
 
 def test_image_has_what_is_needed_and_nothing_that_is_ones_own() -> None:
@@ -164,6 +168,7 @@ def test_the_image_and_the_chart_have_the_same_jupyterhub() -> None:
 
 def test_the_chart_runs_the_command_of_the_image() -> None:
     assert VALUES['singleuser']['cmd'] is None  # else it would be `jupyterhub-singleuser`
+    assert not {'profileList', 'allowedImages'} & VALUES['singleuser'].keys()
     assert VALUES['hub']['config']['NativeAuthenticator']['open_signup'] is False
     assert VALUES['proxy']['https']['enabled'] is True
 

@@ -121,7 +121,7 @@ def test_nobody_hears_others_by_the_number_of_their_domain(learners: Class) -> N
     anna.run(f'lab.stop(); lab.start(domain_id={domain}); mine = lab.spin(Node("of_anna"))')
     assert evaluated(anna, 'mine.context.get_domain_id()') == domain
     # Another process of ben's finds his node, so whoever may has found it by then.
-    assert '/of_ben' in ben.run('!ros2 node list').split()
+    assert '/of_ben' in ben.run('!ros2 node list --no-daemon').split()
     assert anna.run('%ros2 node list').split() == ['/of_anna']
     assert ben.run('%ros2 node list').split() == ['/of_ben']
     anna.run('lab.stop(); lab.start(); mine = lab.spin(Node("of_anna"))')
@@ -182,7 +182,7 @@ def test_all_listens_on_this_machine_alone(learners: Class, hub: Hub) -> None:
     )
     done = hub.machine.run(sys.executable, '-c', code)
     found = re.findall(r"ip='([^']*)', port=(\d+)", done.stdout)
-    assert {'127.0.0.1'} == {address for address, _ in found}, done
+    assert all(address.startswith('127.') for address, _ in found), done
     # The proxy's two, the hub's, and one of each server at least.
     assert len(found) >= 3 + len(CLASS)
     assert str(hub.port) in {port for _, port in found}

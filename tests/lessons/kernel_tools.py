@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import gc
+import os
 import shutil
 import signal
 import subprocess
@@ -15,12 +17,18 @@ from pathlib import Path
 from typing import Any
 
 import psutil
-from IPython import get_ipython
+from IPython.core.getipython import get_ipython
 from rclpy.node import Node
 
 from labkit.background.nodes import existing_nodes
-from labkit.background.runtime import runtime
-from labkit.background.spinning import remove
+from labkit.background.runtime import remove, runtime
+from labkit.background.wait import wait_for
+from labkit.rosgraph.names import UNKNOWN_NODE, full_node_name
+from labkit.rosgraph.whose import process_id
+
+# Generous: it is there to end a hang. An answer's callback may never return, so `wait_for` does
+# not look between callbacks, as `runtime.wait` does.
+TIMEOUT_SEC = 60.0
 
 _before: weakref.WeakSet[Node] = weakref.WeakSet()
 _foreign_before: set[str] = set()
@@ -32,6 +40,7 @@ _scripts: list[subprocess.Popen[bytes]] = []
 
 def mark() -> None:
     """Remember which nodes, processes, files and names belong to the lesson itself."""
+    _build_once()
     gc.collect()  # a process that has ended is an attempt as long as there is an object of it
     _before.update(existing_nodes())
     _foreign_before.update(runtime.foreign_nodes())
@@ -39,6 +48,13 @@ def mark() -> None:
     _files_before.update(_files())
     _names_before.clear()
     _names_before.update(_names())
+
+
+def _build_once() -> None:
+    """Let `colcon` be the one of `built_once`."""
+    folder = str(Path(__file__).resolve().parent / '.colcon')
+    paths = os.environ.get('PATH', os.defpath).split(os.pathsep)
+    os.environ['PATH'] = os.pathsep.join([folder, *(path for path in paths if path != folder)])
 
 
 def run_script(code: str) -> None:
@@ -50,7 +66,8 @@ def run_script(code: str) -> None:
         process = subprocess.Popen([sys.executable, name], stdout=log, stderr=log)
     _scripts.append(process)
     # A learner looks at the check only when the script is up.
-    runtime.wait(lambda: not _alone() or process.poll() is not None, 25.0)
+    up = wait_for(lambda: _nodes_of(process.pid) or process.poll() is not None, TIMEOUT_SEC)
+    assert up, f'no node of {process.pid} in {_graph()}: {Path(log.name).read_text()}'
 
 
 def clean() -> None:
@@ -72,7 +89,9 @@ def clean() -> None:
     for node in existing_nodes():
         if node not in _before and node is not runtime.helper:
             remove(node)
+    # Between two callbacks: one of the last answer may sleep, and is not to be taken for the next.
     runtime.wait(_alone, 25.0)
+    assert wait_for(_alone, TIMEOUT_SEC), f'there are still others in {_graph()}'
     for path in sorted(_files() - _files_before, reverse=True):
         if path.is_dir() and not path.is_symlink():
             shutil.rmtree(path)  # with its hidden files
@@ -106,6 +125,34 @@ def stop_next_cell_after(seconds: float) -> None:
     events.register('pre_run_cell', begin)
 
 
+def left_of_check() -> dict[str, Any]:
+    """Return all that a check changes, as it is now."""
+    helper = runtime.helper
+    nodes = existing_nodes()
+    return {
+        'clocks': sorted(node.get_fully_qualified_name() for node in nodes if _is_set(node)),
+        'nodes': sorted(_living_nodes()),
+        'ends on /clock': helper.count_publishers('/clock') + helper.count_subscribers('/clock'),
+        'clients': len(list(helper.clients)),
+        'processes': len(_children()),
+        'threads': sorted(t.name for t in threading.enumerate() if t.name.startswith('labkit')),
+        'output': runtime.console._held,
+        'switch interval': sys.getswitchinterval(),
+        'handler': str(signal.getsignal(signal.SIGINT)),
+    }
+
+
+def wait_until_left(text: str) -> dict[str, Any]:
+    """Wait until `left_of_check` is this: another process may take long to leave the graph."""
+    wait_for(lambda: left_of_check() == ast.literal_eval(text), 25.0)
+    return left_of_check()
+
+
+def _is_set(node: Node) -> bool:
+    clock: Any = node.get_clock()
+    return bool(clock.ros_time_is_active)
+
+
 def _names() -> dict[str, Any]:
     """Return what cells have defined; IPython's own names begin with `_`, or are its tools."""
     names = get_ipython().user_ns
@@ -115,6 +162,32 @@ def _names() -> dict[str, Any]:
 def _files() -> set[Path]:
     """Return the files and folders beside the notebook; the hidden ones are not an answer's."""
     return {path for path in Path().rglob('[!.]*') if not path.parts[0].startswith('.')}
+
+
+def _nodes_of(pid: int) -> list[str]:
+    """Return the nodes of a process that are in the graph: a GUID holds the id of its process."""
+    infos = runtime.helper.get_publishers_info_by_topic('/parameter_events')
+    return [
+        full_node_name(info.node_name, info.node_namespace)
+        for info in infos
+        if process_id(bytes(info.endpoint_gid)) == pid & 0xFFFF and info.node_name != UNKNOWN_NODE
+    ]
+
+
+def _living_nodes() -> list[str]:
+    """Return the names of nodes whose process lives: the graph forgets killed ones after 20 s."""
+    found = psutil.process_iter(['status'])
+    living = {p.pid & 0xFFFF for p in found if p.info['status'] != psutil.STATUS_ZOMBIE}
+    infos = runtime.helper.get_publishers_info_by_topic('/parameter_events')
+    return [i.node_name for i in infos if process_id(bytes(i.endpoint_gid)) in living]
+
+
+def _graph() -> str:
+    infos = runtime.helper.get_publishers_info_by_topic('/parameter_events')
+    ends = [(i.node_namespace, i.node_name, bytes(i.endpoint_gid).hex()) for i in infos]
+    nodes = runtime.helper.get_node_names_and_namespaces()
+    children = [(child.pid, child.status(), *child.cmdline()[:2]) for child in _children()]
+    return f'the graph of {nodes}, with {ends}, beside the processes {children}'
 
 
 def _alone() -> bool:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import shutil
 import time
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+import built_once
 import demo
 import nbformat
+from cases import Answer, answers_of
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell
 
@@ -22,10 +25,18 @@ HERE = Path(__file__).resolve().parent
 NOTEBOOKS = HERE.parent.parent / 'notebooks'
 # A check may ask to be pressed again when a process has just been started.
 PRESSES = 3
+# Eight kernels work side by side. It is there to end a hang, s.
+HANG_SEC = 300
+# A state gets the same draws each time, so that its verdict can be had again. With another number,
+# checks draw something else.
+DRAW = os.environ.get('PROOF_DRAW', '1')
 # Cells of the kernel: before an answer is tried, and between two of them.
 # (A lesson may go to another folder, so the tools are looked for beside the notebook.)
 MARK = 'import sys\nsys.path.insert(0, {!r})\nimport kernel_tools\nkernel_tools.mark()'
-RESET = 'import kernel_tools\nkernel_tools.clean()\nlesson.{name}.forget()'
+RESET = (
+    'import random\nimport kernel_tools\nkernel_tools.clean()\nlesson.{name}.forget()\n'
+    'random.seed({seed!r})'
+)
 
 
 def lessons() -> list[Lesson]:
@@ -43,27 +54,6 @@ def notebook_of(lesson: Lesson) -> Path:
 
 
 @dataclass(frozen=True)
-class State:
-    """An answer to an exercise, and the verdict that it must get.
-
-    Attributes:
-        exercise: Name of the exercise.
-        name: What the answer is: `'untouched'`, `'solution'`, a wrong answer, a style.
-        code: What stands in the starter cell; as it is in the notebook if None.
-        outcome: The outcome that it must get.
-        says: What the verdict must contain.
-        process: Whether the code is a script for a process of its own.
-    """
-
-    exercise: str
-    name: str
-    code: str | None
-    outcome: Outcome
-    says: str = ''
-    process: bool = False
-
-
-@dataclass(frozen=True)
 class Finding:
     """What came of a state.
 
@@ -71,29 +61,25 @@ class Finding:
         outcome: The outcome, None if the cell gave no verdict.
         text: The verdict as text, on one line.
         seconds: How long the check took.
+        told: Silent faults that labkit has told under the cells of the state.
     """
 
     outcome: Outcome | None
     text: str
     seconds: float
+    told: str = ''
 
 
-def states_of(exercise: Exercise) -> list[State]:
+def states_of(exercise: Exercise) -> list[Answer]:
     """Return the states of an exercise, the shown solution last, so that it stays."""
     name = exercise.name
-    states = [State(name, 'untouched', None, Outcome.NOT_ATTEMPTED)]
-    states += [
-        State(name, wrong.name, wrong.code, wrong.outcome, wrong.says, wrong.process)
-        for wrong in exercise.wrong
+    return [
+        Answer(name, 'untouched', None, Outcome.NOT_ATTEMPTED),
+        *answers_of(exercise),
+        Answer(name, 'solution', exercise.answer.code, Outcome.PASS),
+        # The same nodes once more: a check can be pressed twice.
+        Answer(name, 'solution, pressed again', '', Outcome.PASS),
     ]
-    states += [
-        State(name, style.name, style.code, Outcome.PASS, process=style.process)
-        for style in exercise.styles
-    ]
-    states.append(State(name, 'solution', exercise.answer.code, Outcome.PASS))
-    # The same nodes once more: a check can be pressed twice.
-    states.append(State(name, 'solution, pressed again', '', Outcome.PASS))
-    return states
 
 
 def copied(lesson: Lesson, folder: Path) -> Path:
@@ -101,7 +87,9 @@ def copied(lesson: Lesson, folder: Path) -> Path:
     notebook = notebook_of(lesson)
     if lesson is demo.LESSON:
         shutil.copytree(HERE / 'demo', folder / 'demo')
+        shutil.copy(HERE.parent / 'by_hand.py', folder)
     shutil.copy(HERE / 'kernel_tools.py', folder)
+    built_once.install(folder / '.colcon')
     content = nbformat.read(notebook, as_version=4)
     if any(state.process for exercise in lesson.exercises for state in states_of(exercise)):
         content.metadata['labkit'] = {'processes': True}
@@ -133,21 +121,25 @@ class Proof:
         """Work through the notebook; return what came of each exercise and state.
 
         Args:
-            wanted: The exercises and states to go through; each exercise is solved anyway.
+            wanted: The exercises and states to go through. The exercises before the last of them
+                are solved anyway.
 
         Raises:
             LessonError: A cell of the lesson itself has failed.
         """
-        with LessonRun(self._path) as run:
+        left = {name for name, _ in wanted}
+        with LessonRun(self._path, cell_timeout_sec=HANG_SEC) as run:
             done = 0
             by_starter = {exercise.starter_id: exercise for exercise in self.lesson.exercises}
-            while done < len(run.notebook.cells):
+            # What comes after the last of them proves nothing here: nbval runs all cells.
+            while left:
                 exercise = by_starter.get(run.notebook.cells[done].id)
                 if exercise is None:
                     run.execute(done)
                     done += 1
                 else:
                     done = self._prove(run, done, exercise, wanted)
+                    left.discard(exercise.name)
         return self.findings
 
     def _prove(
@@ -170,13 +162,17 @@ class Proof:
             if (exercise.name, state.name) not in wanted and state.name != 'solution':
                 continue
             if state.code:
-                reset.source = RESET.format(name=exercise.name)
+                seed = f'{exercise.name} {state.name} {DRAW}'
+                reset.source = RESET.format(name=exercise.name, seed=seed)
                 run.execute(check + 1)
                 script = f'import kernel_tools\nkernel_tools.run_script({state.code!r})'
                 cells[starter].source = script if state.process else state.code
-                with contextlib.suppress(LessonError):  # wrong answers may raise
+                # A wrong answer may raise in the notebook.
+                with contextlib.suppress(*() if state.process else (LessonError,)):
                     run.execute(starter)
-            self.findings[exercise.name, state.name] = press(run, check)
+            found = press(run, check)
+            told = _told(cells[starter]) * bool(state.code) + _told(cells[check])
+            self.findings[exercise.name, state.name] = replace(found, told=told)
         reset.source = ''
         run.execute(check + 1)
         return check + 2
@@ -204,6 +200,12 @@ def press(run: LessonRun, check: int, presses: int = PRESSES) -> Finding:
         if 'un this cell again' not in found.text:
             break
     return found
+
+
+def _told(cell: NotebookNode) -> str:
+    """Return the silent faults that are told under a cell."""
+    texts = [output.get('data', {}).get('text/plain', '') for output in cell.outputs]
+    return '\n'.join(text for text in texts if text.startswith('⚠'))
 
 
 def _finding(cell: NotebookNode, seconds: float) -> Finding:

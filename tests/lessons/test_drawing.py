@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from typing import cast
 
+from labkit.exercises.clauses import Evidence
 from labkit.lessons.turtlebot.drawing import FRAME, _scene, _words
 from labkit.lessons.turtlebot.drive import Drive
 from labkit.sim.kinematics import Pose
@@ -15,7 +17,7 @@ from labkit.lessons.turtlebot.drive import Drive
 from labkit.sim.kinematics import Pose
 
 with observed() as drives:
-    drives += [Drive(poses=[(0.0, Pose(0.0, 0.0, 0.0)), (2.0, Pose(0.4, 0.0, 0.0))])]
+    drives += [Drive(None, poses=[(0.0, Pose(0.0, 0.0, 0.0)), (2.0, Pose(0.4, 0.0, 0.0))])]
 """
 
 
@@ -30,8 +32,9 @@ def test_picture_has_the_coordinates_of_the_verdict():
     # One way, told as the odometry has it, and as the robot saw it from its start.
     poses = [(0.0, Pose(1.0, 0.5, math.pi / 2)), (2.0, Pose(1.0, 0.9, math.pi))]
     walls = [(1.0, 1.5), None]
-    plain = Drive(poses=poses, walls=walls, goals=[(1.0, 0.9)])
-    seen = Drive(poses=poses, walls=walls, goals=[(0.4, 0.0)], from_start=True)
+    nothing = cast(Evidence, None)
+    plain = Drive(nothing, poses=poses, walls=walls, goals=[(1.0, 0.9)])
+    seen = Drive(nothing, poses=poses, walls=walls, goals=[(0.4, 0.0)], from_start=True)
     scene = _scene(plain)
     assert (scene.pose, scene.trail, scene.scan) == (poses[1][1], [(1.0, 0.5), (1.0, 0.9)], walls)
     assert FRAME not in to_svg(scene)

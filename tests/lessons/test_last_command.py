@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import pytest
 
 from labkit.exercises import Fail
@@ -17,7 +19,9 @@ PUB = ('topic', 'pub')
 
 
 @pytest.fixture(autouse=True)
-def forgotten() -> None:
+def forgotten() -> Iterator[None]:
+    forget_commands()
+    yield
     forget_commands()
 
 

@@ -11,7 +11,9 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
+from cases.scripts import started_by_subprocess
 
+from labkit.background.domains import claim_domain
 from labkit.lessons.turtlebot.bot import bot
 from labkit.lessons.turtlebot.square import square
 
@@ -130,34 +132,50 @@ print(robot.get_clock().ros_time_is_active, robot.simulator.robot.range_max)
     assert done.stdout.splitlines()[-1] == 'False 3.5', done.stderr
 
 
-# As a thread that has stood still in the middle of a drive, and goes on when it seems to be over.
-# Notes whether the node has heard where the robot is, and how much it has commanded since.
-GOES_ON = """
-from labkit.lessons.turtlebot.real_time import RealTime
-
-quiet, put, puts = RealTime._expect_quiet, RealTime._put, []
-
-
-def expect_quiet(self, commands):
-    quiet(self, commands)
-    if not puts:
-        publisher.publish(Twist())
-
-
-def put_down(self, start, watches):
-    puts.append((put(self, start, watches), len(watches['/cmd_vel'])))
-    return puts[-1][0]
-
-
-RealTime._expect_quiet, RealTime._put = expect_quiet, put_down
-"""
-
-
-def test_thread_that_sleeps_is_judged_in_real_time(script: Script) -> None:
-    tell = 'print(puts[0][1], puts[-1])\n'
-    done = script(START + SLEEPER + GOES_ON + CHECK.format(name='square') + tell)
+def test_thread_that_sleeps_is_judged_in_virtual_time(script: Script) -> None:
+    done = script(START + SLEEPER + CHECK.format(name='square'))
     assert 'PASS: square' in done.stdout, done.stdout + done.stderr
-    assert done.stdout.splitlines()[-1] == '1 (True, 0)'
+
+
+def test_process_that_sleeps_by_itself_is_told_to_use_a_timer(script: Script) -> None:
+    made = "rclpy.create_node('sleeper')"
+    program = SLEEPER.replace(f'node = lab.spin({made})', f'rclpy.init()\nnode = {made}')
+    started = started_by_subprocess(f'{program}rclpy.spin(node)\n')
+    check = f"""
+try:
+    lab.wait_until(lambda: 'sleeper' in robot.get_node_names(), timeout_sec=60)
+    {CHECK.format(name='square').strip()}
+finally:
+    process.kill()
+"""
+    claim = claim_domain()
+    done = script(
+        START + started + check,
+        ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST',
+        ROS_DOMAIN_ID=str(claim.domain_id),
+    )
+    claim.close()
+    said = ' '.join(done.stdout.split())
+    assert 'FAIL: square' in said, done.stdout + done.stderr
+    assert 'In a process of its own let a timer send the commands' in said
+
+
+STANDING = {
+    'a node with a timer': """
+import rclpy
+from geometry_msgs.msg import Twist
+
+idle = lab.spin(rclpy.create_node('idle'))
+zeros = idle.create_publisher(Twist, '/cmd_vel', 10)
+idle.create_timer(0.1, lambda: zeros.publish(Twist()))
+""",
+}
+
+
+@pytest.mark.parametrize('other', STANDING)
+def test_what_else_drives_by_a_timer_stands_still_meanwhile(script: Script, other: str) -> None:
+    done = script(START + bot.answer.code + STANDING[other] + CHECK.format(name='bot'))
+    assert 'PASS: bot' in done.stdout, done.stdout + done.stderr
 
 
 OTHERS = {
@@ -170,19 +188,30 @@ pilot = lab.teleop()
 
 def hold():
     while True:
-        pilot._hear({'v': 1.0, 'w': 0.0})
+        pilot._handle_request({'v': 1.0, 'w': 0.0})
         time.sleep(0.1)
 
 
 threading.Thread(target=hold, daemon=True).start()
 """,
-    '/idle': """
+    '/pilot': """
+import threading
+import time
+
 import rclpy
 from geometry_msgs.msg import Twist
 
-idle = lab.spin(rclpy.create_node('idle'))
-zeros = idle.create_publisher(Twist, '/cmd_vel', 10)
-idle.create_timer(0.1, lambda: zeros.publish(Twist()))
+pilot = lab.spin(rclpy.create_node('pilot'))
+commands = pilot.create_publisher(Twist, '/cmd_vel', 10)
+
+
+def hold():
+    while True:
+        commands.publish(Twist())
+        time.sleep(0.1)
+
+
+threading.Thread(target=hold, daemon=True).start()
 """,
     '/other': "lab.spin(lab.Turtlebot(name='other'))",
     '/watchmaker': """

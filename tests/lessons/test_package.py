@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
+import shutil
+import subprocess
+import sys
 from pathlib import Path
+
+import built_once
+
+from labkit.packages.skeleton import Part, Skeleton
 
 WORKSPACE = """
 from labkit.lessons.package.made import make_broken
@@ -33,3 +40,72 @@ def test_what_is_recorded_has_a_workspace_that_is_always_called_the_same(script,
     code = 'from labkit.lessons.package.workspace import make_workspace\nprint(make_workspace())\n'
     result = script(code, TMPDIR=str(tmp_path), LABKIT_HEADLESS='1')
     assert result.stdout == f'{tmp_path}/ros2_ws\n', result.stderr
+
+
+MODULE = 'def main():\n    print({!r})\n'
+
+
+def test_a_build_that_is_kept_is_the_one_that_colcon_makes(tmp_path, monkeypatch):
+    built_once.install(tmp_path / 'bin')
+    work = tmp_path / 'ws'
+    package = work / 'src' / 'ears_lab'
+    _write_package(work / 'src' / 'first_lab')
+    _write_package(package)
+    monkeypatch.chdir(work)
+    scripts = str(Path(sys.executable).parent)
+    # What colcon runs sees its variables, and keeps them: they are to be the same each time.
+    monkeypatch.setenv('PATH', f'{tmp_path / "bin"}:{scripts}:/usr/bin:/bin')
+    monkeypatch.setenv('COLCON_LOG_LEVEL', 'error')
+
+    def build(name: str, *, command: str = 'colcon') -> tuple[dict[str, bytes], str]:
+        for tree in ('build', 'install'):
+            shutil.rmtree(work / tree / name, ignore_errors=True)
+        words = [command, 'build', '--packages-select', name]
+        said = subprocess.run(words, check=True, capture_output=True, text=True).stdout
+        return _files(work, name), said
+
+    build('first_lab')
+    first, said = build('ears_lab')
+    kept = list((tmp_path / 'bin').glob('*/stdout'))
+    assert len(kept) == 1
+    # Another module: the kept one, with the module of now, and newer than its source.
+    (package / 'ears_lab' / 'hear.py').write_text(MODULE.format('now'))
+    taken, said_again = build('ears_lab')
+    assert said_again == said and list((tmp_path / 'bin').glob('*/stdout')) == kept
+    program = ['bash', '-c', '. install/setup.bash && install/ears_lab/lib/ears_lab/hear']
+    assert subprocess.run(program, check=True, capture_output=True).stdout == b'now\n'
+    ended = work / 'build' / 'ears_lab' / 'colcon_build.rc'
+    assert ended.stat().st_mtime >= (package / 'ears_lab' / 'hear.py').stat().st_mtime
+    real, _ = build('ears_lab', command=f'{scripts}/colcon')
+    assert taken == real != first
+    # Whatever else differs is built anew.
+    setup = package / 'setup.py'
+    setup.write_text(setup.read_text().replace('hear =', 'listen ='))
+    changed, _ = build('ears_lab')
+    assert 'install/ears_lab/lib/ears_lab/listen' in changed
+    assert len(list((tmp_path / 'bin').glob('*/stdout'))) == 2
+
+
+def _write_package(folder: Path) -> None:
+    name = folder.name
+    package = Skeleton(
+        name=name,
+        maintainer='me',
+        email='me@example.org',
+        description='Says a word',
+        license='Apache-2.0',
+        dependencies=['rclpy'],
+        test_dependencies=[],
+        scripts=[('hear', f'{name}.hear:main')],
+    )
+    for part in [*package.parts(), Part(f'{name}/hear.py', MODULE.format('before'))]:
+        part.write(folder)
+
+
+def _files(work: Path, name: str) -> dict[str, bytes]:
+    """Return what was built of a package: its files and links, but what Python has compiled."""
+    found = {}
+    for path in [*(work / 'build' / name).rglob('*'), *(work / 'install' / name).rglob('*')]:
+        if '__pycache__' not in path.parts and not path.is_dir():
+            found[str(path.relative_to(work))] = path.read_bytes()
+    return found

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Any
 
 import pytest
-from proof import Finding, State, lessons, prove, states_of
+from cases import Answer, answers_of
+from proof import Finding, lessons, prove, states_of
 
-from labkit.exercises import Exercise, Lesson
-from labkit.exercises.clauses import Clause
+from labkit.exercises import Clause, Exercise, Lesson, Outcome
 
 STATES = [
     pytest.param(lesson, state, id=f'{lesson.name}-{state.exercise}-{state.name}')
@@ -33,12 +34,12 @@ def findings_of(
     found: dict[str, Future[Findings]] = {}
     for item in request.session.items:
         params = item.callspec.params if hasattr(item, 'callspec') else {}
-        if isinstance(params.get('state'), State):
+        if isinstance(params.get('state'), Answer):
             state = params['state']
             wanted.setdefault(params['lesson'].name, set()).add((state.exercise, state.name))
         elif isinstance(params.get('clause'), Clause):
             exercise = params['exercise']
-            states = {(exercise.name, wrong.name) for wrong in exercise.wrong}
+            states = {(exercise.name, answer.name) for answer in wrong_answers(exercise)}
             wanted.setdefault(params['lesson'].name, set()).update(states)
     # The kernels mostly wait for messages, so there may be more of them than cores.
     with ThreadPoolExecutor(max_workers=8) as pool:
@@ -53,13 +54,15 @@ def findings_of(
 @pytest.mark.parametrize(('lesson', 'state'), STATES)
 def test_verdict(
     lesson: Lesson,
-    state: State,
+    state: Answer,
     findings_of: Callable[[Lesson], Findings],
     record_property: Callable[[str, object], None],
 ) -> None:
     found = findings_of(lesson)[state.exercise, state.name]
     assert found.outcome is state.outcome, found.text
     assert ' '.join(state.says.split()) in found.text, found.text
+    # What is right is no fault, however it is written.
+    assert state.outcome is not Outcome.PASS or not found.told, found.told
     record_property('check_sec', found.seconds)
 
 
@@ -75,14 +78,18 @@ CLAUSES = [
 def test_each_clause_of_a_task_refuses_some_wrong_answer(
     lesson: Lesson,
     exercise: Exercise,
-    clause: Clause,
+    clause: Clause[Any],
     findings_of: Callable[[Lesson], Findings],
 ) -> None:
     found = findings_of(lesson)
-    texts = [found[exercise.name, wrong.name].text for wrong in exercise.wrong]
+    texts = [found[exercise.name, answer.name].text for answer in wrong_answers(exercise)]
     # Lines of a verdict are broken where there is no space, too.
     asked = _without_spaces(f'Task: {clause.text}')
     assert any(asked in _without_spaces(text) for text in texts), clause.text
+
+
+def wrong_answers(exercise: Exercise) -> list[Answer]:
+    return [answer for answer in answers_of(exercise) if answer.outcome is not Outcome.PASS]
 
 
 def _without_spaces(text: str) -> str:

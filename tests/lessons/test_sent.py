@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,8 +15,8 @@ import rclpy
 from std_msgs.msg import Int16
 
 import labkit
+from labkit import settings
 from labkit.background import domains
-from labkit.background.runtime import runtime
 from labkit.exercises import Exercise
 from labkit.exercises.lesson import load
 from labkit.exercises.watch import Sample
@@ -148,7 +149,7 @@ def odds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Exercise]:
     odds.forget()
     yield odds
     labkit.stop()
-    runtime.after_start.clear()
+    settings.after_start.clear()
 
 
 def publish(*numbers: int) -> None:
@@ -168,6 +169,22 @@ def test_check_goes_on_from_what_was_right(turns: Sequence[Turn], odds: Exercise
         text = ' '.join(repr(verdict).split())
         assert verdict.outcome.value == outcome, text
         assert says in text
+
+
+def test_loop_goes_on_after_it_was_held_up(odds: Exercise) -> None:
+    node = rclpy.create_node('teller')
+    publisher = node.create_publisher(Int16, '/odds', 10)
+    said: list[int] = []
+
+    def on_timer() -> None:
+        said.append((1, 3, 5)[len(said) % 3])
+        publisher.publish(Int16(data=said[-1]))
+        if len(said) == 3:
+            time.sleep(1.0)
+
+    node.create_timer(0.1, on_timer)
+    labkit.spin(node)
+    assert 'messages that go on coming' in ' '.join(repr(odds.check()).split())
 
 
 # -- the notebook ---------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ import pytest
 from proof import lessons
 
 import labkit
+from labkit import settings
 from labkit.background.nodes import existing_nodes
 from labkit.background.runtime import runtime
 from labkit.exercises import Exercise, Outcome
@@ -34,7 +35,7 @@ def lab(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[ModuleType]
     labkit.start()
     yield labkit
     labkit.stop()
-    runtime.after_start.clear()
+    settings.after_start.clear()
 
 
 def variants_of(name: str) -> Variants:

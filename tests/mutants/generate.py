@@ -50,7 +50,7 @@ def equivalents() -> dict[str, dict[str, str]]:
 
 
 def mutants_of(lesson: Lesson, exercise: Exercise) -> list[Mutant]:
-    """Return the mutants of an exercise, each code once, none that is equal to the solution."""
+    """Return the mutants of an exercise, each change once, none that is equal to the solution."""
     code = exercise.answer.code
     if code.lstrip().startswith('%'):
         solution, found = code.strip(), _of_commands(code.strip())
@@ -60,8 +60,9 @@ def mutants_of(lesson: Lesson, exercise: Exercise) -> list[Mutant]:
     name, mutants, seen = f'{lesson.name}-{exercise.name}', [], {solution}
     numbers: Counter[str] = Counter()
     for kind, mutant, diff in found:
-        if diff and mutant not in seen:  # blank lines of a program in a string are no change
-            seen.add(mutant)
+        # Blank lines of a program in a string are no change.
+        if diff and seen.isdisjoint({mutant, diff}):
+            seen.update({mutant, diff})
             numbers[kind] += 1
             mutants.append(Mutant(f'{name}-{kind}-{numbers[kind]}', name, mutant, diff))
     return mutants

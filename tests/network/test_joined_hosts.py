@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+import sys
 from collections.abc import Sequence
 
 import pytest
@@ -39,7 +40,10 @@ from rclpy.node import Node
 rclpy.init(domain_id=int(sys.argv[1]))
 spy = Node('spy', enable_rosout=False, start_parameter_services=False)
 end = time.monotonic() + float(sys.argv[2])
-while time.monotonic() < end and len(spy.get_node_names()) < int(sys.argv[3]):
+while time.monotonic() < end and (
+    len(spy.get_node_names()) < int(sys.argv[3])
+    or not {*sys.argv[4:]} <= {name for name, _ in spy.get_topic_names_and_types()}
+):
     rclpy.spin_once(spy, timeout_sec=0.1)
 print(sorted(spy.get_node_names()))
 print(sorted(name for name, _ in spy.get_topic_names_and_types()))
@@ -51,6 +55,8 @@ FIRST = 50
 # Long enough for those who can find each other; a busy machine may need most of it.
 MEET_SEC, IN_VAIN_SEC = 60, 8
 PORT = 11811
+# 127.0.0.1 in /proc/net/udp
+LOOPBACK = '0100007F'
 
 
 class Learner:
@@ -163,21 +169,43 @@ def test_who_has_not_joined_is_not_seen_and_of_the_others_only_what_they_share(
     for learner in (ada, bo):
         learner.join(domain_id=SHARED)
     talk([ada, bo])
-    nodes, topics, services = _spy(network, 3, SHARED, MEET_SEC, 3)
+    known = ('/parameter_events', '/shared_chatter')
+    nodes, topics, services = _spy(network, 3, SHARED, MEET_SEC, 3, *known)
     assert nodes == "['ada', 'bo', 'spy']"
-    assert topics == "['/parameter_events', '/shared_chatter']"
+    assert topics == str([*known])
     assert 'ada' not in services and 'bo' not in services
     assert chidi.do('print(heard)') == '[]'
-    # The domain in which the nodes of a notebook are does not leave its computer.
-    assert _spy(network, 3, ada.domain_id, IN_VAIN_SEC, 2)[0] == "['spy']"
+    # The domain in which the nodes of a notebook are does not leave its computer, whoever asks.
+    for learner in (ada, chidi):
+        assert _spy(network, 2, learner.domain_id, IN_VAIN_SEC, 2)[0] == ("['spy']")
     assert "'chat'" in _spy(network, 1, ada.domain_id, MEET_SEC, 3)[0]
+    assert [_open_domains(network, host) for host in (1, 2, 3)] == [{SHARED}, {SHARED}, set()]
+    # What was opened for sharing is closed with it, and the notebook stays as it is.
+    ada.do('room.leave()')
+    ada.do('lab.stop(); lab.spin(Node("again"))')
+    assert _open_domains(network, 1) == set()
 
 
-def _spy(network: Network, host: int, domain_id: int, seconds: int, count: int) -> list[str]:
-    """Return the nodes, topics and services that are seen on a host."""
+def _open_domains(network: Network, host: int) -> set[int]:
+    """Return the domains that a host receives for from others, by its open ports."""
+    table = network.start(host, 'cat', '/proc/net/udp').communicate()[0]
+    ends = [line.split()[1].split(':') for line in table.splitlines()[1:]]
+    ports = [int(port, 16) for address, port in ends if address != LOOPBACK]
+    # Below are ports that only name a process, above those from which is sent.
+    return {(port - 7400) // 250 for port in ports if 7400 <= port < 32768}
+
+
+def _spy(
+    network: Network, host: int, domain_id: int, seconds: int, count: int, *topics: str
+) -> list[str]:
+    """Return the nodes, topics and services that are seen on a host.
+
+    It looks until there are so many nodes and these topics, which come after the nodes.
+    """
     spy: subprocess.Popen[str] = network.start(
         host,
-        *('python3', '-c', SPY, str(domain_id), str(seconds), str(count)),
+        *(sys.executable, '-c', SPY, str(domain_id), str(seconds), str(count), *topics),
         ROS_AUTOMATIC_DISCOVERY_RANGE='SUBNET',
+        ROS_STATIC_PEERS='10.77.0.1;10.77.0.2;10.77.0.3',
     )
     return spy.communicate(timeout=3 * MEET_SEC)[0].splitlines()

@@ -1,7 +1,7 @@
 """Two hosts of a network: who hears whom.
 
-The default, LOCALHOST, keeps a class of thirty apart; SUBNET, or LOCALHOST with the other's
-address as a static peer, joins two computers on purpose.
+The default keeps a class of thirty apart, also from one who names everybody's address; SUBNET, or
+LOCALHOST with the other's address as a static peer, joins two computers on purpose.
 """
 
 from __future__ import annotations
@@ -31,6 +31,9 @@ except lab.LabTimeout as error:
     print(error)
 """
 
+# Who names the other's address without being named, and looks as far as possible.
+INTRUDER = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET', 'ROS_STATIC_PEERS': '10.77.0.1;10.77.0.2'}
+
 # Long enough for hosts that find each other to do so; a busy machine may need most of it.
 HEARD_SEC, SILENT_SEC = 60, 8
 
@@ -39,6 +42,11 @@ HEARD_SEC, SILENT_SEC = 60, 8
     ('speaker', 'hearer', 'heard'),
     [
         pytest.param({}, {}, False, id='default'),
+        pytest.param({}, INTRUDER, False, id='somebody listens'),
+        pytest.param(INTRUDER, {}, False, id='somebody falsifies'),
+        pytest.param(
+            {'ROS_AUTOMATIC_DISCOVERY_RANGE': ''}, INTRUDER, False, id='an empty variable'
+        ),
         pytest.param(
             {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET'},
             {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET'},

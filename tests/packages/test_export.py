@@ -249,3 +249,19 @@ def test_it_is_built_tested_and_run_without_labkit(source, kernel, lab_env, doma
         assert (heard.returncode, 'Traceback' in heard.stderr) == (0, False), heard
     assert bash('source install/setup.bash; ros2 pkg executables talk').stdout == 'talk talker\n'
     assert 'install/talk\n' in bash('source install/setup.bash; ros2 pkg prefix talk').stdout
+
+
+def test_launch_files_come_along_and_are_installed(kernel):
+    kernel.run(SETUP)
+    (kernel.folder / 'a.launch.xml').write_text('<launch/>')
+    kernel.run(TALKER)
+    files = ", launch_files=['a.launch.xml'], overwrite=True"
+    result = kernel.run(EXPORT.replace(', overwrite=True', files).format('Talker'))
+    assert not result.error, result
+    package = kernel.folder / 'src' / 'talk'
+    assert (package / 'launch' / 'a.launch.xml').read_text() == '<launch/>'
+    line = "        ('share/' + package_name + '/launch', ['launch/a.launch.xml']),\n"
+    assert line in (package / 'setup.py').read_text()
+    ast.parse((package / 'setup.py').read_text())
+    missing = EXPORT.replace(', overwrite=True', files.replace('a.', 'b.')).format('Talker')
+    assert 'The launch file b.launch.xml can not be read' in kernel.run(missing).error

@@ -79,6 +79,79 @@ def test_a_goal_with_feedback_and_one_that_is_refused(ros2):
     assert refused.lines[-1] == 'Goal was rejected.' and refused.code == 0
 
 
+# The background is in a callback from the request for the result until that has come, and all of
+# the feedback with it.
+AT_ONCE = """
+import os
+import threading
+
+import labkit as lab
+lab.start()
+from labkit.asking.action_goals import ActionGoals
+from labkit.background.runtime import runtime
+from rclpy.action import ActionClient, ActionServer
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+from test_msgs.action import Fibonacci
+
+asked, busy, sent = threading.Event(), threading.Event(), threading.Event()
+ask, send = ActionClient._get_result_async, ActionServer._send_result_response
+
+
+def ask_and_tell(client, handle):
+    future = ask(client, handle)
+    asked.set()
+    return future
+
+
+def send_and_tell(server, *response):
+    send(server, *response)
+    sent.set()
+
+
+def be_busy():
+    if asked.is_set() and not busy.is_set():
+        busy.set()
+        print('came while it was busy:', sent.wait(60))
+
+
+def execute(handle):
+    busy.wait(60)
+    result = Fibonacci.Result()
+    for number in (1, 2, 3):
+        result.sequence.append(number)
+        handle.publish_feedback(Fibonacci.Feedback(sequence=result.sequence))
+    handle.succeed()
+    return result
+
+
+ActionClient._get_result_async = ask_and_tell
+ActionServer._send_result_response = send_and_tell
+lab.spin(Node('holder')).create_timer(0.01, be_busy)
+counter = Node('counter')
+ActionServer(counter, Fibonacci, '/count', execute, callback_group=ReentrantCallbackGroup())
+executor = MultiThreadedExecutor(4)
+executor.add_node(counter)
+threading.Thread(target=executor.spin, daemon=True).start()
+heard = []
+with ActionGoals(runtime.helper, Fibonacci, '/count') as goals:
+    goals.wait_until_ready(60)
+    handle = goals.send(Fibonacci.Goal(order=3), 60, feedback=heard.append)
+    result = goals.result(handle, 60)
+    print([list(message.feedback.sequence) for message in heard])
+    print(list(result.result.sequence), goals._client._feedback_callbacks, flush=True)
+os._exit(0)
+"""
+
+
+def test_feedback_that_arrives_together_with_the_result_is_heard(script):
+    result = script(AT_ONCE)
+    assert result.stdout == (
+        'came while it was busy: True\n[[1], [1, 2], [1, 2, 3]]\n[1, 2, 3] {}\n'
+    ), result.stderr
+
+
 @pytest.mark.usefixtures('counter')
 def test_what_is_wrong_with_a_goal_is_said_before_it_is_sent(ros2):
     field, other, service, missing = ros2(

@@ -26,7 +26,7 @@ def empty_history():
         (f'{PUB} "{{data: 1}}', Refusal.QUOTE_NOT_CLOSED),
         (f'{PUB} "{{data: 1}}" | cat', Refusal.TERMINAL_SIGN),
         ('topik pub /odds', Refusal.UNKNOWN_COMMAND),
-        ('launch x', Refusal.UNKNOWN_COMMAND),
+        ('fly x', Refusal.UNKNOWN_COMMAND),
         ('topic pbu /odds', Refusal.UNKNOWN_VERB),
         (f'{PUB} --onec "{{data: 1}}"', Refusal.UNKNOWN_OPTION),
         ('topic --onec list', Refusal.UNKNOWN_OPTION),

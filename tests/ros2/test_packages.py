@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sys
 
+from ament_index_python import get_resource
+
 from labkit.ros2.shell import run_line
 from labkit.rosgraph import interfaces
 
@@ -78,6 +80,12 @@ def test_interface_lists(capsys):
     assert lines.index('    std_srvs/srv/Trigger') > lines.index('Services:')
     _, out, _ = said(capsys, 'interface package std_srvs')
     assert out.split() == ['std_srvs/srv/Empty', 'std_srvs/srv/SetBool', 'std_srvs/srv/Trigger']
+    _, out, _ = said(capsys, 'interface package test_msgs')
+    listed = get_resource('rosidl_interfaces', 'test_msgs')[0].split()
+    files = [name for name in listed if '_' not in name]
+    assert out.split() == list(
+        dict.fromkeys(f'test_msgs/{name[: name.rindex(".")]}' for name in files)
+    )
     _, out, _ = said(capsys, 'interface packages --only-srvs')
     assert 'std_srvs' in out.split() and 'std_msgs' not in out.split()
 
@@ -108,10 +116,18 @@ def test_packages(capsys):
     )
 
 
+def test_a_package_of_the_tutorials_that_is_not_here_names_what_is(capsys):
+    for line in ('run turtlesim turtlesim_node', 'pkg prefix turtlesim'):
+        code, out, err = said(capsys, line)
+        assert (code, out) == (1, '')
+        assert err.startswith("Package 'turtlesim' not found\n")
+        assert 'ros2 run labkit turtlebot starts it, lab.arena() shows it' in err
+
+
 def test_prefix_of_a_package_that_has_stand_ins(capsys):
     code, out, err = said(capsys, 'pkg prefix demo_nodes_py')
     assert (code, out) == (1, '')
-    assert err.endswith('It is not installed here; labkit has its talker and listener.\n')
+    assert err.endswith('It has no files here. labkit runs its listener and talker.\n')
 
 
 def test_executables(capsys):

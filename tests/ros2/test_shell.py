@@ -91,9 +91,16 @@ def test_what_only_a_terminal_can_do(line, sentence):
             "ros2 topic has no option '--hidden'.",
         ),
         (
-            'launch my_robot all.launch.py',
-            'ros2 launch is part of a full installation of ROS 2, but not of this course.\n',
+            'daemon status',
+            'ros2 daemon is part of a full installation of ROS 2, but not of this course. It '
+            'starts and stops a process',
         ),
+        ('daemon stop', 'ros2 daemon is part of a full installation'),
+        ('lifecycle get /a', 'ros2 lifecycle is part of a full installation'),
+        ('multicast send', 'ros2 multicast is part of a full installation'),
+        ('component list', 'ros2 component is part of a full installation'),
+        ('param set /lamp speed \udcff', "'\\udcff' is no text in UTF-8."),
+        ('topic list -a', "ros2 topic list has no option '-a'."),
     ],
 )
 def test_wrong_words_get_a_sentence_and_the_usage_line(capsys, line, answer):
@@ -120,6 +127,9 @@ def test_help(capsys, line):
         ('topic find', 'exit code 1'),
         ('service find', 'exit code 1'),
         ('topic echo', 'exit code 1'),
+        ('topic pub', 'exit code 1'),
+        ('topic type', 'exit code 1'),
+        ('service call', 'exit code 1'),
         ('doctor', 'exit code 1'),
     ],
 )

@@ -63,7 +63,7 @@ def test_echo_says_what_is_wrong(ros2):
         'topic echo /chatter std_msgs/msg/Strin',
         'topic echo /chater --timeout 0.2',
         'topic echo /cmd_vel --timeout 0.2',
-        'topic echo /scan --qos-reliability reliable --timeout 0.5',
+        'topic echo /scan --qos-reliability reliable --timeout 0.001',
         'topic echo /chatter --filter "m.data"',
     )
     assert field.err == (
@@ -119,24 +119,25 @@ def test_echo_waits_for_a_topic_that_does_not_exist_yet(script, domain):
 
 def test_rates(ros2):
     hz, bw, delay, headless, no_delay, no_bw, no_header = ros2(
-        'topic hz /chatter --count 2 --window 5',
-        'topic bw /scan --count 1',
+        'topic hz /chatter --count 2 --window 1',
+        'topic bw scan --count 1',
         'topic delay /odom --count 1',
         'topic hz /nothing --timeout 0.1',
         'topic delay nothing --timeout 0.1',
         'topic bw /nothing --timeout 0.1',
         'topic delay /chatter --count 1',
     )
-    report = r'average rate: \d+\.\d{3}\n\tmin: \d\.\d{3}s max: \d\.\d{3}s std dev: \d\.\d{5}s'
-    assert re.fullmatch(f'({report} window: 5\n){{2}}', hz.out)
+    # A report comes after a second, however few messages came in it: one interval is enough.
+    report = r'average rate: \d+\.\d{3}\n\tmin: \d+\.\d{3}s max: \d+\.\d{3}s std dev: 0\.0{5}s'
+    assert re.fullmatch(f'({report} window: 1\n){{2}}', hz.out)
     amount = r'[\d.]+ K?B'
     assert re.fullmatch(
-        rf'Subscribed to \[/scan\]\n{amount}/s from \d+ messages\n'
+        rf'Subscribed to \[scan\]\n{amount}/s from \d+ messages\n'
         rf'\tMessage size mean: {amount} min: {amount} max: {amount}\n',
         bw.out,
     )
     assert re.fullmatch(
-        r'average delay: \d\.\d{3}\n\tmin: -?\d\.\d{3}s max: \d\.\d{3}s std dev: \d\.\d{5}s '
+        r'average delay: \d+\.\d{3}\n\tmin: -?\d+\.\d{3}s max: \d+\.\d{3}s std dev: \d+\.\d{5}s '
         r'window: \d+\n',
         delay.out,
     )
@@ -149,13 +150,17 @@ def test_rates(ros2):
 
 
 def test_pub_reaches_a_node_of_another_process(ros2):
+    # Each pub waits until its message has come, not until the callback has run. The robot takes a
+    # message before it answers, and another one before the next answer.
+    answered = ['param list /fleet/robot'] * 4
     answers = ros2(
         'topic pub --once /odds std_msgs/msg/Int16 "{data: 1}"',
         'topic pub -1 /odds std_msgs/Int16 "data: 3"',
         "topic pub --times 2 --rate 20 /odds std_msgs/msg/Int16 '{data: 5}'",
-        'topic echo /heard --once --timeout 30',
+        *answered,
+        'topic echo /heard --once --timeout 60',
     )
-    assert [answer.code for answer in answers] == [0, 0, 0, 0], answers
+    assert not any(answer.code for answer in answers), answers
     assert answers[0].out == (
         'publisher: beginning loop\npublishing #1: std_msgs.msg.Int16(data=1)\n\n'
     )
@@ -165,21 +170,25 @@ def test_pub_reaches_a_node_of_another_process(ros2):
         'publishing #2: std_msgs.msg.Int16(data=5)\n\n'
     )
     # The publisher keeps its last message for those who come late.
-    assert answers[3].out == 'data: 1,3,5,5\n---\n'
+    assert answers[-1].out == 'data: 1,3,5,5\n---\n'
 
 
 def test_pub_waits_for_subscribers_and_says_so(ros2):
-    waiting, near, alone, several = ros2(
+    waiting, near, alone, several, default, pointless = ros2(
         'topic pub -w 1 --max-wait-time-secs 0.3 --once /nobody std_msgs/msg/Int16',
         'topic pub -w 1 --max-wait-time-secs 0.3 --once /Odds std_msgs/msg/Int16',
         'topic pub -w 0 --once --node-name me --print 0 /nobody std_msgs/msg/Int16',
         'topic pub -w 2 --max-wait-time-secs 0.3 --once /odds std_msgs/msg/Int16 --keep-alive 0.2',
+        'topic pub --once --max-wait-time-secs 0.3 /nobody std_msgs/msg/Int16',
+        'topic pub --max-wait-time-secs 0.3 /nobody std_msgs/msg/Int16 --timeout 0.1',
     )
     assert waiting.out == 'Waiting for at least 1 matching subscription(s)...\n'
     assert near.out == waiting.out + "Nobody subscribes to /Odds. Did you mean '/odds'?\n"
     assert waiting.err.startswith('Timed out waiting for subscribers: Expected 1 subscribers')
     assert (alone.code, alone.out) == (0, 'publisher: beginning loop\n')
     assert 'only got 1 subscribers' in several.err
+    assert (default.out, default.err) == (waiting.out, waiting.err)
+    assert 'only effective with --wait-matching-subscriptions, --once or --times' in pointless.err
 
 
 WRONG = {

@@ -96,6 +96,17 @@ def test_domain_of_the_one_running_notebook(monkeypatch):
         terminal.choose_domain()
     assert '  ROS_DOMAIN_ID=7  04_odds.ipynb\n  ROS_DOMAIN_ID=9  05_my' in str(caught.value)
     assert domain_ids.PROFILES_FILE not in str(caught.value)
+    again = {12: '04_odds.ipynb', **two}
+    monkeypatch.setattr(domains, 'claimed_domains', lambda: again)
+    with pytest.raises(LabError) as caught:
+        terminal.choose_domain()
+    lines = str(caught.value).splitlines()[1:3]
+    assert lines == [
+        '  ROS_DOMAIN_ID=12  04_odds.ipynb (its newest kernel of 2)',
+        '  ROS_DOMAIN_ID=9  05_my_name_is.ipynb',
+    ]
+    assert caught.value.todo == 'Choose one: export ROS_DOMAIN_ID=12'
+    monkeypatch.setattr(domains, 'claimed_domains', lambda: two)
     two[domain_ids.BETWEEN[0]] = '06_chat.ipynb'
     with pytest.raises(LabError) as caught:
         terminal.choose_domain()
@@ -112,6 +123,13 @@ def test_a_kernel_claims_its_domain_by_the_name_of_its_notebook(start_kernel):
         'print(runtime.domain_id)'
     )
     assert domains.claimed_domains()[int(result.text)] == '04_odds.ipynb'
+    later = start_kernel(JPY_SESSION_NAME='/some/where/05_my_name_is.ipynb')
+    also = later.run(
+        'import labkit as lab\nlab.start()\nfrom labkit.background.runtime import runtime\n'
+        'print(runtime.domain_id)'
+    )
+    told = list(domains.claimed_domains())
+    assert told.index(int(also.text)) < told.index(int(result.text))
 
 
 def test_steps_aside_for_a_real_one(tmp_path: Path, lab_env):

@@ -89,6 +89,10 @@ def test_csv():
     assert to_csv(Bool(data=True)) == 'True'
 
 
+def test_bytes_in_csv_are_those_of_python():
+    assert to_csv(Byte(data=b'\x05')) == str(b'\x05')
+
+
 def test_fill_nested_fields_arrays_and_messages_in_arrays():
     pose = PoseWithCovariance()
     fill(pose, {'pose': {'position': {'x': 1}}, 'covariance': [0.5] * 36})
@@ -180,3 +184,13 @@ def test_field_paths():
     paths = list(field_paths(PoseWithCovariance))
     assert paths[:3] == ['pose', 'pose.position', 'pose.position.x']
     assert paths[-1] == 'covariance'
+
+
+def test_long_values_are_quoted_in_part():
+    for text in ('[' * 3000, 'x' * 3000 + '{'):
+        with pytest.raises(LabError) as caught:
+            fill(String(), read_yaml(text))
+        assert len(str(caught.value)) < 600
+    with pytest.raises(LabError) as caught:
+        fill(Int16(), {'data': 'x' * 3000})
+    assert len(str(caught.value)) < 600

@@ -58,6 +58,41 @@ def test_what_is_for_every_node_comes_first(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ('key', 'node'),
+    [
+        ('lamp', '/lamp'),
+        ('hall/lamp', '/hall/lamp'),
+        ('/**/lamp', '/hall/lamp'),
+        ('/**/lamp', '/lamp'),
+        ('/*/lamp', '/hall/lamp'),
+        ('/hall/**', '/hall/lamp'),
+    ],
+)
+def test_names_of_nodes_in_a_file(tmp_path, key, node):
+    path = tmp_path / 'all.yaml'
+    path.write_text(f'{key}: {{ros__parameters: {{speed: 2}}}}')
+    assert parameters_in(str(path), node)['speed'].value.integer_value == 2
+    with pytest.raises(LabError, match='only for nodes'):
+        parameters_in(str(path), node, wildcard=False) if '*' in key else parameters_in(
+            str(path), '/tower/lamp/shade'
+        )
+
+
+def test_namespaces_in_a_file_may_be_groups(tmp_path):
+    path = tmp_path / 'all.yaml'
+    path.write_text('hall: {lamp: {ros__parameters: {speed: 2}}}\nlamp: {ros__parameters: {a: 1}}')
+    assert set(parameters_in(str(path), '/hall/lamp')) == {'speed'}
+    assert set(parameters_in(str(path), '/lamp')) == {'a'}
+
+
+def test_the_nearest_name_in_a_file_is_told(tmp_path):
+    path = tmp_path / 'all.yaml'
+    path.write_text('cruizer: {ros__parameters: {speed: 2}}')
+    with pytest.raises(LabError, match="Did you mean '/cruizer'"):
+        parameters_in(str(path), '/cruiser')
+
+
+@pytest.mark.parametrize(
     ('text', 'sentence'),
     [
         ('', 'Param file does not contain selected parameters'),

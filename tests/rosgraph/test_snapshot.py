@@ -168,3 +168,23 @@ print(is_whole(runtime.helper), is_whole(Early()))
 """
     )
     assert result.stdout == 'True False\n', result.stderr
+
+
+def test_a_node_whose_name_is_not_known_yet_is_waited_for(script):
+    result = script(
+        READ
+        + """
+from labkit.rosgraph.whose import all_are_named, foreign_nodes
+from labkit.rosgraph.names import UNKNOWN_NODE
+class Half:
+    node_name, node_namespace, endpoint_gid = UNKNOWN_NODE, '/', bytes(16)
+class Early:
+    def __getattr__(self, name):
+        return getattr(runtime.helper, name)
+    def get_publishers_info_by_topic(self, topic):
+        return [*runtime.helper.get_publishers_info_by_topic(topic), Half()]
+early = Early()
+print(all_are_named(runtime.helper), all_are_named(early), foreign_nodes(early))
+"""
+    )
+    assert result.stdout == 'True False set()\n', result.stderr

@@ -169,9 +169,11 @@ def _digests(course: Course, stamp: dict[str, dict[str, str]]) -> tuple[str, str
     return stamp['installed']['environment.txt'], new
 
 
-@pytest.fixture(params=['uv', 'pip'])
-def installed(course: Course, request: pytest.FixtureRequest) -> Course:
-    """Give a course whose environment has labkit itself, built without a network."""
+@pytest.fixture(scope='module', params=['uv', 'pip'])
+def installed(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Course:
+    """Give a course whose environment is up to date and has labkit itself."""
+    # Built without a network, once for the tests that change it: each leaves it up to date.
+    course = Course(tmp_path_factory.mktemp(request.param) / 'course')
     if request.param == 'pip':
         course.env['PATH'] = BARE_PATH
     course.env.update(UV_NO_BUILD_ISOLATION='1', PIP_NO_BUILD_ISOLATION='0')
@@ -333,6 +335,61 @@ def test_disk_that_gets_full(course: Course, path: str) -> None:
     module.write_text(module.read_text().replace('1_200_000_000', '1_000'))
     done = in_namespace(course, on_disk_of(50, course), path)
     assert 'There is no disk space left' in sentence(done)
+
+
+@pytest.fixture
+def proxy(course: Course) -> Iterator[Gate]:
+    """Give a server whose certificate is of its own making, in a place where nothing knows it."""
+    if not shutil.which('openssl'):
+        pytest.skip('the command openssl is missing')
+    certificate = course.folder / 'proxy.pem'
+    make = ['openssl', 'req', '-x509', '-newkey', 'rsa:2048', '-nodes', '-subj', '/CN=proxy']
+    make += ['-addext', 'subjectAltName=IP:127.0.0.1', '-addext', 'basicConstraints=CA:FALSE']
+    subprocess.run(
+        [*make, '-keyout', str(certificate), '-out', f'{certificate}.crt'],
+        check=True,
+        capture_output=True,
+    )
+    with certificate.open('a') as file:
+        file.write(Path(f'{certificate}.crt').read_text())
+    for name in ('SSL_CERT_FILE', 'SSL_CERT_DIR', 'PIP_CERT', *_BUNDLES):
+        course.env.pop(name, None)
+    course.env['PIP_CONFIG_FILE'] = os.devnull
+    gate = Gate(course.folder, certificate)
+    gate.opened.set()
+    course.require(f'{gate.url}/alpha-1.0-py3-none-any.whl')
+    yield gate
+    gate.close()
+
+
+_BUNDLES = ('REQUESTS_CA_BUNDLE', 'CURL_CA_BUNDLE')
+# Where Debian's OpenSSL, and most programs anywhere, look for what the system trusts.
+_TRUST = """mount -t tmpfs none /etc/ssl; mkdir /etc/ssl/certs
+for at in ca-certificates.crt $(openssl x509 -hash -noout -in "$0"/proxy.pem.crt).0; do
+  cp "$0"/proxy.pem.crt /etc/ssl/certs/$at
+done"""
+
+
+@pytest.mark.parametrize('path', ['', BARE_PATH], ids=['uv', 'pip'])
+@pytest.mark.usefixtures('proxy')
+def test_what_the_system_trusts_is_trusted(course: Course, path: str) -> None:
+    done = in_namespace(course, _TRUST, path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert 'Trying pip' not in done.stdout
+    assert course.installed() == {'alpha-1.0'}
+
+
+@pytest.mark.parametrize('path', ['', BARE_PATH], ids=['uv', 'pip'])
+@pytest.mark.usefixtures('proxy')
+def test_a_certificate_that_is_not_trusted_is_named(course: Course, path: str) -> None:
+    course.env['PATH'] = path or course.env['PATH']
+    done = course.make()
+    said = sentence(done)
+    assert 'a certificate that is not trusted here' in said and 'SSL_CERT_FILE' in said
+    assert ('invalid peer certificate: UnknownIssuer' in done.stdout) == (not path)
+    # What the sentence says does help.
+    helped = course.make(SSL_CERT_FILE=f'{course.folder}/proxy.pem.crt')
+    assert (helped.returncode, 'Trying pip' in helped.stdout) == (0, False), helped.stderr
 
 
 def test_markers_of_requirements() -> None:

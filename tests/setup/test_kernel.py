@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import subprocess
-import sys
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from courses import ROOT, base_python
 from jupyter_client.kernelspec import KernelSpec
 from jupyter_client.manager import KernelManager
 
+from labkit.setup.installer import Progress, install
 from labkit.setup.machine import clean_environment
 
 PINS = Path(__file__).with_name('colab.txt')
@@ -44,7 +45,14 @@ class Kernel:
 
     def __init__(self, python: Path, folder: Path) -> None:
         self.python = python
-        self._manager = KernelManager(kernel_name='colab')
+        # Sockets of its own instead of ports, which others may take before the kernel has them.
+        # Their names must be short.
+        self._sockets = tempfile.TemporaryDirectory(prefix='labkit-')
+        self._manager = KernelManager(
+            kernel_name='colab',
+            transport='ipc',
+            ip=str(Path(self._sockets.name) / 'socket'),
+        )
         self._manager._kernel_spec = KernelSpec(  # there is no folder of kernels to find it in
             argv=[str(python), '-m', 'ipykernel_launcher', '-f', '{connection_file}']
         )
@@ -102,6 +110,7 @@ class Kernel:
     def close(self) -> None:
         self._client.stop_channels()
         self._manager.shutdown_kernel(now=True)
+        self._sockets.cleanup()
 
 
 @pytest.fixture(scope='module')
@@ -110,8 +119,7 @@ def kernel(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Kernel]:
     python = folder / 'python' / 'bin' / 'python'
     make = [base_python(), '-I', '-m', 'venv', '--without-pip', str(folder / 'python')]
     subprocess.run(make, check=True, env=clean_environment())
-    uv = [sys.executable, '-m', 'uv', 'pip', 'install', '--quiet', '--no-deps']
-    subprocess.run([*uv, '--python', str(python), '-r', str(PINS)], check=True)
+    install(python, folder, [str(PINS)], Progress(0), lambda: 0, ['--no-deps'])
     kernel = Kernel(python, folder)
     assert kernel.run(ENTER)[1] == ''
     yield kernel

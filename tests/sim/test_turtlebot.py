@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 import rclpy
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import Twist, TwistStamped
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import BatteryState, Imu, LaserScan
@@ -151,8 +151,9 @@ def test_it_drives_in_real_time_and_stops_when_commands_stop(stage: Stage) -> No
     driver = stage.driver()
     driver.create_timer(0.1, lambda: driver.commands.publish(twist(0.2, 0.5)))
     stage.until(lambda: driver.odometry and driver.odometry[-1].pose.pose.position.x > 0.1)
-    assert driver.odometry[-1].twist.twist.linear.x == 0.2
     assert yaw_of(driver.odometry[-1]) > 0
+    # On a busy machine the last command may just have run out.
+    stage.until(lambda: driver.odometry[-1].twist.twist.linear.x == 0.2)
     for timer in driver.timers:
         timer.cancel()
     stage.until(lambda: driver.odometry[-1].twist.twist == Twist())
@@ -348,3 +349,13 @@ def test_qos_of_a_careless_subscriber_hears_no_scan(stage: Stage) -> None:
     stage.until(lambda: len(driver.scans) >= 3)
     assert not heard
     assert robot.count_subscribers('/scan') == 2
+
+
+def test_a_robot_of_jazzy_takes_stamped_commands(stage: Stage) -> None:
+    robot = stage.robot(stamped=True, lockstep=0.1)
+    driver = stage.add(Node('stamped_driver'))
+    commands = driver.create_publisher(TwistStamped, 'cmd_vel', 10)
+    stage.until(lambda: commands.get_subscription_count() == 1)
+    commands.publish(TwistStamped(twist=twist(0.1, 0.0)))
+    stage.until(lambda: robot.pose.x > 0)
+    assert 0 < robot.pose.x <= 0.01

@@ -107,3 +107,60 @@ def test_from_another_process_it_drives_the_closed_form(
     ]
     assert len(finite) > 200
     assert max(abs(a - b) for a, b in finite) < 0.06, 'six times the noise'
+
+
+# A teleop that speaks the other type, in a process that knows nothing of labkit.
+OTHER = """
+import sys, threading
+import rclpy
+from geometry_msgs.msg import Twist, TwistStamped
+
+rclpy.init()
+node = rclpy.create_node('teleop_keyboard')
+node.create_publisher(Twist if sys.argv[1] == 'True' else TwistStamped, '/cmd_vel', 10)
+sys.stdin.read()
+"""
+HEARING = """
+import os, subprocess, sys
+import rclpy
+from rclpy.node import Node
+from rcl_interfaces.msg import Log
+from labkit.sim.turtlebot import Turtlebot
+
+rclpy.init()
+node = Node('listener')
+said = []
+node.create_subscription(Log, '/rosout', lambda log: log.level >= 30 and said.append(log.msg), 100)
+robot = Turtlebot(stamped={stamped})
+teleop = subprocess.Popen([sys.executable, 'other.py', '{stamped}'], stdin=subprocess.PIPE)
+while not said:
+    rclpy.spin_once(robot, timeout_sec=0.1)
+    rclpy.spin_once(node, timeout_sec=0)
+print(said[0])
+teleop.communicate(b'')
+robot.destroy_node()
+rclpy.shutdown()
+"""
+
+
+@pytest.mark.parametrize('stamped', [False, True])
+def test_the_robot_says_which_commands_it_can_not_hear(
+    script: Callable[..., Any], tmp_path: Any, stamped: bool
+) -> None:
+    from labkit.background.domains import claim_domain
+
+    (tmp_path / 'other.py').write_text(OTHER)
+    claim = claim_domain()
+    try:
+        result = script(
+            HEARING.format(stamped=stamped),
+            ROS_DOMAIN_ID=str(claim.domain_id),
+            ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST',
+        )
+    finally:
+        claim.close()
+    mine, other = ('TwistStamped', 'Twist') if stamped else ('Twist', 'TwistStamped')
+    assert result.stdout == (
+        f"Can't hear /teleop_keyboard on /cmd_vel: it publishes geometry_msgs/msg/{other}, and "
+        f'this robot takes geometry_msgs/msg/{mine}. Make the robot with stamped={not stamped}.\n'
+    ), result.stderr

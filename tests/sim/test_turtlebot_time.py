@@ -86,11 +86,12 @@ def test_fast_time_is_told_by_the_clock(stage: Stage) -> None:
     follower.create_timer(0.1, lambda: ticks.append(follower.get_clock().now().nanoseconds))
     stage.until(lambda: len(driver.scans) >= 10 and len(ticks) >= 10)
     stamps = [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in driver.odometry]
-    gaps = [later - earlier for earlier, later in itertools.pairwise(stamps)]
-    assert all(abs(gap - 1e9 / 30) < 2 for gap in gaps)
     told = [m.clock.sec * 10**9 + m.clock.nanosec for m in driver.clocks]
-    assert told == sorted(set(told))
-    assert {stamp for stamp in stamps if stamp <= told[-1]} <= set(told)
+    for times in (stamps, told):
+        assert times == sorted(set(times))
+        # A robot that was held up makes up at once, and its queue of ten may overflow. But each
+        # moment is one of a step.
+        assert all(abs(time * 30 / 1e9 - round(time * 30 / 1e9)) < 1e-6 for time in times)
     scans = [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in driver.scans[1:]]
     gaps = [later - earlier for earlier, later in itertools.pairwise(scans)]
     # Best effort: one may be lost, but each is a multiple of a turn after the last.

@@ -18,7 +18,7 @@ import pytest
 from labkit.errors import LabError
 from labkit.exercises.class_sheet import FILE_NAME, MOST_BYTES
 from labkit.teaching import class_folder
-from labkit.teaching.class_folder import MOST_LEARNERS, ClassFolder, chosen_folder
+from labkit.teaching.class_folder import MAX_LEARNERS, ClassFolder, chosen_folder
 from labkit.teaching.counting import count
 from labkit.teaching.export import gradebook, table
 from labkit.views.class_board import text_form
@@ -184,11 +184,11 @@ def test_a_hundred_thousand_entries_do_not_push_a_class_out(
     assert len(folder.read().learners) == 2
     for number in range(100_000):
         (tmp_path / f'm{number}').touch()
-    for number in range(2 * MOST_LEARNERS):
+    for number in range(2 * MAX_LEARNERS):
         share(f'mallory {number}')
     reading = folder.read()
     names = {learner.name for learner in reading.learners}
-    assert {'anna', 'zoe'} <= names and len(names) <= MOST_LEARNERS
+    assert {'anna', 'zoe'} <= names and len(names) <= MAX_LEARNERS
     assert 'more names in the folder than a class has' in reading.note
 
 

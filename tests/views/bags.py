@@ -50,8 +50,10 @@ def make_drive(path: Path, *, storage: str = 'mcap', seconds: float = 10.0) -> P
     return path
 
 
-def make_foreign(path: Path, *, topic: str = '/arm', count: int = 5) -> Path:
-    """Make a bag with a type that is not installed."""
+def make_foreign(
+    path: Path, *, topic: str = '/arm', count: int = 5, damaged: bool = False
+) -> Path:
+    """Make a bag with a type that is not installed; damaged, the last text is too long."""
     store = get_typestore(Stores.ROS2_JAZZY)
     types = get_types_from_msg(ARM_DEFINITION, ARM)
     store.register({name: what for name, what in types.items() if name not in store.fielddefs})
@@ -67,6 +69,8 @@ def make_foreign(path: Path, *, topic: str = '/arm', count: int = 5) -> Path:
             '<img src=x onerror=alert(1)>',
         )
         data = bytes(store.serialize_cdr(message, ARM))
+        if damaged and step == count - 1:
+            data = data.replace(b'\6\0\0\0elbow', b'\xff\xff\xff\xffelbow')
         writer.write([(number, START_NS + step * 10**9, START_NS + step * 10**9, data)])
     writer.close()
     return path

@@ -61,6 +61,18 @@ ROBOT = graph(
     topic('/scan', ['/turtlebot'], ['/controller']),
     topic('/joint_states', ['/turtlebot']),
 )
+ROBOTS = graph(
+    *(
+        each
+        for name in ('robot1', 'robot1/arm', 'robot2')
+        for each in (
+            topic(f'/{name}/cmd_vel', [f'/{name}/pilot'], [f'/{name}/turtlebot']),
+            topic(f'/{name}/odom', [f'/{name}/turtlebot'], [f'/{name}/pilot', '/boss']),
+        )
+    ),
+    topic('/go', ['/boss'], ['/robot1/pilot', '/robot2/pilot']),
+    alone=['/robot3/turtlebot'],
+)
 LOOP = graph(
     topic('/ab', ['/a'], ['/b']), topic('/bc', ['/b'], ['/c']), topic('/ca', ['/c'], ['/a'])
 )

@@ -39,6 +39,9 @@ page.send = lambda content, buffers=None: sent.append((content, buffers))
 
 def say(word):
     page._handle_custom_msg({'view': word}, [])
+
+def told(name=''):
+    return [c['robots'][name] for c, _ in sent if name in c.get('robots', ())]
 """
 
 
@@ -74,6 +77,13 @@ def test_before_a_robot_is_heard_it_says_what_to_do(kernel):
     assert 'Nothing was heard on /odom yet. Start a robot' in data['text/plain']
     data = shown(kernel.run("lab.arena(namespace='robot1')"))
     assert '/robot1/odom' in data['text/plain']
+    kernel.run(
+        'from nav_msgs.msg import Odometry\nfrom rclpy.node import Node\n'
+        'mute = lab.spin(Node("mute"))\nmute.create_publisher(Odometry, "odom", 10)'
+    )
+    data = shown(kernel.run('lab.arena()'))
+    assert '/mute has a publisher on /odom' in data['text/plain']
+    assert 'Start a robot' not in data['text/plain']
 
 
 def test_headless_it_is_a_picture_and_no_widget(start_kernel):
@@ -100,7 +110,10 @@ def test_scan_that_comes_before_the_odometry_is_not_lost(kernel):
         "odometry = lab.wait_for_message('/odom', Odometry)\n"
         "view = lab.arena(odom='/elsewhere', scan='/nowhere')"
     )
-    text = kernel.run('view._on_scan(scan)\nview._on_odometry(odometry)\nprint(view.text)').text
+    text = kernel.run(
+        "robot = view._robots['']\nrobot.take_scan(scan)\nrobot.take_odometry(odometry)\n"
+        'print(view.text)'
+    ).text
     assert 'Nearest obstacle 1.81 m away' in text
 
 
@@ -131,13 +144,14 @@ def test_page_is_told_what_is_new_and_no_more(kernel):
     kernel.run('sent.clear()\nsay("seen")')
     # What this test has sent itself.
     first = eval(kernel.run('print(next(c for c, _ in sent if "goals" in c))').text)
-    assert first['pose'] == (0, 0, 0, 0, 0) and first['trail'] == [0, 0]
+    robot = first['robots']['']
+    assert robot['pose'] == (0, 0, 0, 0, 0) and robot['trail'] == [0, 0]
     assert first['goals'] == [(1.0, 0.5)] and 'It stands' in first['text']
     kernel.run(
         'drive(0.2, 0.0, 10)\n'
-        'lab.wait_until(lambda: any("pose" in c and c["pose"][0] > 0.19 for c, _ in sent))'
+        'lab.wait_until(lambda: any(c["pose"][0] > 0.19 for c in told() if "pose" in c))'
     )
-    trail = kernel.run('print([n for c, _ in sent for n in c.get("trail", ())])').text
+    trail = kernel.run('print([n for c in told() for n in c.get("trail", ())])').text
     scans = kernel.run('print(sum(b is not None for _, b in sent))').text
     # The whole path in order, though there may be fewer messages than there was odometry.
     xs = eval(trail)[::2]
@@ -152,8 +166,8 @@ def test_robot_that_was_put_elsewhere_has_a_new_trail(kernel):
     kernel.run(ROBOT)
     kernel.run('view = lab.arena()\ndisplay(view)\ndrive(0.2, 0.0, 5)')
     kernel.run('robot.place(x=-1.0)\ndrive(0.2, 0.0, 5)')
-    kernel.run('lab.wait_until(lambda: view.scene.pose.x < -0.9)')
-    assert float(kernel.run('print(max(x for x, _ in view._trail))').text) < -0.8
+    kernel.run('lab.wait_until(lambda: view.scenes[""].pose.x < -0.9)')
+    assert float(kernel.run('print(max(x for x, _ in view.scenes[""].trail))').text) < -0.8
 
 
 def test_a_bump_is_told_until_the_robot_drives_on(kernel):
@@ -166,8 +180,8 @@ def test_a_bump_is_told_until_the_robot_drives_on(kernel):
         kernel.run(f'drive({v}, 0.0, 20)')
         kernel.run('lab.wait_until(lambda: "It bumped into something" in view.text)')
         assert f'bumped into something, {side}.' in kernel.run('print(view)').text
-        kernel.run('lab.wait_until(lambda: any(c.get("bump") for c, _ in sent))')
-        bump = eval(kernel.run('print([c["bump"] for c, _ in sent if c.get("bump")][-1])').text)
+        kernel.run('lab.wait_until(lambda: any(c.get("bump") for c in told()))')
+        bump = eval(kernel.run('print([c["bump"] for c in told() if c.get("bump")][-1])').text)
         assert bump == pytest.approx((2.5, 0.0), abs=0.03)
         data = shown(kernel.run('view'))
         assert 'It bumped' in data['text/plain'] and 'polygon' in picture_of(data)
@@ -175,7 +189,10 @@ def test_a_bump_is_told_until_the_robot_drives_on(kernel):
         kernel.run('lab.wait_until(lambda: "bumped" not in view.text)')
     # To stop where nothing is near is none.
     kernel.run('robot.place()\ndrive(0.2, 0.0, 5)\ndrive(0.0, 0.0, 3)')
-    kernel.run('lab.wait_until(lambda: view.scene.twist.v == 0 and view.scene.pose.x > 0.05)')
+    kernel.run(
+        'def stopped():\n    scene = view.scenes[""]\n'
+        '    return scene.twist.v == 0 and scene.pose.x > 0.05\nlab.wait_until(stopped)'
+    )
     assert 'bumped' not in kernel.run('print(view)').text
 
 
@@ -183,10 +200,10 @@ def test_page_that_comes_later_learns_what_was_seen_before(kernel):
     kernel.run(ROBOT)
     kernel.run(f'view = lab.arena()\n{SPY}\ndisplay(view)\nsay("seen")')
     kernel.run('drive(0.2, 0.0, 3)\nrobot.place(x=-1.0, y=-0.5)\ndrive(0.2, 0.0, 3)')
-    kernel.run('lab.wait_until(lambda: view.scene.pose.x > -0.99)\nsent.clear()\nsay("seen")')
+    kernel.run('lab.wait_until(lambda: view.scenes[""].pose.x > -0.99)\nsent.clear()\nsay("seen")')
     kernel.run(
         'import numpy as np\n'
-        'news, buffers = next((c, b) for c, b in sent if c.get("met"))\n'
+        'news, buffers = next((c, b) for c, b in sent if "met" in str(c))\n'
         'met = np.frombuffer(buffers[-1], "<f4").reshape(-1, 2)'
     )
     # More than the 360 beams of a scan, each at a wall or a post.
@@ -195,7 +212,7 @@ def test_page_that_comes_later_learns_what_was_seen_before(kernel):
     # The page scrolls there once, and not when it is loaded again.
     kernel.run(f'view = lab.arena()\n{SPY}\ndisplay(view)\ndrive(0.2, 0.0, 2)')
     kernel.run(
-        'lab.wait_until(lambda: any("pose" in c for c, _ in sent))\nsay("seen")\nsay("seen")'
+        'lab.wait_until(lambda: any("pose" in c for c in told()))\nsay("seen")\nsay("seen")'
     )
     told = kernel.run('print([c["fresh"] for c, _ in sent if "fresh" in c])').text
     assert told == '[True, False]\n'
@@ -212,6 +229,56 @@ def test_says_why_nothing_comes(kernel):
     kernel.run(f'view = lab.arena()\n{SPY}\ndisplay(view)\nlab.remove(robot)')
     said = kernel.run('lab.wait_until(lambda: "Nobody publishes on /odom" in str(sent))')
     assert not said.error
+
+
+ROBOTS = """
+import labkit as lab
+from geometry_msgs.msg import Twist
+from labkit.sim.world import playground
+from rclpy.node import Node
+world = playground()
+first = lab.spin(lab.Turtlebot(namespace='robot1', world=world, lockstep=0.1))
+view = lab.arena(goals=[(1.0, 0.5)])
+display(view)
+second = lab.spin(lab.Turtlebot(namespace='robot2', world=world, x=1.0, lockstep=0.1))
+pilot = lab.spin(Node('pilot'))
+commands = pilot.create_publisher(Twist, '/robot1/cmd_vel', 10)
+
+def drive(v, steps):
+    for _ in range(steps):
+        before = first.simulator.time
+        message = Twist()
+        message.linear.x = v
+        commands.publish(message)
+        lab.wait_until(lambda: first.simulator.time > before)
+"""
+
+
+def test_all_robots_are_on_one_map_also_those_that_come_later(kernel):
+    assert not kernel.run(ROBOTS).error
+    assert not kernel.run('lab.wait_until(lambda: "robot2 at" in view.text)').error
+    data = shown(kernel.run('view'))
+    assert [line.partition(',')[0] for line in data['text/plain'].splitlines()] == [
+        'robot1 at x = 0.00 m',
+        'robot2 at x = 1.00 m',
+    ]
+    # They see each other's bodies: one by its first scan, the other one by its next.
+    assert 'Nearest obstacle 0.86 m away, behind.' in data['text/plain']
+    kernel.run('drive(0.0, 3)')
+    assert not kernel.run('lab.wait_until(lambda: "0.93 m away, ahead" in view.text)').error
+    picture = ElementTree.fromstring(picture_of(data))
+    texts = [text.text for text in picture.iter('{http://www.w3.org/2000/svg}text')]
+    assert texts.count('robot1') == texts.count('robot2') == 1
+    # The other one is no wall that stays there; what it is bumped into is shown.
+    near = 'any(math.dist(w, (1, 0)) < 0.2 for w in view._robots["robot1"]._walls.values())'
+    assert kernel.run(f'import math\nprint({near})').text == 'False\n'
+    kernel.run('drive(0.2, 50)')
+    kernel.run('lab.wait_until(lambda: "bumped into something, ahead" in view.text)')
+    bump = eval(kernel.run('print(view.scenes["robot1"].bump)').text)
+    assert bump == pytest.approx((0.895, 0.0), abs=0.01)
+    # One of them alone.
+    alone = kernel.run("print(lab.arena(namespace='robot2'))").text
+    assert alone.startswith('robot2 at x = 1.00 m') and 'robot1' not in alone
 
 
 def test_print_tells_what_is_heard_and_listens_no_more(kernel):
@@ -268,6 +335,14 @@ def test_picture_shows_everything_that_is_there():
     assert len(numbers) == 6 and all(0 <= number <= 520 for number in numbers)
 
 
+@pytest.mark.parametrize('far', [27.0, 600_000.0, 3.3e38])
+def test_a_robot_may_be_far_from_where_its_map_begins(far):
+    """As outdoors, with coordinates of a whole country."""
+    picture = to_svg(Scene(pose=Pose(far, -far, 1.0)))
+    ElementTree.fromstring(picture)
+    assert 5 < picture.count('<text') < 60
+
+
 def test_pictures_in_a_row_are_as_large_as_what_happens_in_them():
     near = Scene(pose=Pose(0.1, 0.0, 0.0), trail=[(0.0, 0.0), (0.1, 0.0)], goals=[(0.2, 0.0)])
     far = Scene(pose=Pose(3.0, 0.0, 0.0), trail=[(0.0, 0.0), (3.0, 0.0)])
@@ -281,3 +356,50 @@ def test_pictures_in_a_row_are_as_large_as_what_happens_in_them():
     assert sizes[0] > 3 * sizes[1]
     labels = {text.text for text in first.iter(f'{name}text')}
     assert {'0 m', '0.2', '-0.2'} <= labels
+
+
+GOAL = """
+from geometry_msgs.msg import PoseStamped
+heard = []
+ear = lab.spin(Node('ear'))
+ear.create_subscription(PoseStamped, '{topic}', heard.append, 10)
+view = lab.arena({arguments})
+view._widget._handle_custom_msg({{'view': 'seen'}}, [])
+"""
+
+
+def set_goal(kernel, content):
+    kernel.run(f'from math import nan\nview._widget._handle_custom_msg({content}, [])')
+
+
+def test_a_goal_of_the_page_is_published_to_all_who_listen(kernel):
+    kernel.run(ROBOT)
+    kernel.run(GOAL.format(topic='/goal_pose', arguments=''))
+    kernel.run('lab.wait_until(lambda: view.scenes[""].pose is not None, timeout_sec=20)')
+    set_goal(kernel, {'goal': [1, 0.5, math.pi / 2]})
+    text = kernel.run(
+        'lab.wait_until(lambda: heard, timeout_sec=20)\ngoal = heard[-1]\n'
+        'turn = goal.pose.orientation\n'
+        'print(goal.header.frame_id, goal.pose.position.x, goal.pose.position.y, '
+        'round(turn.z, 3), round(turn.w, 3), len(heard))'
+    ).text
+    assert text == 'odom 1.0 0.5 0.707 0.707 1\n'
+    assert kernel.run('print(view.scenes[""].goals)').text == '[(1.0, 0.5)]\n'
+    said = 'print([p.topic_name for p in runtime.helper.publishers if "goal" in p.topic_name])'
+    assert kernel.run(said).text == "['/goal_pose']\n"
+    assert kernel.run(f'view.close()\n{said}').text == '[]\n'
+
+
+def test_the_goal_of_one_of_several_robots_is_in_its_namespace(kernel):
+    kernel.run(ROBOT.replace('lab.Turtlebot(', "lab.Turtlebot(namespace='left', "))
+    kernel.run(GOAL.format(topic='/left/goal_pose', arguments=''))
+    set_goal(kernel, {'goal': [0, 1, 0]})
+    assert kernel.run('lab.wait_until(lambda: heard, timeout_sec=20)').error == ''
+
+
+@pytest.mark.parametrize('goal', ['[1, 2]', '"ab"', '[nan, 1, 2]', '[1, 2, "3"]', 'None', '{}'])
+def test_nonsense_of_a_page_is_no_goal(kernel, goal):
+    kernel.run(ROBOT)
+    kernel.run(GOAL.format(topic='/goal_pose', arguments=''))
+    set_goal(kernel, f"{{'goal': {goal}}}")
+    assert kernel.run('print(view._goals, view._goal_publisher)').text == '[] None\n'

@@ -10,7 +10,7 @@ import labkit as lab
 from labkit.views import classroom
 from labkit.views.class_board import Board, FailRow, LearnerRow, LessonRow
 from labkit.views.classroom import Classroom
-classroom.LOOK_SEC = 0.01
+classroom.READ_SEC = 0.01
 looks, free = [], threading.Event()
 free.set()
 
@@ -74,5 +74,5 @@ def test_names_are_told_only_where_they_are_asked_for_and_never_stored(stage):
     for names in (False, True):
         stage(f'view = Classroom(look, names={names})')
         assert stage('print("Anna" in repr(view))') == str(names)
-        assert stage('print("Anna" in view._still()["text/plain"])') == 'False'
-        assert stage('print("share their progress" in view._still()["text/plain"])') == 'True'
+        assert stage('print("Anna" in view._static()["text/plain"])') == 'False'
+        assert stage('print("share their progress" in view._static()["text/plain"])') == 'True'

@@ -49,6 +49,14 @@ def words(root: ElementTree.Element) -> list[str]:
     return [''.join(text.itertext()) for text in root.iter(f'{SVG}text')]
 
 
+def test_what_a_fault_is_told_about_has_a_sign() -> None:
+    names = [EYES.nodes[0].name, EYES.topics[0].name]
+    drawn = Picture(EYES, wrong=names)
+    assert [shape.name for shape in drawn.shapes if shape.wrong] == names
+    assert drawn.svg().count('class="sign"') == 2
+    assert 'class="sign"' not in Picture(EYES).svg()
+
+
 # -- real nodes ---------------------------------------------------------------------------------
 
 
@@ -231,7 +239,7 @@ def test_names_have_no_power_over_the_picture(name: str):
     data = graph(topic(name, [(name, name)], [(name, STRING)]))
     root = parsed(data)
     told = words(root)
-    plain = ''.join(char if char.isprintable() else '\ufffd' for char in name)
+    plain = ''.join(char if char.isprintable() else '?' for char in name)
     assert plain in told or ''.join(told).startswith(plain.replace(' ', ''))
     assert not list(root.iter(f'{SVG}script')) and not list(root.iter(f'{SVG}img'))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -104,6 +105,17 @@ def test_what_can_not_be_shown_says_why():
     for broken in (narrow, Image(encoding='rgb8'), Image(encoding='mono8', width=1)):
         with pytest.raises(LabError):
             picture_of(broken)
+
+
+def test_a_single_row_takes_no_more_than_it_has():
+    row = message('mono8', np.array([[1, 2]], np.uint8))
+    row.step = 2**32 - 1
+    tracemalloc.start()
+    try:
+        assert picture_of(row).pixels.tolist() == [[1, 2]]
+        assert tracemalloc.get_traced_memory()[1] < 10**6
+    finally:
+        tracemalloc.stop()
 
 
 def test_page_gets_no_more_than_it_can_show():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from xml.etree import ElementTree
 
 import numpy as np
@@ -303,3 +304,23 @@ def test_picture_escapes_and_tells_lines_apart():
     strokes = {(path.get('stroke'), path.get('stroke-dasharray')) for path in root.iter()}
     assert len([stroke for stroke in strokes if stroke[0] in COLOURS]) == 6
     assert len(set(DASHES)) == len(DASHES) == len(COLOURS)
+
+
+@pytest.mark.parametrize(
+    'values',
+    [
+        [1e308, -1e308],
+        [5e-324],
+        [0.0, 5e-324],
+        [-5e-324, 5e-324],
+        [sys.float_info.max, -sys.float_info.max, 0.0],
+        [sys.float_info.max],
+        [1.0, 1.0 + sys.float_info.epsilon],
+    ],
+)
+def test_greatest_and_least_numbers_have_a_picture(values):
+    root = ElementTree.fromstring(to_svg([Line('a', '', values)], ''))
+    lines = [each.get('d', '') for each in root.iter() if each.get('stroke') == COLOURS[0]]
+    heights = [float(place.split()[1].split('h')[0]) for place in lines[-1][1:].split('L')]
+    assert len(heights) == len(values) and all(0 <= height <= 300 for height in heights)
+    assert 2 <= len(ticks(*limits(values))) <= 12

@@ -4,7 +4,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from labkit.views.passed import PassedCard
+from labkit.views.passed_card import PassedCard
 from labkit.views.progress_picture import Item, Row, percent, picture, text_form
 
 ROWS = [
@@ -55,9 +55,12 @@ def test_each_lesson_has_a_line_with_its_share() -> None:
 
 
 @pytest.mark.parametrize(
-    ('done', 'count', 'share'), [(0, 0, 0), (0, 3, 0), (1, 3, 33), (199, 200, 99), (3, 3, 100)]
+    ('done', 'count', 'share'),
+    [(0, 0, 0), (0, 3, 0), (1, 200, 1), (1, 3, 33), (199, 200, 99), (3, 3, 100)],
 )
-def test_all_is_said_only_of_all(done: int, count: int, share: int) -> None:
+def test_nothing_is_said_only_of_nothing_and_all_only_of_all(
+    done: int, count: int, share: int
+) -> None:
     states = ['done'] * done + ['tried'] * (count - done)
     assert percent([Item('exercise', 'x', state) for state in states]) == share
 

@@ -7,23 +7,28 @@ A clause is data. Its `text` stands in the notebook; `find` looks for what has t
 from __future__ import annotations
 
 from labkit.exercises.clauses.acting import Goal, Pursues, Pursuit
-from labkit.exercises.clauses.answering import Answers, find_stage
-from labkit.exercises.clauses.base import Clause, Evidence, Stream, Test, judge
+from labkit.exercises.clauses.answering import WITHIN, Answers
+from labkit.exercises.clauses.asked import Asked, Words
+from labkit.exercises.clauses.base import Evidence, Graph, GraphClause, Stream, Test
 from labkit.exercises.clauses.logs import Logs
 from labkit.exercises.clauses.messages import HasText, Messages, Says
 from labkit.exercises.clauses.nodes import Named, NobodyElse, Runs, Subscribes
 from labkit.exercises.clauses.parameters import Follows, HasParameter, Refuses
-from labkit.exercises.clauses.publishing import Publishes, often
+from labkit.exercises.clauses.publishing import OFF, Publishes, in_words, often
 from labkit.exercises.clauses.qos import Latched, Matches
 from labkit.exercises.clauses.serving import Call, Responds, Serves
 
 __all__ = [
+    'OFF',
+    'WITHIN',
     'Answers',
+    'Asked',
     'Call',
-    'Clause',
     'Evidence',
     'Follows',
     'Goal',
+    'Graph',
+    'GraphClause',
     'HasParameter',
     'HasText',
     'Latched',
@@ -43,7 +48,7 @@ __all__ = [
     'Stream',
     'Subscribes',
     'Test',
-    'find_stage',
-    'judge',
+    'Words',
+    'in_words',
     'often',
 ]

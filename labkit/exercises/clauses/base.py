@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Collection, Iterator, Sequence
+import random
+import time
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from labkit.exercises import expect
-from labkit.exercises.life import LIFE_SEC, Life, Sent, Stimulus, live
+from labkit.exercises import expect, words
+from labkit.exercises.history import Note, history, made_at
+from labkit.exercises.judging import Clause, Stage, find, naming
+from labkit.exercises.life import (
+    ANSWERS_SOON_SEC,
+    LIFE_SEC,
+    STEP_SEC,
+    Life,
+    Sent,
+    Stimulus,
+    live,
+)
 from labkit.exercises.verdict import Fail, NotAttempted
 from labkit.exercises.watch import Sample, Watch
 
@@ -17,10 +29,12 @@ if TYPE_CHECKING:
     from labkit.exercises.probe import Probe
     from labkit.rosgraph.endpoints import Endpoint
 
-__all__ = ['Clause', 'Evidence', 'Stream', 'Test', 'judge']
+__all__ = ['Evidence', 'Graph', 'GraphClause', 'Stream', 'Test']
 
 # The first test is sent after this time, and the others with so much time in between, s.
 TEST_EVERY_SEC = 1.0
+# Some come as soon as this after the one before, s; for which ones of four, is drawn.
+SOON_SEC, SOON_ONE_OF = 0.005, 4
 # So long it is looked at what comes after the last one, s.
 AFTER_SEC = 5.0
 LOG = 'rcl_interfaces/msg/Log'
@@ -34,7 +48,7 @@ class Test:
     msg_type: str
     fields: dict[str, Any]
     answers: Sequence[str] = ()
-    due: bool = True
+    due: int = 1
 
 
 @dataclass(frozen=True)
@@ -47,22 +61,44 @@ class Stream:
         exact: Whether their times are exact, because the node follows ROS time. Else time was
             real.
         seconds: How long it was watched, s.
+        earlier: What its node has said before, as far as that is known: see `history`.
     """
 
     topic: str
     samples: Sequence[Sample]
     exact: bool
     seconds: float
+    earlier: Sequence[Note] = ()
 
-    def values(self, field_name: str) -> list[Any]:
+    def values(self, field_name: str, *, earlier: bool = False) -> list[Any]:
         """Return a field of each message; dots lead to inner ones."""
         from functools import reduce
 
         path = field_name.split('.')
-        return [reduce(getattr, path, sample.message) for sample in self.samples]
+        said = [note.message for note in self.earlier] if earlier else []
+        said += [sample.message for sample in self.samples]
+        return [reduce(getattr, path, message) for message in said]
 
     def __len__(self) -> int:
         return len(self.samples)
+
+
+class GraphClause(Clause['Evidence']):
+    """A clause on the learner's nodes.
+
+    Attributes:
+        period: The shortest time between two messages that it is about, s; 0 if there is none.
+        judges_parts: Whether it can judge a life that an error has ended early.
+        own_life: Whether it lets time pass by itself. The other clauses of its task need none.
+    """
+
+    period: float = 0.0
+    judges_parts = False
+    own_life = False
+
+    def tests(self, evidence: Evidence) -> Sequence[Test]:
+        """Return the test messages that are to be sent."""
+        return ()
 
 
 @dataclass
@@ -74,16 +110,20 @@ class Evidence:
         ends: The publishers and subscriptions that clauses have found, by kind, topic and node.
         life: What was seen while time passed. Before `gather`, nothing.
         streams: The messages of each publisher, by topic and node; `Publishes` puts them there.
+        asked: Fields of what was sent before time passed, by topic: somebody may answer only then.
         tests: The tests that each clause has asked for, as they were sent.
         heard: What clauses listen to by themselves, by topic. Nobody else subscribes there.
+        began: When it was begun, ns since 1970.
     """
 
     probe: Probe
     ends: dict[tuple[str, str, str], Endpoint] = field(default_factory=dict)
     life: Life = field(default_factory=Life)
     streams: dict[tuple[str, str], Stream] = field(default_factory=dict)
-    tests: dict[Clause, list[Sent]] = field(default_factory=dict)
+    asked: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
+    tests: dict[GraphClause, list[Sent]] = field(default_factory=dict)
     heard: dict[str, Watch] = field(default_factory=dict)
+    began: int = field(default_factory=time.time_ns)
 
     def publisher(self, topic: str, by: str = '') -> Endpoint:
         """Return the learner's publisher on a topic; see `expect.publisher` for what it raises."""
@@ -99,7 +139,44 @@ class Evidence:
             self.ends[key] = expect.subscription(self.probe, topic, by=by)
         return self.ends[key]
 
-    def gather(self, clauses: Sequence[Clause]) -> None:
+    def earlier(self, topic: str, node: str) -> list[Note]:
+        """Return what a node of this process has said on a topic before the check, at first."""
+        found = self.probe.node_object(node)
+        notes = history.on(topic) or () if found is not None else ()
+        return [each for each in notes if each.is_first and each.is_by(found)]
+
+    def said_by(self, node: str, topic: str) -> list[Note] | None:
+        """Return what a node of this process has said on a topic, at first and in this cell.
+
+        None if it is not known how that began.
+        """
+        notes = history.on(topic)
+        found = self.probe.node_object(node) if notes is not None else None
+        if notes is None or found is None:
+            return None
+        recent = [each for each in notes if each.is_first or each.ended >= self.probe.began]
+        return [each for each in recent if each.is_by(found)]
+
+    def heard_by(self, node: str, topic: str) -> list[Note] | None:
+        """Return what was published on a topic since a node of this process was made.
+
+        None if it may have heard something else, too: its callback was called more often.
+        """
+        found = self.probe.node_object(node) if history.on(topic) is not None else None
+        if found is None:
+            return None
+        ends = [end for end in found.subscriptions if end.topic_name == topic]
+        # Time goes on: each call that is counted has its message among those that are read then.
+        calls = [self.probe.callbacks.count(found, end) for end in ends]
+        known = [count for count in calls if count is not None]
+        notes = history.on(topic)
+        if notes is None or not known or len(known) < len(calls):
+            return None
+        # It may have been made while one was being published.
+        notes = [each for each in notes if each.ended >= made_at(found)]
+        return notes if sum(known) <= len(notes) else None
+
+    def gather(self, clauses: Sequence[GraphClause]) -> None:
         """Let time pass, and send what the clauses want to be sent."""
         scope = self.probe.scope
         topics = {**scope.publishes, **scope.subscribes}
@@ -111,7 +188,7 @@ class Evidence:
             self.tests.setdefault(clause, []).append(sent)
         self.refuse_trouble(clauses)
 
-    def alone(self, clause: Clause, tests: Sequence[Test], node: str) -> Evidence:
+    def alone(self, clause: GraphClause, tests: Sequence[Test], node: str) -> Evidence:
         """Let time pass for one node alone, and send it tests.
 
         So they don't mix with what another node under test says on the same topic.
@@ -135,7 +212,7 @@ class Evidence:
         evidence.refuse_trouble(())
         return evidence
 
-    def refuse_trouble(self, clauses: Sequence[Clause]) -> None:
+    def refuse_trouble(self, clauses: Sequence[GraphClause]) -> None:
         """Raise what has brought time to a stop before its end, if anything has.
 
         Args:
@@ -154,15 +231,14 @@ class Evidence:
             raise self.life.error
         if self.life.hanging:
             expect.hanging(self.life.hanging)
+        if self.life.overloaded:
+            expect.overloaded(self.life.overloaded)
         if self.life.flooded:
             raise Fail(
                 'callbacks that come to an end',
                 f'so many callbacks within one moment that the check stopped counting, after '
                 f'{self.life.seconds:.1f} s of time',
-                why='A timer has no period, or a message sets off another one, which sets off the '
-                'next one, without an end.',
-                todo='Give the timer a period in seconds, and publish on a topic that the node '
-                'does not hear itself, or do not answer what the node has said itself.',
+                words.FLOOD,
             )
 
     def has_ended_early(self) -> bool:
@@ -179,37 +255,59 @@ class Evidence:
         self,
         topics: dict[str, str],
         seconds: float,
-        clauses: Sequence[Clause],
+        clauses: Sequence[GraphClause],
         stimuli: Sequence[Stimulus] = (),
         nodes: Collection[str] = (),
+        before: Callable[[], None] | None = None,
     ) -> Life:
         """Let time pass for some nodes, as exactly as the clauses need it.
 
         Time passes for the nodes that clauses have found, if none are named. What else has an end
-        on these topics, such as a node of an earlier exercise, stands still.
+        on these topics, such as a node of an earlier exercise, stands still. `before` is called
+        when it stands still for all of them.
         """
         also = {'/rosout': LOG} if any('/rosout' in s.answers for s in stimuli) else {}
-        period = min((clause.period for clause in clauses if clause.period), default=0.5)
-        return live(
+        # Who only answers needs the time no more often than for a timer that is in time.
+        periods = [clause.period for clause in clauses if clause.period]
+        step = min(STEP_SEC, min(periods) / 2) if periods else ANSWERS_SOON_SEC / 2
+        self.probe.life = live(
             self.probe,
             topics,
             seconds,
             stimuli=stimuli,
             also=also,
             nodes=nodes or {end.node for end in self.ends.values()},
-            tick=period / 3,
-            # So 45 ticks tell a rate to two percent.
-            fine_sec=15 * period,
-            rest=max(period, 0.1),
+            step=step,
+            before=None if before is None else lambda passing: before(),
         )
+        return self.probe.life
 
 
 def _in_turn(tests: Sequence[Test]) -> list[Stimulus]:
-    """Return tests with the times at which they are sent, one after the other."""
-    return [
-        Stimulus(at=TEST_EVERY_SEC * number, **vars(test))
-        for number, test in enumerate(tests, start=1)
+    """Return tests with the times at which they are sent, one after the other.
+
+    Some come so soon that a node which answers the newest only, or not so often, leaves one out:
+    at least two that are different, and two that are alike, if there are such.
+    """
+    pairs = [
+        (number, earlier.fields == later.fields)
+        for number, (earlier, later) in enumerate(pairwise(tests), start=1)
+        # A first answer that is wrong is to be told from the one to the next test.
+        if number > 1
+        and (earlier.topic, earlier.answers) == (later.topic, later.answers)
+        and earlier.due
+        and later.due
     ]
+    soon = {n for n, _ in random.sample(pairs, len(pairs) // SOON_ONE_OF)}
+    for alike in (True, False):
+        found = [n for n, same in pairs if same is alike]
+        if found and not soon.intersection(found):
+            soon.add(random.choice(found))
+    at, stimuli = 0.0, list[Stimulus]()
+    for number, test in enumerate(tests):
+        at += SOON_SEC if number in soon else TEST_EVERY_SEC
+        stimuli.append(Stimulus(at=at, **vars(test)))
+    return stimuli
 
 
 def _seconds(stimuli: Sequence[Stimulus]) -> float:
@@ -217,92 +315,23 @@ def _seconds(stimuli: Sequence[Stimulus]) -> float:
     return stimuli[-1].at + AFTER_SEC if stimuli else 0.0
 
 
-class Clause(ABC):
-    """One thing that a task asks for.
+class Graph(Stage[Evidence]):
+    """The graph with the learner's nodes: time passes for them, and they get tests."""
 
-    Attributes:
-        period: The shortest time between two messages that it is about, s; 0 if there is none.
-        judges_parts: Whether it can judge a life that an error has ended early.
-        own_life: Whether it lets time pass by itself. The other clauses of its task need none.
-    """
-
-    period: float = 0.0
-    judges_parts = False
-    own_life = False
-
-    @property
-    @abstractmethod
-    def text(self) -> str:
-        """What is asked for, in words of the task. The notebook says it in the same words."""
-
-    def find(self, evidence: Evidence) -> None:
-        """Look for what has to be in the graph.
-
-        Raises:
-            NotAttempted: Nothing of the learner's shows an attempt.
-            Fail: It is missing, or otherwise.
-        """
-        return
-
-    def tests(self, evidence: Evidence) -> Sequence[Test]:
-        """Return the test messages that are to be sent."""
-        return ()
-
-    def judge(self, evidence: Evidence) -> str:
-        """Judge what was seen.
-
-        Returns:
-            What was seen, in a sentence; `''` if there is nothing to say.
-
-        Raises:
-            Fail: It is not what the clause asks for.
-        """
-        return ''
-
-
-def judge(probe: Probe, clauses: Sequence[Clause]) -> str:
-    """Look for each clause in the graph, let time pass, and judge each clause.
-
-    Args:
-        probe: The probe of the check.
-        clauses: What the task asks for.
-
-    Returns:
-        What was seen, in a sentence for each clause that has something to say.
-
-    Raises:
-        NotAttempted: Nothing of the learner's shows an attempt.
-        Fail: A clause is not fulfilled; the exception names it.
-    """
-    evidence = Evidence(probe)
-    said = []
-    _find(clauses, evidence)
-    try:
-        if not any(clause.own_life for clause in clauses):
-            evidence.gather(clauses)
-        for clause in clauses:
-            with naming(clause):
-                said.append(clause.judge(evidence))
-    except (Fail, NotAttempted):
-        if evidence.has_ended_early():
-            # That it is not there any more is the cause, and what is seen now tells it.
-            _find(clauses, Evidence(probe))
-        raise
-    return '\n'.join(filter(None, said))
-
-
-def _find(clauses: Sequence[Clause], evidence: Evidence) -> None:
-    for clause in clauses:
-        with naming(clause):
-            clause.find(evidence)
-
-
-@contextmanager
-def naming(clause: Clause, *, came_first: bool = False) -> Iterator[None]:
-    """Let a Fail say which clause is not fulfilled."""
-    try:
-        yield
-    except Fail as fail:
-        fail.clause = fail.clause or clause.text
-        fail.came_first = came_first
-        raise
+    @contextmanager
+    def scenes(
+        self, probe: Probe, clauses: Sequence[Clause[Evidence]]
+    ) -> Iterator[Sequence[Evidence]]:
+        """Look for each clause in the graph, let time pass, and give what was seen."""
+        asked = [clause for clause in clauses if isinstance(clause, GraphClause)]
+        evidence = Evidence(probe)
+        find(clauses, evidence)
+        try:
+            if not any(clause.own_life for clause in asked):
+                evidence.gather(asked)
+            yield [evidence]
+        except (Fail, NotAttempted):
+            if evidence.has_ended_early():
+                # That it is not there any more is the cause, and what is seen now tells it.
+                find(clauses, Evidence(probe))
+            raise

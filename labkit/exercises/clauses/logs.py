@@ -2,45 +2,71 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from typing import NoReturn
 
-from labkit.exercises.clauses.answering import WITHIN_SEC, Explain, value_of
-from labkit.exercises.clauses.base import Clause, Evidence, Test
+from labkit.exercises import words
+from labkit.exercises.clauses.answering import WITHIN_SEC, said_upon, value_of
+from labkit.exercises.clauses.base import Evidence, GraphClause, Test
+from labkit.exercises.draws import draw_texts
 from labkit.exercises.expect.spinning import hanging, spun
 from labkit.exercises.expect.values import show
+from labkit.exercises.history import Note, history
+from labkit.exercises.life import SAME_SEC, STEP_SEC
+from labkit.exercises.mistakes import Mistake, anything, recognise
+from labkit.exercises.scope import SUBSCRIPTION, Role
 from labkit.exercises.verdict import Fail
-from labkit.exercises.watch import Lived
+from labkit.exercises.watch import Lived, Sample
 
 __all__ = ['Logs']
 
 
 @dataclass(frozen=True, eq=False)
-class Logs(Clause):
+class Logs(GraphClause):
     """A node logs a line for each message, and the line holds its text.
 
     Attributes:
         topic: Full name of the topic that it hears.
+        msg_type: Name of its type.
         words: What is asked for, in words of the task.
         draw: Draws the texts that are sent as tests.
         field: Name of the field that holds the text.
         line: What has to stand in the line, from the text; the text itself if None.
-        explain: Gets a text that was heard, and the lines that came upon it; returns the
-            misconception and the next step, or two empty texts.
+        mistakes: What a wrong node may log. The first one whose model, made from the text, stands
+            in the line is the reason.
+        named: Returns the words of another clause, if that one says what is logged for a text, or,
+            for None, that nothing else is.
     """
 
     topic: str
+    msg_type: str
     words: str
-    draw: Callable[[], Sequence[str]]
+    draw: Callable[[], Sequence[str]] = draw_texts
     field: str = 'data'
     line: Callable[[str], str] | None = None
-    explain: Explain | None = None
+    mistakes: Sequence[Mistake] = ()
+    named: Callable[[str | None], str] = lambda text: ''
 
     @property
     def text(self) -> str:
         """What is asked for."""
         return self.words
+
+    @property
+    def roles(self) -> dict[Role, str]:
+        """It subscribes."""
+        return {(SUBSCRIPTION, self.topic): self.msg_type}
+
+    @property
+    def listens(self) -> Collection[str]:
+        """Where it hears."""
+        return (self.topic,)
+
+    @property
+    def recognises(self) -> Sequence[Mistake]:
+        """Those that a task has named."""
+        return self.mistakes
 
     def find(self, evidence: Evidence) -> None:
         """Look for the subscription."""
@@ -56,71 +82,139 @@ class Logs(Clause):
         ]
 
     def judge(self, evidence: Evidence) -> str:
-        """Judge the lines."""
-        source = evidence.subscription(self.topic)
-        lines = _lines_of(source.node, evidence.life.on('/rosout'))
-        life, samples = evidence.life, evidence.life.on(self.topic)
-        texts = [str(value_of(s, self.field)) for s in samples]
-        wanted = texts if self.line is None else [self.line(text) for text in texts]
-        heard = [(sample.at, line) for sample, line in zip(samples, wanted, strict=True)]
-        known = [line for _, line in lines if any(text and text in line for _, text in heard)]
-        for number, (at, text) in enumerate(heard):
-            if not life.is_known(self.topic, samples[number]):
-                continue
-            later = [t for t, _ in heard[number + 1 :] if t > at]
-            end = min([at + WITHIN_SEC, *later])
-            here = [line for t, line in lines if at <= t < end]
-            same = [n for n, (t, other) in enumerate(heard) if at <= t < end and other == text]
-            holding = [line for line in here if text in line]
-            if len(holding) < sum(life.is_known(self.topic, samples[n]) for n in same):
-                self._refuse(evidence, texts[number], text, here, bool(known))
-            if len(holding) > len(same):
-                raise Fail(
-                    f'one line of {source.node} for each message on {self.topic}',
-                    f'{len(holding)} lines: {show(holding)}',
-                    why='The same message is logged more than once.',
-                    todo='Call get_logger().info(...) once in the callback.',
-                )
-        # At the beginning it may log what came before: a node may keep what it hears.
-        silent = [
-            (t, line)
-            for t, line in lines
-            if t >= WITHIN_SEC and not any(a <= t < a + WITHIN_SEC for a, _ in heard)
+        """Judge the lines: one for each message, and no other."""
+        source, life = evidence.subscription(self.topic), evidence.life
+        left = _lines_of(source.node, life.on('/rosout'))
+        heard = [
+            (each, is_due, self._wanted(each))
+            for each, is_due in life.heard(self.topic, WITHIN_SEC)
         ]
-        quiet = [line for _, line in evidence.life.without_strangers(self.topic, silent, known)]
-        if quiet:
-            raise Fail(
-                f'lines of {source.node} when a message comes, and none otherwise',
-                f'{len(quiet)} lines when none had come: {show(quiet)}',
-                why='A timer or a loop logs, too.',
-                todo='Log in the callback of the subscription only.',
-            )
-        return f'{source.node} logged each of {len(heard)} texts in a line.'
+        missing: list[Lived] = []
+        known: list[str] = []
+        # What stands before and after the text. An empty one is in every line.
+        forms: list[tuple[str, str]] = []
+        # The longest text takes its line first: a line that holds it may hold shorter ones, too.
+        for sample, is_due, text in sorted(heard, key=lambda each: -len(each[2])):
+            end = sample.at + WITHIN_SEC
+            fits = [p for p in left if sample.at <= p[0] < end and text in p[1]]
+            if fits:
+                usual = (p for p in fits if any(p[1] == a + text + b for a, b in forms))
+                found = next(usual, fits[0])
+                left.remove(found)
+                known.append(found[1])
+                if text:
+                    before, _, after = found[1].partition(text)
+                    forms.append((before, after))
+            elif is_due:
+                missing.append(sample)
+        if missing:
+            self._refuse_missing(evidence, min(missing, key=lambda sample: sample.at), left, known)
+        # At the beginning it may log what came before: a node may keep what it hears.
+        notes = evidence.heard_by(source.node, self.topic)
+        began = life.began or evidence.began
+        earlier = [n for n in notes or () if n.began < began]
+        texts = None if notes is None else list(map(self._wanted, earlier))
+        more = [
+            (t, line)
+            for t, line in left
+            if t >= WITHIN_SEC or (texts is not None and not any(text in line for text in texts))
+        ]
+        more = life.without_strangers(self.topic, more, known)
+        if more:
+            self._refuse_more(evidence, [sample.at for sample, *_ in heard], known, more)
+        if texts is not None:
+            self._refuse_earlier(evidence, texts)
+        return (
+            f'{source.node} logged each of {len(heard)} texts in a line. Of lines from before the '
+            'check, only those of timers were looked at.'
+        )
 
-    def _refuse(
-        self, evidence: Evidence, heard: str, text: str, here: Sequence[str], some: bool
+    def _refuse_earlier(self, evidence: Evidence, texts: Sequence[str]) -> None:
+        """Raise Fail if a timer has logged what no message said, since the node was made.
+
+        /rosout keeps a line for ten seconds (rcl/src/rcl/logging_rosout.c), so what it has would
+        depend on when the check is run.
+        """
+        name = evidence.subscription(self.topic).node
+        node = evidence.probe.node_object(name)
+        early = history.lines_of(node) if node is not None else []
+        lines = [
+            line.text
+            for line in early
+            if line.began < (evidence.life.began or evidence.began)
+            and _is_of(name, line.logger)
+            and not any(text in line.text for text in texts)
+        ]
+        if lines:
+            fail = Fail(
+                f'one line of {name} for each message on {self.topic}, and no other',
+                f'{len(lines)} more lines before the check: {show(lines)}',
+                words.LOGS_UNASKED,
+            )
+            fail.clause = self.named(None)
+            raise fail
+
+    def _wanted(self, sample: Sample | Note) -> str:
+        text = str(value_of(sample, self.field))
+        return text if self.line is None else self.line(text)
+
+    def _refuse_missing(
+        self,
+        evidence: Evidence,
+        sample: Lived,
+        left: Sequence[tuple[float, str]],
+        known: Sequence[str],
     ) -> NoReturn:
         source = evidence.subscription(self.topic)
+        heard, text = str(value_of(sample, self.field)), self._wanted(sample)
+        here = said_upon(sample.at, left)
         if not here:
             hanging()
-        why = 'The callback runs, but its line does not hold what the message says.'
-        todo = "In the callback: self.get_logger().info(f'...{msg.data}')"
-        if self.explain is not None and here:
-            why, todo = self.explain(heard, here)
-        if not here:
-            why = (
-                'The callback does not log it. print() shows a text here; the logger also tells '
-                'all other nodes of it.'
-            )
-        if some and not here:
-            why = 'Some messages are logged as they came, and this one is not.'
-        raise Fail(
+        mistake = words.LOGS_SOME if any(known) else words.NOT_LOGGED
+        if here:
+            found = recognise(self.mistakes, lambda each: _is_in(each, heard, here[0]))
+            mistake = found or words.LOGS_ELSE
+        fail = Fail(
             f'{source.node} logs a line with {show([text])} when '
             f'{"that" if text == heard else show([heard])} comes on {self.topic}',
             f'{source.node} logged {show(here)}' if here else f'{source.node} logged nothing',
-            why=why,
-            todo=todo,
+            mistake,
         )
+        fail.clause, fail.at = self.named(heard), sample.at
+        raise fail
+
+    def _refuse_more(
+        self,
+        evidence: Evidence,
+        moments: Sequence[float],
+        known: Sequence[str],
+        more: Sequence[tuple[float, str]],
+    ) -> NoReturn:
+        source, step = evidence.subscription(self.topic), evidence.life.step
+        again = [line for _, line in more if line in known]
+        with_one = [
+            line for t, line in more if any(abs(t - at) <= step + SAME_SEC for at in moments)
+        ]
+        # With longer steps, lines of a timer come with a message by chance.
+        is_exact = step <= STEP_SEC
+        mistake = words.LOGS_UNASKED
+        if 2 * len(again) > len(more):
+            mistake = words.LOGS_TWICE
+        elif 2 * len(with_one) > len(more) and (is_exact or 2 * len(more) > len(moments)):
+            mistake = words.LOGS_BESIDE
+        fail = Fail(
+            f'one line of {source.node} for each message on {self.topic}, and no other',
+            f'{len(more)} more lines: {show([line for _, line in more])}',
+            mistake,
+        )
+        fail.clause, fail.at = self.named(None), more[0][0]
+        raise fail
+
+
+def _is_in(mistake: Mistake, text: str, line: str) -> bool:
+    """Tell whether a node with this mistake may have logged a line for a text."""
+    said = mistake.answer(text)
+    return mistake.model is anything or (isinstance(said, str) and said in line)
 
 
 def _lines_of(node: str, samples: Iterable[Lived]) -> list[tuple[float, str]]:
@@ -130,9 +224,12 @@ def _lines_of(node: str, samples: Iterable[Lived]) -> list[tuple[float, str]]:
         node: Full name of the node.
         samples: Messages of /rosout.
     """
-    logger = node.strip('/').replace('/', '.')
     return [
-        (sample.at, sample.message.msg)
-        for sample in samples
-        if sample.message.name == logger or sample.message.name.startswith(f'{logger}.')
+        (sample.at, sample.message.msg) for sample in samples if _is_of(node, sample.message.name)
     ]
+
+
+def _is_of(node: str, logger: str) -> bool:
+    """Tell whether a logger is that of a node, or below it."""
+    name = node.strip('/').replace('/', '.')
+    return logger == name or logger.startswith(f'{name}.')

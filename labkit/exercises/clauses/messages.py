@@ -6,15 +6,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from labkit.exercises.clauses.base import Clause, Evidence, Stream
+from labkit.exercises import words
+from labkit.exercises.clauses.base import Evidence, GraphClause, Stream
 from labkit.exercises.expect.values import show, text_trouble
+from labkit.exercises.mistakes import Mistake, recognise
 from labkit.exercises.verdict import Fail
 
 __all__ = ['HasText', 'Messages', 'Says']
 
 
 @dataclass(frozen=True, eq=False)
-class Messages(Clause):
+class Messages(GraphClause):
     """What the messages of a publisher say, all of them, from the first to the last that came.
 
     Attributes:
@@ -22,17 +24,24 @@ class Messages(Clause):
         words: What is asked for, in words of the task.
         rule: Gets the messages, and raises Fail if they say something else.
         by: Full name of the node; any node if empty.
+        mistakes: What the rule may tell as a reason.
     """
 
     topic: str
     words: str
     rule: Callable[[Stream], str | None]
     by: str = ''
+    mistakes: Sequence[Mistake] = ()
 
     @property
     def text(self) -> str:
         """What is asked for."""
         return self.words
+
+    @property
+    def recognises(self) -> Sequence[Mistake]:
+        """Those that a task has named."""
+        return self.mistakes
 
     def judge(self, evidence: Evidence) -> str:
         """Judge the messages."""
@@ -40,7 +49,7 @@ class Messages(Clause):
 
 
 @dataclass(frozen=True)
-class Says(Clause):
+class Says(GraphClause):
     """A field has one value, in each message.
 
     Attributes:
@@ -48,45 +57,54 @@ class Says(Clause):
         value: The value.
         field: Name of the field.
         by: Full name of the node; any node if empty.
-        todo: The next step for who has another value.
-        explain: Gets the values that came; returns the misconception and the next step.
-        words: In words of the task; made of the value if empty.
+        mistakes: What a wrong node may say instead, each time: the value of a model.
+        words: In words of the task, with `{}` for the value.
     """
 
     topic: str
     value: Any
     field: str = 'data'
     by: str = ''
-    todo: str = ''
-    explain: Callable[[Sequence[Any]], tuple[str, str]] | None = None
-    words: str = ''
+    mistakes: Sequence[Mistake] = ()
+    words: str = 'each message says `{!r}`'
 
     @property
     def text(self) -> str:
         """What is asked for."""
-        return self.words or f'each message says `{self.value!r}`'
+        return self.words.format(self.value)
+
+    @property
+    def recognises(self) -> Sequence[Mistake]:
+        """Those that a task has named."""
+        return self.mistakes
 
     def judge(self, evidence: Evidence) -> str:
         """Judge the values."""
         stream = evidence.streams[self.topic, self.by]
-        values = stream.values(self.field)
+        values = stream.values(self.field, earlier=True)
         for number, value in enumerate(values):
             if value != self.value:
-                why, todo = self.explain(values) if self.explain is not None else ('', '')
-                if number and not why:
-                    why = 'The first messages were right, the later ones are not.'
                 after = f', after {number} that were right' if number else ''
+                after += ', before the check' if number < len(stream.earlier) else ''
                 raise Fail(
                     f'{self.field} = {self.value!r} in each message on {self.topic}',
                     f'{self.field} = {show(values[number:])}{after}',
-                    why=why or text_trouble(value, self.value),
-                    todo=todo or self.todo,
+                    self._mistake(values, number),
                 )
         return ''
 
+    def _mistake(self, values: Sequence[Any], number: int) -> Mistake | None:
+        """Return the reason why the values are wrong from a message on."""
+        if any(value != values[number] for value in values[number:]):
+            return words.CHANGES
+        if number:
+            return words.LATER_WRONG
+        found = recognise(self.mistakes, lambda each: bool(each.answer() == values[0]))
+        return found or text_trouble(values[0], self.value)
+
 
 @dataclass(frozen=True)
-class HasText(Clause):
+class HasText(GraphClause):
     """A text field is not empty, in any message of some publishers.
 
     Attributes:
@@ -108,18 +126,14 @@ class HasText(Clause):
         """Judge the texts."""
         for by in self.by:
             stream = evidence.streams[self.topic, by]
-            values = stream.values(self.field)
+            values = stream.values(self.field, earlier=True)
             number = next((i for i, text in enumerate(values) if not text.strip()), None)
             if number is not None:
                 raise Fail(
                     f'a text in each message on {self.topic}',
                     f'{self.field} = {show(values[number:])}'
                     + (f', after {number} with a text' if number else ''),
-                    why='The message was published as it was made: its field '
-                    f'{self.field} is an empty text at first.'
-                    if not values[number]
-                    else 'A text of spaces says nothing.',
-                    todo=f'Set the field before you publish: msg.{self.field} = ...',
+                    (words.ONLY_SPACES if values[number] else words.NOT_SET).of(field=self.field),
                 )
         examples = [evidence.streams[self.topic, by].values(self.field)[0] for by in self.by]
         return f'It says {show(examples)}.'

@@ -5,20 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from labkit.exercises import expect
-from labkit.exercises.clauses.base import Clause, Evidence
+from labkit.exercises import expect, words
+from labkit.exercises.clauses.base import Evidence, GraphClause
 from labkit.exercises.expect import spinning
+from labkit.exercises.scope import NODE, SUBSCRIPTION, Role
 from labkit.exercises.verdict import Fail
 
 __all__ = ['Named', 'NobodyElse', 'Runs', 'Subscribes']
 
 
 @dataclass(frozen=True)
-class Named(Clause):
+class Named(GraphClause):
     """There is one node of a name.
 
     Attributes:
-        node: Full name of the node. It is in `nodes` of the exercise, too.
+        node: Full name of the node.
     """
 
     node: str
@@ -28,18 +29,23 @@ class Named(Clause):
         """What is asked for."""
         return f'the name of the node is `{self.node.lstrip("/")}`'
 
+    @property
+    def roles(self) -> dict[Role, str]:
+        """There is such a node."""
+        return {(NODE, self.node): ''}
+
     def find(self, evidence: Evidence) -> None:
         """Look for the node."""
         expect.node(evidence.probe, self.node)
 
 
 @dataclass(frozen=True)
-class Subscribes(Clause):
+class Subscribes(GraphClause):
     """A node subscribes to a topic.
 
     Attributes:
-        topic: Full name of the topic. Its type is in the `subscribes` of the exercise.
-        msg_type: Name of the type, for the words of the task.
+        topic: Full name of the topic.
+        msg_type: Name of the type.
         by: Full name of the node; any node if empty.
     """
 
@@ -52,13 +58,18 @@ class Subscribes(Clause):
         """What is asked for."""
         return f'subscribe to `{self.topic}` (`{self.msg_type}`)'
 
+    @property
+    def roles(self) -> dict[Role, str]:
+        """It subscribes."""
+        return {(SUBSCRIPTION, self.topic): self.msg_type}
+
     def find(self, evidence: Evidence) -> None:
         """Look for the subscription."""
         evidence.subscription(self.topic, self.by)
 
 
 @dataclass(frozen=True)
-class NobodyElse(Clause):
+class NobodyElse(GraphClause):
     """On a topic that others may share, only these nodes publish.
 
     Attributes:
@@ -82,14 +93,13 @@ class NobodyElse(Clause):
             raise Fail(
                 f'publishers on {self.topic}: {", ".join(self.nodes)}, and no other',
                 f'{", ".join(others)} publishes there, too',
-                why='Who listens hears all of them, and cannot tell them apart.',
-                todo=f'End what does not belong here: lab.remove({others[0]!r})',
+                words.OTHERS_SHARE.of(other=others[0]),
             )
         return ''
 
 
 @dataclass(frozen=True)
-class Runs(Clause):
+class Runs(GraphClause):
     """Somebody runs the callbacks of a node, and none of them holds the others up.
 
     Attributes:
@@ -112,14 +122,12 @@ class Runs(Clause):
         probe = evidence.probe
         name = self.node or evidence.publisher(self.topic).node
         spinning.hanging()
+        here = probe.node_object(name) is not None
         if not spinning.runs(probe, name):
             raise Fail(
                 f'{name} runs: its callbacks are called when their time has come',
                 f'{name} is there, but it is not spun',
-                why='A node that is made is in the graph, but it does nothing before somebody '
-                'spins it.'
-                if probe.node_object(name) is not None
-                else 'Its program does something else, such as a loop that waits. So it neither '
-                'takes messages nor answers questions.',
-                todo=spinning.how_to_spin(probe, name),
+                (words.NOT_SPUN if here else words.PROGRAM_WAITS).of(
+                    spin=spinning.how_to_spin(probe, name)
+                ),
             )

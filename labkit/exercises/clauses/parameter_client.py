@@ -6,7 +6,9 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from labkit import stop_button
 from labkit.errors import LabError
+from labkit.exercises import words
 from labkit.exercises.expect.spinning import hanging
 from labkit.exercises.verdict import Fail
 
@@ -36,7 +38,7 @@ def set_values(probe: Probe, node: str, values: Values) -> str | None:
         LearnerError: One of its callbacks has raised.
         Fail: It does not answer.
     """
-    from labkit.background.parameters import set_parameters, set_parameters_atomically
+    from labkit.asking.parameters import set_parameters, set_parameters_atomically
 
     with asked(probe, node):
         if len(values) > 1:
@@ -48,7 +50,7 @@ def set_values(probe: Probe, node: str, values: Values) -> str | None:
 
 def get_values(probe: Probe, node: str, names: list[str]) -> dict[str, Any]:
     """Return values of a node's parameters by their names; raises as `set_values` does."""
-    from labkit.background.parameters import get_parameters
+    from labkit.asking.parameters import get_parameters
     from labkit.rosgraph.parameters import python_value
 
     with asked(probe, node):
@@ -63,8 +65,9 @@ def kept(probe: Probe, node: str, names: list[str]) -> Iterator[Values]:
     try:
         yield before
     finally:
-        if before:
-            set_values(probe, node, before)
+        with stop_button.undoing():
+            if before:
+                set_values(probe, node, before)
 
 
 @contextmanager
@@ -83,6 +86,5 @@ def asked(probe: Probe, node: str) -> Iterator[None]:
         raise Fail(
             f'{node} answers questions about its parameters',
             error.message,
-            why='A callback for parameters has not returned, or it has raised an error.',
-            todo='Let it return soon. Look at the output of the node, too.',
+            words.PARAMETERS_SILENT,
         ) from None

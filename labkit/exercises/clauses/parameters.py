@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from labkit.errors import nearest
-from labkit.exercises import expect
-from labkit.exercises.clauses.base import Clause, Evidence, Stream
+from labkit.exercises import expect, words
+from labkit.exercises.clauses.base import Evidence, GraphClause, Stream
 from labkit.exercises.clauses.parameter_client import Values, asked, get_values, kept, set_values
 from labkit.exercises.clauses.publishing import Publishes
 from labkit.exercises.expect import spinning
@@ -25,19 +26,17 @@ __all__ = ['Follows', 'HasParameter', 'Refuses']
 MESSAGES, LEAST_SEC = 12, 3.0
 # Fewer than that do not tell a rate.
 FEW = 6
+# A node may begin anew with a message when a parameter changes.
+AT_ONCE = 1
 # What comes so slowly is looked at in steps of this rate, Hz.
 SLOW_HZ = 2.0
 # What rclpy says where a callback does not return a SetParametersResult (rclpy/node.py).
 INVALID = 'Callback returned an invalid type'
-LOOK_ONLY = (
-    'Let the callback that may refuse only look. What follows a change belongs into '
-    'add_post_set_parameters_callback().'
-)
 _TYPES = {bool: 'boolean', int: 'integer', float: 'double', str: 'string'}
 
 
 @dataclass(frozen=True)
-class HasParameter(Clause):
+class HasParameter(GraphClause):
     """A node has declared a parameter: of a type, perhaps with limits, with a description.
 
     Attributes:
@@ -61,7 +60,7 @@ class HasParameter(Clause):
 
     def find(self, evidence: Evidence) -> None:
         """Ask the node for the parameter and its descriptor."""
-        from labkit.background.parameters import describe_parameters, parameter_names
+        from labkit.asking.parameters import describe_parameters, parameter_names
         from labkit.rosgraph.parameters import type_word
 
         probe, node = evidence.probe, self.node
@@ -84,17 +83,13 @@ class HasParameter(Clause):
             seen='a parameter of any type: dynamic_typing is on'
             if found.dynamic_typing
             else f'it is of type {type_word(found.type)}',
-            why='The type of a parameter is that of the value it is declared with: 2 is an '
-            'integer, 2.0 a double.',
-            todo=f'Declare it with a value of type {self.kind.__name__}.',
+            mistake=words.PARAMETER_TYPE.of(kind=self.kind.__name__),
         )
         expect.that(
             found.description.strip(),
             expected=f'{self.name} with a description',
             seen='a descriptor without a description',
-            why='Whoever asks for the parameter later does not know what it stands for, nor its '
-            'unit.',
-            todo="Pass ParameterDescriptor(description='...') to declare_parameter().",
+            mistake=words.NO_DESCRIPTION,
         )
         if self.limits is not None:
             self._judge_limits([*found.floating_point_range, *found.integer_range])
@@ -104,10 +99,9 @@ class HasParameter(Clause):
         raise Fail(
             f'{self.node} has the parameter {self.name}',
             f'it has {", ".join(names)}',
-            why=f'{near} is not {self.name}: names must be equal to the last letter.'
-            if near
-            else 'A node has the parameters that it declares, and no others.',
-            todo=f'In __init__: self.declare_parameter({self.name!r}, ...)',
+            (words.PARAMETER_NAME if near else words.PARAMETER_MISSING).of(
+                near=near, name=self.name
+            ),
         )
 
     def _judge_limits(self, found: Sequence[Any]) -> None:
@@ -117,16 +111,12 @@ class HasParameter(Clause):
             seen == wanted,
             expected=f'{self.name} with a range from {wanted[0]} to {wanted[1]}',  # type: ignore[index]
             seen=f'a range from {seen[0]} to {seen[1]}' if seen else 'no range',
-            why=''
-            if seen
-            else 'A range in the descriptor is checked by ROS itself, and others can read it.',
-            todo='Pass it in the ParameterDescriptor: floating_point_range='
-            '[FloatingPointRange(from_value=..., to_value=...)]',
+            mistake=words.OTHER_RANGE if seen else words.NO_RANGE,
         )
 
 
 @dataclass(frozen=True, eq=False)
-class Follows(Clause):
+class Follows(GraphClause):
     """What a node publishes follows its parameters, at once after each change.
 
     Attributes:
@@ -159,9 +149,8 @@ class Follows(Clause):
         """Set the parameters, and look at what is published then."""
         sets = self.draw()
         with kept(evidence.probe, self.node, list(sets[0])) as before:
-            self.look(evidence, before, before)
+            self.look(evidence, before)
             for values in sets:
-                self._set(evidence.probe, values)
                 self.look(evidence, values, before)
                 before = values
         return f'{self.node} follows {_show(sets[0])}, and {len(sets) - 1} more.'
@@ -173,53 +162,70 @@ class Follows(Clause):
                 raise Fail(
                     f'{self.node} takes {_show(values)}',
                     f'it refuses: {complaint}',
-                    why='The callback that is asked before a change has not given back a '
-                    'SetParametersResult. Without "return" a function gives back None.',
-                    todo='End it with: return SetParametersResult(successful=True)',
+                    words.NO_RESULT,
                 )
             raise Fail(
                 f'{self.node} takes {_show(values)}',
                 f'it refuses: {complaint or "without a reason"}',
-                why='These values are allowed, and a node that refuses them can not be used.',
-                todo='Compare what your callback, or the range, allows with the task. A callback '
-                'gets all parameters that are set at once, and the node still has the old values.'
-                if len(values) > 1
-                else 'Compare what your callback, or the range, allows with the task.',
+                words.REFUSES_SET if len(values) > 1 else words.REFUSES_ALLOWED,
             )
 
-    def look(self, evidence: Evidence, values: Values, before: Values) -> None:
+    def look(self, evidence: Evidence, values: Values, before: Values | None = None) -> None:
         """Let time pass, and look at what is published.
 
         Args:
             evidence: What was seen up to now.
-            values: The values that the node has now,
-            before: and those that it had before.
+            values: The values that the node has,
+            before: and those that it has had until now. If given, the others are set first.
 
         Raises:
             Fail: It is not what belongs to them.
         """
-        now = self._seen(evidence, values)
+        now = self._seen(evidence, values, is_new=before is not None)
         try:
             self._fit(now, values)
         except Fail as fail:
             expected = f'with {_show(values)}: {fail.expected}'
-            if before == values or not self._is_as_before(evidence, before):
-                raise Fail(expected, fail.seen, why=fail.why, todo=fail.todo) from None
+            if before is None or not self._is_as_before(evidence, before):
+                raise Fail(
+                    expected, fail.seen, fail.mistake, why=fail.why, todo=fail.todo
+                ) from None
             raise Fail(
                 expected,
                 fail.seen,
-                why='The parameter has changed, and what the node does has not: it has read the '
-                'value once, or its timer still has the old period.',
-                todo='Change what depends on the parameter in a callback: '
-                'self.add_post_set_parameters_callback(self.on_change). Or read the parameter '
-                'anew each time.',
+                words.READ_ONCE,
             ) from None
 
-    def _seen(self, evidence: Evidence, values: Values) -> Evidence:
-        """Let time pass as exactly as the rate needs it that belongs to these values."""
+    def _seen(self, evidence: Evidence, values: Values, *, is_new: bool = False) -> Evidence:
+        """Let time pass as exactly as the rate needs it that belongs to these values.
+
+        New ones are set while time stands still. So what comes then is what the change sets off.
+
+        Raises:
+            Fail: That is more than one message.
+        """
         rate = self._rate(evidence.probe, values)
         topics, seconds = {self.topic: rate.msg_type}, max(LEAST_SEC, MESSAGES / rate.hz)
-        life = evidence.live(topics, seconds, [rate], nodes=[self.node])
+        changed = math.inf
+
+        def change() -> None:
+            nonlocal changed
+            changed = time.time()
+            self._set(evidence.probe, values)
+
+        before = change if is_new else None
+        life = evidence.live(topics, seconds, [rate], nodes=[self.node], before=before)
+        said = life.on(self.topic, before=True)
+        at_once = sum(each.at < 0 and each.stamp >= changed for each in said)
+        # The time of a process that does not follow goes on meanwhile.
+        stood = evidence.probe.node_object(self.node) is not None or self.node in life.remote
+        if at_once > AT_ONCE and stood:
+            raise Fail(
+                f'with {_show(values)}: {AT_ONCE} message at most on {self.topic} in the moment '
+                'of the change',
+                f'{at_once} messages in that moment',
+                words.BURSTS,
+            )
         if len(life.on(self.topic)) < FEW:
             # So much too slow that the reason shows only later, such as a rate for a period.
             seconds, slow = max(LIFE_SEC, FEW * rate.hz), replace(rate, hz=min(rate.hz, SLOW_HZ))
@@ -230,7 +236,7 @@ class Follows(Clause):
 
     def _rate(self, probe: Probe, values: Values) -> Publishes:
         msg_type = probe.scope.publishes[self.topic]
-        return Publishes(self.topic, self.hz(values), msg_type, by=self.node)
+        return Publishes(self.topic, self.hz(values), msg_type, by=self.node, from_start=False)
 
     def _fit(self, evidence: Evidence, values: Values) -> None:
         self._rate(evidence.probe, values).judge(evidence)
@@ -246,7 +252,7 @@ class Follows(Clause):
 
 
 @dataclass(frozen=True, eq=False)
-class Refuses(Clause):
+class Refuses(GraphClause):
     """A node refuses values of its parameters, says why, and keeps what it had.
 
     Attributes:
@@ -277,7 +283,7 @@ class Refuses(Clause):
                 complaint is None,
                 expected=f'{node} takes {_show(keeps)}',
                 seen=f'it refuses: {complaint or "without a reason"}',
-                todo='Compare what your callback, or the range, allows with the task.',
+                mistake=words.REFUSES_ALLOWED,
             )
             taken = [values for values in sets if not self._is_refused(probe, keeps, values)]
             self._judge_taken(keeps, taken, sets)
@@ -295,24 +301,20 @@ class Refuses(Clause):
             complaint != INVALID,
             expected=f'a reason why {self.node} refuses {tried}',
             seen=f'what rclpy says: {complaint}',
-            why='The callback has not given back a SetParametersResult. Without "return" a '
-            'function gives back None.',
-            todo="End it with: return SetParametersResult(successful=False, reason='...')",
+            mistake=words.NO_RESULT,
         )
         expect.that(
             complaint,
             expected=f'a reason why {self.node} refuses {tried}',
             seen='no reason',
-            why='Whoever has set the value knows now that it is wrong, and not why.',
-            todo="Say it: SetParametersResult(successful=False, reason='...')",
+            mistake=words.NO_REASON,
         )
         after = get_values(probe, self.node, list(keeps))
         expect.that(
             after == keeps,
             expected=f'{self.node} still has {_show(keeps)}',
             seen=f'it has {_show(after)}',
-            why=f'It has refused {_show(values)}, and changed all the same.',
-            todo=LOOK_ONLY,
+            mistake=words.CHANGES_ANYWAY.of(values=_show(values)),
         )
         return True
 
@@ -322,33 +324,27 @@ class Refuses(Clause):
             return
         # That nan is a number of its own kind is the reason only where nothing else is taken.
         plain = [values for values in taken if not any(map(_is_nan, values.values()))]
-        why = 'Some values are refused, and this one is not.'
-        if len(keeps) > 1:
-            why += ' What is allowed depends on both parameters, and each of them may change.'
+        mistake = words.TAKES_TOGETHER if len(keeps) > 1 else words.TAKES_SOME
         if len(taken) == len(sets):
-            why = 'Nothing looks at the value before the node uses it.'
+            mistake = words.TAKES_ALL
         elif not plain:
-            why = 'A comparison with nan is always False. So "if value > limit" lets nan pass.'
+            mistake = words.TAKES_NAN
         raise Fail(
             f'{self.node} refuses {_show((plain or taken)[0])}, while it has {_show(keeps)}',
             'it takes it',
-            why=why,
-            todo='Limit it by a range in the descriptor, or in a callback that returns '
-            "SetParametersResult(successful=False, reason='...'): "
-            'self.add_on_set_parameters_callback(self.on_set).',
+            mistake,
         )
 
     def _look(self, evidence: Evidence, keeps: Values) -> None:
         if self.follows is None:
             return
         try:
-            self.follows.look(evidence, keeps, keeps)
+            self.follows.look(evidence, keeps)
         except Fail as fail:
             raise Fail(
                 f'{fail.expected}, after it has refused other values',
                 fail.seen,
-                why='The node has refused a value, and uses it all the same.',
-                todo=LOOK_ONLY,
+                words.USES_ANYWAY,
             ) from None
 
 

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from labkit.exercises import expect
+from labkit.exercises import expect, words
 from labkit.exercises.callbacks import is_given
-from labkit.exercises.clauses.base import Clause, Evidence
+from labkit.exercises.clauses.base import Evidence, GraphClause
 from labkit.exercises.expect.values import show
 from labkit.exercises.verdict import Fail, NotAttempted
 
@@ -20,10 +20,12 @@ __all__ = ['Latched', 'Matches']
 
 # How long what was kept may take to arrive from another process, s.
 KEPT_SEC = 5.0
+# A policy that lasts longer than this has no end, s.
+FOR_EVER_SEC = 1e9
 
 
 @dataclass(frozen=True, eq=False)
-class Matches(Clause):
+class Matches(GraphClause):
     """The learner's end of a topic matches the end of a node that the lesson gives.
 
     Attributes:
@@ -80,13 +82,13 @@ class Matches(Clause):
         probe = evidence.probe
         ends = self._ends(probe)
         for end in ends:
-            if not is_given(end.node, probe.scope) or not self.is_as_given(end.qos):
+            is_given_here = is_given(end.node, probe.scope)
+            if not is_given_here or not self.is_as_given(end.qos):
+                what = 'with another profile' if is_given_here else 'which the lesson has not made'
                 raise Fail(
                     f'{self.node} as the lesson has made it',
-                    f'another node of that name, {probe.place(end)}',
-                    why='On a robot that end belongs to somebody else: you can not change it.',
-                    todo='End it, and change your own node. If that of the lesson is gone: '
-                    f'{self.start}',
+                    f'a node {self.node} {what}, {probe.place(end)}',
+                    words.GIVEN_IS_GONE.of(start=self.start),
                 )
         return ends
 
@@ -98,15 +100,15 @@ class Matches(Clause):
             raise Fail(
                 f'{subscription.node} hears {publisher.node} on {self.topic}',
                 f'the two do not match: {reason[:1].lower()}{reason[1:]}',
-                why='A publisher offers, and a subscription asks. Where it asks for more than is '
-                'offered, no message passes.',
-                todo=f'Look at both profiles with %ros2 topic info --verbose {self.topic}, and '
-                f'change that of {mine.node}.',
+                words.OFFER_AND_REQUEST.of(
+                    todo=f'Look at both profiles with %ros2 topic info --verbose {self.topic}, '
+                    f'and change that of {mine.node}.'
+                ),
             )
 
 
 @dataclass(frozen=True)
-class Latched(Clause):
+class Latched(GraphClause):
     """What was published last is kept for subscriptions that come later, and nothing older.
 
     A clause on what is published stands before this one.
@@ -131,6 +133,13 @@ class Latched(Clause):
         source = evidence.publisher(self.topic)
         expect.qos(source, durability='transient_local')
         expect.qos(source, reliability='reliable')
+        kept = source.qos.lifespan.nanoseconds * 1e-9
+        expect.that(
+            kept >= FOR_EVER_SEC,
+            expected=f'{self.topic} without a lifespan',
+            seen=f'{source.node} offers a lifespan of {kept:g} s',
+            mistake=words.KEPT_FOR_A_WHILE.of(seconds=kept),
+        )
 
     def judge(self, evidence: Evidence) -> str:
         """Subscribe late, and look at what comes."""
@@ -144,19 +153,16 @@ class Latched(Clause):
             lambda: any(sample.number >= max(numbers) for sample in watch.samples), KEPT_SEC
         )
         came = watch.values(self.field)
-        if came[:1] == [last]:
-            return f'Who comes late hears {show([last])}, and nothing older.'
+        if came[:1] == [last] and watch.samples[0].number >= max(numbers):
+            return f'A late subscriber gets {show([last])} and nothing older.'
         if not came:
             raise Fail(
                 f'{self.field} = {show([last])} for a subscription that comes late',
                 'nothing',
-                why='What was published is not kept.',
-                todo='Keep one publisher as long as the node lives: self.publisher.',
+                words.NOT_KEPT,
             )
         raise Fail(
             f'the newest message only, {self.field} = {show([last])}',
             f'{len(came)} messages: {self.field} = {show(came)}',
-            why='A publisher with durability transient local keeps as many messages as its depth '
-            'says. The older ones are heard first.',
-            todo='Give the profile of the publisher depth=1.',
+            words.KEPT_TOO_MANY,
         )

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from labkit.exercises import expect
-from labkit.exercises.clauses.base import Clause, Evidence
+from labkit.exercises import expect, words
+from labkit.exercises.clauses.base import Evidence, GraphClause
+from labkit.exercises.life import LIFE_SEC
+from labkit.exercises.scope import SERVICE, Role
 from labkit.exercises.verdict import Fail
 
 if TYPE_CHECKING:
@@ -24,16 +26,18 @@ PATIENCE_SEC = 1.0
 
 
 @dataclass(frozen=True)
-class Serves(Clause):
+class Serves(GraphClause):
     """A node offers a service or an action.
 
     Attributes:
-        service: Full name of the service. Its type is in the `serves` of the exercise.
-        srv_type: Name of the type, for the words of the task.
+        service: Full name of the service.
+        srv_type: Name of the type.
+        by: Full name of the node; any node if empty.
     """
 
     service: str
     srv_type: str
+    by: str = ''
 
     @property
     def text(self) -> str:
@@ -41,9 +45,20 @@ class Serves(Clause):
         what = 'serve the action' if '/action/' in self.srv_type else 'serve'
         return f'{what} `{self.service}` (`{self.srv_type}`)'
 
+    @property
+    def roles(self) -> dict[Role, str]:
+        """It serves."""
+        return {(SERVICE, self.service): self.srv_type}
+
     def find(self, evidence: Evidence) -> None:
         """Look for the server, and whether its node is spun."""
-        expect.server(evidence.probe, self.service)
+        found = expect.server(evidence.probe, self.service)
+        expect.that(
+            self.by in ('', found.node),
+            expected=f'{self.by} serves {self.service}',
+            seen=f'{found.node} serves it',
+            mistake=words.OTHER_SERVER.of(service=self.service, node=self.by),
+        )
 
 
 @dataclass(frozen=True)
@@ -60,7 +75,7 @@ class Call:
 
 
 @dataclass(frozen=True, eq=False)
-class Responds(Clause):
+class Responds(GraphClause):
     """A service answers every call, also two at once, and answers rightly.
 
     Attributes:
@@ -98,11 +113,20 @@ class Responds(Clause):
             probe.wait(lambda: all(client.service_is_ready() for client in clients), READY_SEC)
             for group in groups:
                 calls += self._ask(probe, clients, srv_type, group)
+                self._let_time_pass(evidence, LIFE_SEC / len(groups))
         finally:
             for client in clients:
                 node.destroy_client(client)
         self.rule(calls)
         return f'{self.service} has answered {len(calls)} calls.'
+
+    def _let_time_pass(self, evidence: Evidence, seconds: float) -> None:
+        """Let the server's own time pass between two calls; in another process it is not moved."""
+        ends = evidence.probe.all_servers()
+        server = next((end.node for end in ends if end.service == self.service), '')
+        if evidence.probe.node_object(server) is not None:
+            life = evidence.live({}, seconds, [self], nodes=[server])
+            replace(evidence, life=life).refuse_trouble(())
 
     def _ask(
         self, probe: Probe, clients: Sequence[Any], srv_type: Any, group: Sequence[Any]
@@ -130,16 +154,11 @@ class Responds(Clause):
     ) -> NoReturn:
         expect.hanging()
         names = {server.node for server in probe.all_servers() if server.service == self.service}
-        why = 'The callback of the service has not returned, or it has raised an error.'
-        todo = 'Let the callback fill in the response, return it, and wait for nothing.'
+        mistake = words.SOME_UNANSWERED if count else words.SERVICE_SILENT
         if not names:
-            why = f'The server of {self.service} has ended meanwhile.'
-            todo = 'Look at the output of its program: a callback may have raised an error.'
-        elif count:
-            why = 'Of several requests at once, not all are answered.'
+            mistake = words.SERVER_ENDED.of(service=self.service)
         raise Fail(
             f'a response of {self.service} to each of {len(group)} requests',
             f'{count} responses in {seconds:.0f} s',
-            why=why,
-            todo=todo,
+            mistake,
         )

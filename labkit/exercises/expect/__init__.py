@@ -7,32 +7,28 @@ expected, what was seen, the misconception and the next step, or `NotAttempted`.
 from __future__ import annotations
 
 from labkit.exercises.expect.endpoints import alone, node, publisher, qos, subscription
-from labkit.exercises.expect.services import server
-from labkit.exercises.expect.spinning import hanging, spun
-from labkit.exercises.expect.timing import describe_rate, ends_with_node, messages, rate
-from labkit.exercises.expect.values import (
-    each,
-    equal,
-    first,
-    show,
-    steps,
-    text_trouble,
-)
+from labkit.exercises.expect.services import asks, only_given, server
+from labkit.exercises.expect.spinning import hanging, overloaded, spun
+from labkit.exercises.expect.timing import ends_with_node, messages
+from labkit.exercises.expect.values import apart, digits, each, first, show, steps, text_trouble
+from labkit.exercises.mistakes import Mistake
 from labkit.exercises.verdict import Fail
 
 __all__ = [
     'alone',
-    'describe_rate',
+    'apart',
+    'asks',
+    'digits',
     'each',
     'ends_with_node',
-    'equal',
     'first',
     'hanging',
     'messages',
     'node',
+    'only_given',
+    'overloaded',
     'publisher',
     'qos',
-    'rate',
     'server',
     'show',
     'spun',
@@ -43,18 +39,27 @@ __all__ = [
 ]
 
 
-def that(condition: object, *, expected: str, seen: str, why: str = '', todo: str = '') -> None:
+def that(
+    condition: object,
+    *,
+    expected: str,
+    seen: str,
+    mistake: Mistake | None = None,
+    why: str = '',
+    todo: str = '',
+) -> None:
     """Expect anything else.
 
     Args:
         condition: Whether it is so.
         expected: What should have been observed.
         seen: What was observed.
-        why: The likely misconception.
+        mistake: The likely misconception.
+        why: The same in a sentence of its own.
         todo: The next step.
 
     Raises:
         Fail: It is not so.
     """
     if not condition:
-        raise Fail(expected, seen, why=why, todo=todo)
+        raise Fail(expected, seen, mistake, why=why, todo=todo)

@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NoReturn
 
 from labkit.errors import nearest
+from labkit.exercises import words
+from labkit.exercises.mistakes import Mistake
 from labkit.exercises.probe import Probe
 from labkit.exercises.scope import PUBLISHER, SUBSCRIPTION
 from labkit.exercises.verdict import Fail, NotAttempted
@@ -85,17 +87,14 @@ def node(probe: Probe, name: str) -> str:
         raise Fail(
             f'a node called {name}',
             f'{_list(names) or "no node"}',
-            why=name_trouble(name, other) if other else '',
-            todo=f'The name is what super().__init__() gets: {name.rsplit("/", 1)[-1]!r}.',
+            _named(name_trouble(name, other) if other else None, words.NODE_NAME, name),
         )
     copies = probe.node_names().count(name)
     if copies > 1:
         raise Fail(
             f'one node called {name}',
             f'{copies} nodes of that name',
-            why='Two copies of the node run at once. Each does its work, so everything happens '
-            'twice.',
-            todo='End one of them: lab.remove(...), or stop the other process or notebook.',
+            words.TWO_NODES,
         )
     return name
 
@@ -118,29 +117,8 @@ def alone(probe: Probe, topic: str) -> None:
     expected = f'one publisher on {topic}'
     _explain_echo(probe, expected, found)
     if len(nodes) == 1 and len(set(places)) == 1 and probe.node_names().count(found[0].node) == 1:
-        raise Fail(
-            expected,
-            seen,
-            why=f'{found[0].node} makes a publisher again and again: create_publisher() is called '
-            'in a callback or in a loop.',
-            todo='Make the publisher once, in __init__, keep it as self.publisher, and only '
-            'publish in the callback.',
-        )
-    if len(nodes) == 1:
-        raise Fail(
-            expected,
-            seen,
-            why='Two copies of the node run at once, and their messages mix on the topic.',
-            todo='End one of them: stop the other process, or shut the other notebook down.',
-        )
-    raise Fail(
-        expected,
-        seen,
-        why='Another node publishes on the same topic. A subscriber hears both, and cannot tell '
-        'them apart.',
-        todo="End the one that does not belong here, such as lab.remove('name'); "
-        'a node of another notebook ends there.',
-    )
+        raise Fail(expected, seen, words.MADE_AGAIN.of(node=found[0].node))
+    raise Fail(expected, seen, words.TWO_COPIES if len(nodes) == 1 else words.SECOND_PUBLISHER)
 
 
 def qos(endpoint: Endpoint, *, reliability: str = '', durability: str = '') -> None:
@@ -157,14 +135,12 @@ def qos(endpoint: Endpoint, *, reliability: str = '', durability: str = '') -> N
     for policy, wanted in (('reliability', reliability), ('durability', durability)):
         seen = getattr(endpoint.qos, policy).name.lower()
         if wanted and seen != wanted:
+            default = seen in ('reliable', 'volatile')
+            mistake = words.DEFAULT_QOS if default else words.OTHER_QOS
             raise Fail(
                 f'{endpoint.topic} with {policy} {wanted}',
                 f'{endpoint.node} uses {policy} {seen}',
-                why='A number alone as the last argument is the depth; everything else is then '
-                'the default: reliable and volatile.'
-                if seen in ('reliable', 'volatile')
-                else '',
-                todo=f'Pass a QoSProfile with {policy}={policy.title()}Policy.{wanted.upper()}.',
+                mistake.of(policy=policy, name=policy.title(), wanted=wanted.upper()),
             )
 
 
@@ -174,31 +150,34 @@ def _find(
     ask = probe.publishers if kind == PUBLISHER else probe.subscriptions
     msg_type = probe.scope.msg_type((kind, topic))
 
-    def matching() -> list[Endpoint]:
-        return [endpoint for endpoint in ask(topic) if by in ('', endpoint.node)]
+    found: list[Endpoint] = []  # kept, for it may end at any time
+
+    def is_there() -> object:
+        found[:] = [endpoint for endpoint in ask(topic) if by in ('', endpoint.node)]
+        return found and probe.attempt()
 
     # A node of an earlier exercise may be there already, and this one's still on its way.
-    if not probe.wait_to_appear(lambda: matching() and probe.attempt()):
+    if not probe.wait_to_appear(is_there):
         _explain_missing(probe, kind, topic, msg_type, by)
-    for endpoint in matching():
+    for endpoint in found:
         if endpoint.msg_type != msg_type:
             _refuse_type(endpoint, kind, msg_type)
         if kind == SUBSCRIPTION:
             _refuse_qos(endpoint, deadline_sec)
         elif topic in probe.scope.reliable:
             _refuse_best_effort(endpoint)
-    return matching()[0]
+    return found[0]
 
 
 def _refuse_type(endpoint: Endpoint, kind: str, msg_type: str) -> NoReturn:
-    raise Fail(
+    fail = Fail(
         f'{endpoint.topic} with messages of type {msg_type}',
         f'{endpoint.node} {_KINDS[kind][1]} {endpoint.msg_type} there',
-        why='A topic carries one type of message. Two sides with different types never hear each '
-        'other, and nobody says so.',
-        todo=f'Import {msg_type.rsplit("/", 1)[-1]} from {msg_type.split("/")[0]}.msg and use it '
-        'for this topic.',
+        words.OTHER_TYPE.of(package=msg_type.split('/')[0], msg_type=_bare(msg_type)),
     )
+    # Whether a callback that has the wrong type to fill has raised by now is luck.
+    fail.made_so = True
+    raise fail
 
 
 def _refuse_qos(subscription: Endpoint, deadline_sec: float) -> None:
@@ -222,34 +201,29 @@ def _refuse_qos(subscription: Endpoint, deadline_sec: float) -> None:
             f'a subscription to {subscription.topic} that matches what is published there',
             f'the QoS profile of {subscription.node} asks for more: '
             f'{reason[:1].lower()}{reason[1:]}',
-            why='A publisher offers, and a subscription asks. Where it asks for more than is '
-            'offered, no message passes.',
-            todo='Ask for less in the profile of the subscription.',
+            words.OFFER_AND_REQUEST.of(todo='Ask for less in the profile of the subscription.'),
         )
     if reason:
         raise Fail(
             f'a subscription to {subscription.topic} that hears a usual publisher',
             f'the QoS profile of {subscription.node} does not match that of a usual publisher: '
             f'{reason}',
-            why='No message goes from one side to the other where QoS profiles do not match, and '
-            'nobody says so.',
-            todo='Ask for less in the profile of the subscription. A number alone, the depth, '
-            'asks for what is usual.',
+            words.UNUSUAL_QOS,
         )
 
 
 def _refuse_best_effort(publisher: Endpoint) -> None:
-    """Raise Fail if who asks for reliable delivery hears nothing of a publisher."""
+    """Raise Fail if a subscription that asks for reliable delivery would hear nothing."""
     from rclpy.qos import ReliabilityPolicy
 
     if publisher.qos.reliability == ReliabilityPolicy.BEST_EFFORT:
         raise Fail(
             f'a publisher on {publisher.topic} that a usual subscription hears, as the robot has '
             'one',
-            f'{publisher.node} offers best effort, and who listens there asks for reliable',
-            why='A publisher offers, and a subscription asks. Where it asks for more than is '
-            'offered, no message passes.',
-            todo='Offer reliable delivery. A number alone, the depth, offers it.',
+            f'{publisher.node} offers best effort, and the subscription there asks for reliable',
+            words.OFFER_AND_REQUEST.of(
+                todo='Offer reliable delivery. A number alone, the depth, offers it.'
+            ),
         )
 
 
@@ -269,8 +243,7 @@ def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str
             f'{other.node} {_KINDS[kind][1]} on {meant}'
             if kind == PUBLISHER
             else f'{other.node} {_KINDS[kind][1]} to {meant}',
-            why=name_trouble(topic, meant),
-            todo=f'Write the topic as {topic!r}.',
+            name_trouble(topic, meant).then(f'Write the topic as {topic!r}.'),
         )
     mine = [other for other in others if other.node in nodes]
     if kind == PUBLISHER:
@@ -280,9 +253,7 @@ def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str
         raise Fail(
             expected,
             f'{strange[0].node} {_KINDS[kind][1]} on {strange[0].topic}',
-            why='The node works with a topic of another name, so nobody who looks for '
-            f'{topic} finds it.',
-            todo=f'Write the topic as {topic!r}.',
+            words.STRANGE_TOPIC.of(topic=topic),
         )
     seen = _list([f'{other.node} {_KINDS[kind][1]} {other.topic}' for other in mine])
     names = probe.node_names()
@@ -291,15 +262,12 @@ def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str
         raise Fail(
             expected,
             seen or f'{_list(names)}, and no node called {by}',
-            why=name_trouble(by, near) if near else f'There is no node called {by}.',
-            todo=f'The name is what super().__init__() gets: {by.rsplit("/", 1)[-1]!r}. '
-            'Each node has to be made, and handed over with lab.spin.',
+            _named(name_trouble(by, near) if near else None, words.NO_NODE, by),
         )
     raise Fail(
         expected,
         seen or f'{_list(sorted(nodes))} without any {kind}',
-        why=f'create_{kind}() for this topic has not been called, or not yet.',
-        todo=f'Call it in __init__ with {msg_type.rsplit("/", 1)[-1]} and {topic!r}.',
+        words.NOT_MADE.of(kind=kind, msg_type=_bare(msg_type), topic=topic),
     )
 
 
@@ -312,23 +280,32 @@ def _explain_echo(probe: Probe, expected: str, publishers: Sequence[Endpoint]) -
             raise Fail(
                 expected,
                 f'{other.node} publishes on {other.topic}, the topic that it subscribes to',
-                why='The node hears what it says itself, answers that too, and so on for ever.',
-                todo='Publish on a topic of its own.',
+                words.HEARS_ITSELF,
             )
 
 
-def name_trouble(wanted: str, seen: str) -> str:
-    """Say how a name differs from the one that is asked for."""
+def name_trouble(wanted: str, seen: str) -> Mistake:
+    """Return how a name differs from the one that is asked for."""
     if wanted.lower() == seen.lower():
-        return f'Capital and small letters differ in names: {seen} and {wanted} are two names.'
-    if wanted.rsplit('/', 1)[-1] == seen.rsplit('/', 1)[-1]:
-        return (
-            'The last part is right, but it lies in another namespace: names must be equal from '
-            'the first slash to the last letter. A "~" puts the name of the node before it. '
-        ).strip()
-    if wanted.lower().replace('_', '') == seen.lower().replace('_', ''):
-        return 'The names differ in an underscore; names must be equal to the last character.'
-    return f'{seen} is not {wanted}: names must be equal to the last letter. A slip of the pen?'
+        found = words.CAPITALS
+    elif wanted.rsplit('/', 1)[-1] == seen.rsplit('/', 1)[-1]:
+        found = words.NAMESPACE
+    elif wanted.lower().replace('_', '') == seen.lower().replace('_', ''):
+        found = words.UNDERSCORE
+    else:
+        found = words.OTHER_NAME
+    return found.of(seen=seen, wanted=wanted)
+
+
+def _named(found: Mistake | None, usual: Mistake, name: str) -> Mistake:
+    """Return what is wrong with the name of a node, with what to do about it."""
+    usual = usual.of(node=name, bare=_bare(name))
+    return usual if found is None else found.then(usual.step)
+
+
+def _bare(name: str) -> str:
+    """Return the last part of the name of a node or a type."""
+    return name.rsplit('/', 1)[-1]
 
 
 def _list(names: Sequence[str]) -> str:

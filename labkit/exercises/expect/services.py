@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NoReturn
 
 from labkit.errors import nearest
+from labkit.exercises import words
 from labkit.exercises.expect.endpoints import name_trouble
 from labkit.exercises.expect.spinning import hanging, how_to_spin, runs
 from labkit.exercises.probe import Probe
@@ -14,7 +15,7 @@ from labkit.exercises.verdict import Fail, NotAttempted
 if TYPE_CHECKING:
     from labkit.rosgraph.servers import Server
 
-__all__ = ['server']
+__all__ = ['asks', 'only_given', 'server']
 
 # How long a server that has ended may still be counted, s.
 GONE_SEC = 1.0
@@ -39,16 +40,20 @@ def server(probe: Probe, service: str) -> Server:
     def matching() -> list[Server]:
         return [other for other in probe.all_servers() if other.service == service]
 
-    if not probe.wait_to_appear(matching):
+    seen: list[Server] = []  # kept, for it may end at any time
+
+    def is_there() -> list[Server]:
+        seen[:] = matching()
+        return seen
+
+    if not probe.wait_to_appear(is_there):
         _explain_missing(probe, service, srv_type)
-    found = matching()[0]
+    found = seen[0]
     if found.srv_type != srv_type:
         raise Fail(
             f'{service} with the type {srv_type}',
             f'{found.node} offers it with the type {found.srv_type}',
-            why='The type says what a request and a response hold. A client of one type does not '
-            'reach a server of another one.',
-            todo=_how_to_import(srv_type),
+            words.SERVICE_TYPE.of(maker=_maker(srv_type), **_parts(srv_type)),
         )
     counted = f'{service}/_action/send_goal' if found.is_action else service
     if not probe.wait(lambda: probe.node.count_services(counted) < 2, GONE_SEC):
@@ -56,20 +61,49 @@ def server(probe: Probe, service: str) -> Server:
         raise Fail(
             f'one server of {service}',
             f'{probe.node.count_services(counted)} servers: {", ".join(names)}',
-            why='Each of them answers each request. Which response a client gets is a matter of '
-            'luck.',
-            todo='End the one that does not belong here: lab.remove(...), or stop the other '
-            'process or notebook.',
+            words.TWO_SERVERS,
         )
     hanging()
     if not runs(probe, found.node):
         raise Fail(
             f'{found.node} answers requests',
             f'{found.node} is there, but it is not spun',
-            why='Requests come and wait. Nobody calls the callback.',
-            todo=how_to_spin(probe, found.node),
+            words.NOT_ANSWERED.of(spin=how_to_spin(probe, found.node)),
         )
     return found
+
+
+def only_given(probe: Probe, service: str, given: str) -> None:
+    """Raise Fail if a node of the learner's serves what a node of the lesson does.
+
+    Args:
+        probe: The probe of the check.
+        service: Full name of the service or action.
+        given: Full name of the node of the lesson.
+    """
+    found = [other.node for other in probe.all_servers() if other.service == service]
+    if found:
+        raise Fail(
+            f'one server of {service}: {given}',
+            f'{", ".join(found)} serves {service} as well',
+            words.TWO_SERVERS,
+        )
+
+
+def asks(probe: Probe, node: str, service: str) -> None:
+    """Raise Fail if a node has a client for something else, and none for a service or action."""
+    from labkit.rosgraph.listings import ends_of_node
+
+    ends = ends_of_node(probe.node, node)
+    found = [name for name, _ in (*ends.service_clients, *ends.action_clients)]
+    if found and service not in found:
+        raise Fail(
+            f'{node} asks {service}',
+            f'it asks {", ".join(found)}',
+            name_trouble(service, nearest(service, found) or found[0]).then(
+                f'Write the name as {service!r}.'
+            ),
+        )
 
 
 def _explain_missing(probe: Probe, service: str, srv_type: str) -> NoReturn:
@@ -87,14 +121,12 @@ def _explain_missing(probe: Probe, service: str, srv_type: str) -> NoReturn:
         raise Fail(
             expected,
             f'{other.node} serves {name} ({other.srv_type})',
-            why=name_trouble(service, name),
-            todo=f'Write the name as {service!r}.',
+            name_trouble(service, name).then(f'Write the name as {service!r}.'),
         )
     raise Fail(
         expected,
         f'{", ".join(sorted(nodes))} without a service of this name',
-        why=f'{_maker(srv_type)} for it has not been called, or not yet.',
-        todo=f'Call it in __init__ with {srv_type.rsplit("/", 1)[-1]} and {service!r}.',
+        words.NO_SERVER.of(maker=_maker(srv_type), service=service, **_parts(srv_type)),
     )
 
 
@@ -102,6 +134,5 @@ def _maker(srv_type: str) -> str:
     return 'ActionServer()' if '/action/' in srv_type else 'create_service()'
 
 
-def _how_to_import(srv_type: str) -> str:
-    package, kind, name = srv_type.split('/')
-    return f'Import {name} from {package}.{kind} and pass it to {_maker(srv_type)}.'
+def _parts(srv_type: str) -> dict[str, str]:
+    return dict(zip(('package', 'kind', 'name'), srv_type.split('/'), strict=True))

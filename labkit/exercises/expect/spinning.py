@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
+from labkit.exercises import words
 from labkit.exercises.hanging import Hanging, find_hanging
+from labkit.exercises.mistakes import Mistake
 from labkit.exercises.probe import Probe
 from labkit.exercises.verdict import Fail
 
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
 
-__all__ = ['hanging', 'how_to_spin', 'runs', 'spun']
-
-# How long a node of another process may take to answer, if it is spun.
-ANSWER_SEC = 2.5
+__all__ = ['hanging', 'how_to_spin', 'outlasts', 'overloaded', 'runs', 'spun']
 
 
 def hanging(found: Hanging | None = None) -> None:
@@ -31,17 +30,31 @@ def hanging(found: Hanging | None = None) -> None:
         raise Fail(
             'callbacks of this notebook that run',
             f'none of them has run for a while, though some were ready{where}',
-            why='Something keeps them all from running, such as the condition of a wait that does '
-            'not return.',
-            todo='Stop what waits, and check again. If that does not help, restart the kernel.',
+            words.NOTHING_RUNS,
         )
     raise Fail(
         'callbacks that return at once',
         f'the callback {found.callback} of {found.node} is still running{where}',
-        why='While a callback runs, no other one can: no message is taken, no timer ticks. '
-        'A callback that waits or loops holds everything up.',
-        todo='Do one small step in the callback and return. For "again later" use a timer.',
+        words.BLOCKS,
     )
+
+
+def overloaded(found: Hanging) -> NoReturn:
+    """Raise Fail: a callback or a thread needs more time than there is."""
+    who = f'the callback {found.callback} of {found.node}' if found.node else 'a thread'
+    where = f' ({found.line})' if found.line else ''
+    raise Fail(
+        'callbacks and threads that need less time than passes',
+        f'{who} is at work for longer than passes{where}',
+        outlasts(found) or words.OVERLOADED,
+    )
+
+
+def outlasts(found: Hanging | None) -> Mistake | None:
+    """Return what is wrong with a callback that takes longer than the period of its timer."""
+    if found is None or not 0 < found.period < found.took:
+        return None
+    return words.OUTLASTS.of(callback=found.callback, took=found.took, period=found.period)
 
 
 def spun(probe: Probe, endpoint: Endpoint) -> None:
@@ -50,8 +63,7 @@ def spun(probe: Probe, endpoint: Endpoint) -> None:
         raise Fail(
             f'{endpoint.node} takes its messages and calls its callbacks',
             f'{endpoint.node} is there, but it is not spun',
-            why='Messages come and wait in the queue. Nothing takes them out.',
-            todo=how_to_spin(probe, endpoint.node),
+            words.NOT_TAKEN.of(spin=how_to_spin(probe, endpoint.node)),
         )
 
 
@@ -65,16 +77,16 @@ def how_to_spin(probe: Probe, name: str) -> str:
 def runs(probe: Probe, name: str) -> bool:
     """Tell whether somebody runs the callbacks of a node.
 
-    A node of another process is asked a question. One without parameter services can't be asked,
-    and counts as spun.
+    A node of another process is asked a question, and has until the check's time is over to
+    answer. One without parameter services can't be asked, and counts as spun.
     """
     node = probe.node_object(name)
     if node is not None:
         return node.executor is not None
-    from labkit.background.patience import answer_sec
-    from labkit.background.service_calls import wait_until_spun
+    from labkit.asking.service_calls import wait_until_spun
 
     service, asker = f'{name}/list_parameters', probe.spun_node
     # Services come into the graph after the name of their node.
     found = probe.wait_to_appear(lambda: service in dict(asker.get_service_names_and_types()))
-    return not found or wait_until_spun(asker, name, answer_sec(ANSWER_SEC))
+    with probe.uncounted():
+        return not found or wait_until_spun(asker, name, probe.time_left)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from labkit.exercises import Lesson
+from labkit.lessons._robot import ROBOT_TOPICS
 from labkit.lessons.bags.distance import distance
 from labkit.lessons.bags.half_speed import half_speed
 from labkit.lessons.bags.one_topic import one_topic
-from labkit.lessons.bags.quiz import QUIZ
+from labkit.lessons.bags.quiz import QUIZ, WARM_UP
 
 __all__ = ['LESSON']
 
@@ -15,20 +16,12 @@ LESSON = Lesson(
     '10_bags.ipynb',
     title='Bags',
     teaches=(
-        'record a drive, look inside, plot it, play it back; a node can not tell a bag '
-        'from a robot'
+        'record a drive, look inside, plot it, play it back; a node cannot tell a bag from a robot'
     ),
     exercises=[one_topic, distance, half_speed],
-    quizzes=[QUIZ],
+    quizzes=[WARM_UP, QUIZ],
     topics=[
-        '/cmd_vel',
-        '/odom',
-        '/scan',
-        '/joint_states',
-        '/imu',
-        '/battery_state',
-        '/camera/image_raw',
-        '/camera/camera_info',
+        *ROBOT_TOPICS,
         '/clock',
         '/temperature',
         '/wind',

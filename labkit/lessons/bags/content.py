@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from labkit.errors import LabError, nearest
-from labkit.exercises import Fail, NotAttempted, Probe
-from labkit.exercises.clauses import Clause
-from labkit.exercises.clauses.base import naming
+from labkit.exercises import Clause, Fail, Mistake, NotAttempted, Probe, Stage
 from labkit.exercises.learner_errors import last_cell
 
 if TYPE_CHECKING:
     from labkit.background.session import Session
     from labkit.bags.reader import Bag, BagMessage
 
-__all__ = ['Found', 'Is', 'IsThere', 'OnlyTopic', 'judge_bag']
+__all__ = ['Found', 'InABag', 'IsThere', 'OnlyTopic']
 
 # Topics that every node has, and that are recorded where all are.
 _OF_EVERY_NODE = ('/parameter_events', '/rosout')
@@ -25,38 +24,97 @@ _OF_EVERY_NODE = ('/parameter_events', '/rosout')
 # Path of a bag -> when the bag was written that was judged last.
 _judged: dict[str, float] = {}
 
+NOTHING = Mistake(
+    'bag/nothing',
+    'What nobody publishes while it is recorded is not in a bag.',
+    'Record {topic!r}, while a node publishes on it.',
+)
+OTHER_TOPIC = Mistake('bag/other-topic', 'Another topic was recorded.', 'Record {topic!r}.')
+ALL_TOPICS = Mistake(
+    'bag/all-topics',
+    'All that is published was recorded: every node publishes on some topics besides its own.',
+    'Name the topic: lab.record(..., {topic!r}, ...)',
+)
+MORE_TOPICS = Mistake(
+    'bag/more-topics',
+    'More than one topic was chosen.',
+    'Name the topic: lab.record(..., {topic!r}, ...)',
+)
+OTHER_TYPE = Mistake(
+    'bag/other-type',
+    'The node that publishes there takes another type.',
+    'Compare the type with that of the task, letter by letter.',
+)
+NO_MESSAGE = Mistake(
+    'bag/no-message',
+    'The recording had ended before the first message came.',
+    'Wait for messages before you stop it: recording.wait_for(count)',
+)
+ELSEWHERE = Mistake(
+    'bag/elsewhere',
+    'A bag is in the folder that the recording is given, from the folder of this notebook on.',
+    'Write {path!r}, letter by letter.',
+)
+UNREADABLE = Mistake('bag/unreadable', 'It cannot be read.')
+CUT_OFF = Mistake(
+    'bag/cut-off',
+    'The recording was cut off, before it could write metadata.yaml.',
+    'Record it once more, and end the recording with stop().',
+)
+GOES_ON = Mistake(
+    'bag/goes-on',
+    'A recording goes on until it is ended: what comes now is recorded, too.',
+    'Call its stop() when enough was recorded, or record in a with block.',
+)
 
-@dataclass(frozen=True)
+
+@dataclass
 class Found:
     """A bag, as the clauses look at it.
 
     Attributes:
-        bag: The bag.
-        messages: Its messages on the topic that it should have.
+        opened: The bag, once `IsThere` has opened it.
+        messages: Its messages on the topic that it should have, once `OnlyTopic` has read them.
     """
 
-    bag: Bag
-    messages: Sequence[BagMessage]
+    opened: Bag | None = None
+    messages: Sequence[BagMessage] = ()
+
+    @property
+    def bag(self) -> Bag:
+        """The bag."""
+        assert self.opened is not None
+        return self.opened
 
 
 @dataclass(frozen=True)
-class IsThere(Clause):
+class IsThere(Clause[Found]):
     """A bag is in its folder, and finished.
 
     Attributes:
         path: The folder.
+        source: The folder of a bag that the lesson makes, which is needed for it.
     """
 
     path: str
+    source: str = ''
 
     @property
     def text(self) -> str:
         """What is asked for."""
         return f'the bag `{self.path}` is there, and its recording has ended'
 
+    def judge(self, found: Found) -> str:
+        """Open it."""
+        if self.source and not Path(self.source).is_dir():
+            raise NotAttempted(f'There is no bag {self.source} yet. Run the cell that makes it.')
+        _refuse_old(self.path)
+        found.opened = _opened(self.path)
+        return ''
+
 
 @dataclass(frozen=True)
-class OnlyTopic(Clause):
+class OnlyTopic(Clause[Found]):
     """A bag has one topic.
 
     Attributes:
@@ -72,94 +130,60 @@ class OnlyTopic(Clause):
         """What is asked for."""
         return f'it has the topic `{self.topic}` (`{self.msg_type}`), and no other one'
 
-    def look(self, bag: Bag) -> None:
-        """Raise Fail if it has others, or not this one."""
-        names = [topic.name for topic in bag.topics]
-        seen = f'topics: {", ".join(names)}' if names else 'no topic at all'
-        if self.topic not in names:
-            near = nearest(self.topic, names)
-            why = 'What nobody publishes while it is recorded is not in a bag.'
-            if names:
-                why = 'What was recorded is another topic.'
-            raise Fail(
-                f'the topic {self.topic}',
-                seen,
-                why=why,
-                todo=f'{near} is close, and is not {self.topic}. Record {self.topic!r}.'
-                if near
-                else f'Record {self.topic!r}, while a node publishes on it.',
-            )
-        others = [name for name in names if name != self.topic]
-        if others:
-            each = set(others) & set(_OF_EVERY_NODE)
+    def judge(self, found: Found) -> str:
+        """Look at its topics, and read the messages."""
+        names = [topic.name for topic in found.bag.topics]
+        others = {*names} - {self.topic}
+        if self.topic not in names or others:
+            mistake = ALL_TOPICS if others & {*_OF_EVERY_NODE} else MORE_TOPICS
+            if self.topic not in names:
+                mistake = OTHER_TOPIC if names else NOTHING
             raise Fail(
                 f'the topic {self.topic} alone',
-                seen,
-                why='All that is published was recorded: every node publishes on some topics '
-                'besides its own.'
-                if each
-                else 'More was chosen than the one topic.',
-                todo=f'Name the topic: lab.record(..., {self.topic!r}, ...)',
+                f'topics: {", ".join(names)}' if names else 'no topic at all',
+                mistake.of(topic=self.topic),
             )
-        found = bag.topic(self.topic)
-        if found.msg_type != self.msg_type:
+        topic = found.bag.topic(self.topic)
+        if topic.msg_type != self.msg_type:
             raise Fail(
                 f'messages of type {self.msg_type} on {self.topic}',
-                f'messages of type {found.msg_type}',
-                why='The node that publishes there takes another type.',
-                todo='Compare the type with that of the task, letter by letter.',
+                f'messages of type {topic.msg_type}',
+                OTHER_TYPE,
             )
-        if not found.count:
+        if not topic.count:
             raise Fail(
-                f'messages of {self.topic}',
-                'the topic is there, without a message',
-                why='The recording had ended before the first message came.',
-                todo='Wait for messages before you stop it: recording.wait_for(count)',
+                f'messages of {self.topic}', 'the topic is there, without a message', NO_MESSAGE
             )
+        found.messages = list(found.bag.messages(self.topic))
+        return ''
 
 
 @dataclass(frozen=True)
-class Is(Clause):
-    """What else a task asks of the bag.
+class InABag(Stage[Found]):
+    """A bag that the learner has recorded.
 
     Attributes:
-        words: What is asked for, in words of the task.
-        look: Raises Fail if the bag is otherwise.
+        path: Its folder.
+        topic: Full name of the topic that it should have.
     """
 
-    words: str
-    look: Callable[[Found], None]
+    path: str
+    topic: str
 
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
+    @contextmanager
+    def scenes(self, probe: Probe, clauses: Sequence[Clause[Found]]) -> Iterator[Sequence[Found]]:
+        """Give the bag, which `IsThere` opens."""
+        found = Found()
+        try:
+            yield [found]
+        finally:
+            if found.opened is not None:
+                found.opened.close()
 
-
-def judge_bag(probe: Probe, clauses: Sequence[Clause]) -> str:
-    """Open the bag that clauses are about, and judge each of them.
-
-    Returns:
-        What is in it, in a sentence.
-
-    Raises:
-        NotAttempted: There is no bag that may be meant.
-        Fail: A clause is not fulfilled; the exception names it.
-    """
-    where, only, *others = clauses
-    assert isinstance(where, IsThere) and isinstance(only, OnlyTopic)
-    with naming(where):
-        _refuse_old(where.path)
-        bag = _opened(where.path)
-    with bag:
-        with naming(only):
-            only.look(bag)
-        found = Found(bag, list(bag.messages(only.topic)))
-        for clause in others:
-            assert isinstance(clause, Is)
-            with naming(clause):
-                clause.look(found)
-        return f'{where.path} has {len(found.messages)} messages of {only.topic}, and no others.'
+    def tell(self, seen: Sequence[Found]) -> str:
+        """Say what is in it."""
+        count = len(seen[0].messages)
+        return f'{self.path} has {count} messages of {self.topic}, and no others.'
 
 
 def _refuse_old(path: str) -> None:
@@ -186,26 +210,18 @@ def _opened(path: str) -> Bag:
         raise Fail(
             f'the bag {path}',
             f'the bag {other}, which is newer' if Path(path).exists() else f'the bag {other}',
-            why='A bag is in the folder that the recording is given, from the folder of this '
-            'notebook on.',
-            todo=f'Write {path!r}, letter by letter.',
+            ELSEWHERE.of(path=path),
         )
     if not Path(path).exists():
         raise NotAttempted
     try:
         bag = open_bag(path)
     except LabError as error:
-        why = 'It can not be read.'
-        raise Fail(f'the bag {path}', error.message, why=why, todo=error.todo) from error
+        raise Fail(f'the bag {path}', error.message, UNREADABLE.then(error.todo)) from error
     if bag.note:
         note = bag.note
         bag.close()
-        raise Fail(
-            f'the bag {path}, finished',
-            note,
-            why='The recording was cut off, before it could write metadata.yaml.',
-            todo='Record it once more, and end the recording with stop().',
-        )
+        raise Fail(f'the bag {path}, finished', note, CUT_OFF)
     return bag
 
 
@@ -218,8 +234,7 @@ def _refuse_going_on(path: str) -> None:
             raise Fail(
                 f'the bag {path}, finished',
                 f'the recording of {path} goes on',
-                why='A recording goes on until it is ended: what comes now is recorded, too.',
-                todo='Call its stop() when enough was recorded, or record in a with block.',
+                GOES_ON,
             )
 
 

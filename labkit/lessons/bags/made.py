@@ -37,10 +37,15 @@ def make_commands(path: str | os.PathLike[str]) -> None:
     from std_msgs.msg import String
 
     rows: list[tuple[float, str, Any]] = []
-    for number in range(30):
+    speeds = [
+        (round(random.uniform(-0.22, 0.22), 3), round(random.uniform(-2.8, 2.8), 3))
+        for _ in range(30)
+    ]
+    # One backwards, twice the same, a stop: a node that takes such for nothing is found out.
+    speeds[6:10] = [(-0.15, 1.2), (-0.15, 1.2), (0.0, 0.0), (0.2, -2.4)]
+    for number, (speed, turn) in enumerate(speeds):
         command = Twist()
-        command.linear.x = round(random.uniform(0.05, 0.22), 3)
-        command.angular.z = round(random.uniform(-2.8, 2.8), 3)
+        command.linear.x, command.angular.z = speed, turn
         rows.append((0.05 * number, '/cmd_vel', command))
         if number % 10 == 0:
             rows.append((0.05 * number + 0.01, '/chatter', String(data=f'part {number // 10}')))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from labkit.exercises import Choice, Number, Quiz, Several, Word, right, wrong
 from labkit.lessons.bags.made import TRIP_TOPICS, silent_topic, stop_sec, trip_is_missing
 
-__all__ = ['QUIZ']
+__all__ = ['QUIZ', 'WARM_UP']
 
 
 def _explain_silent(word: str) -> str:
@@ -16,6 +16,29 @@ def _explain_silent(word: str) -> str:
         return 'Its messages go on to the end of the strip. Which strip ends before the others?'
     return ''
 
+
+WARM_UP = Quiz(
+    'warm_up',
+    Choice(
+        'A scanner publishes best effort. What should your subscription ask for?',
+        right('best effort', 'It must not ask for more than is offered.'),
+        wrong('reliable', 'That is more than is offered: the two do not match.'),
+        wrong('transient local', 'That is durability. The scanner keeps nothing for later.'),
+    ),
+    Choice(
+        '`Turtlebot(lockstep=0.1)` hears nothing for ten seconds. How far does its time advance?',
+        right('not at all', 'Its time goes by commands, 0.1 s for each one.'),
+        wrong('by ten seconds', 'So does the clock of this machine, which it does not follow.'),
+        wrong('by 0.1 s', 'That is how far one command takes it.'),
+    ),
+    Choice(
+        '`use_sim_time` of a running node is to be changed. Who can do that?',
+        right('any node, and the command line', 'By ros2 param set, if the node allows it.'),
+        wrong('the node itself alone', 'Its services let others set its parameters.'),
+        wrong('nobody, before it is started again', 'Parameters can change while a node runs.'),
+    ),
+    cell_id='warm-up',
+)
 
 QUIZ = Quiz(
     'bags',
@@ -50,8 +73,8 @@ QUIZ = Quiz(
         wrong('10 s', 'That would be a rate of 1.0.'),
     ),
     Several(
-        'A bag holds /odom and /cmd_vel. A robot is listening on /cmd_vel. What can you do so '
-        'that it does not drive when the bag plays?',
+        'A bag holds /odom and /cmd_vel. A robot is listening on /cmd_vel. How can you keep it '
+        'from driving while the bag plays?',
         right(
             "Play with remap={'/cmd_vel': '/old/cmd_vel'}.",
             'The commands go where no robot listens.',
@@ -61,7 +84,7 @@ QUIZ = Quiz(
             'Play with a smaller rate.',
             'The robot would get the same commands, more slowly.',
         ),
-        wrong('Nothing: a robot knows that a bag plays.', 'It can not know. It drives.'),
+        wrong('Nothing: a robot knows that a bag plays.', 'It cannot know. It drives.'),
     ),
     Choice(
         'A node has use_sim_time, and a bag plays with clock=100. What time does the node have?',
@@ -79,7 +102,8 @@ QUIZ = Quiz(
         'A recording was killed before its end. What is lost?',
         right(
             'metadata.yaml, and maybe the last moment.',
-            'What was written before can be read. labkit says that the bag was not finished.',
+            'What was written before can be read. rosbag2 keeps more in memory, so it loses more. '
+            '`ros2 bag reindex` writes metadata.yaml anew.',
         ),
         wrong('All of it.', 'The messages are written while they come, many times a minute.'),
         wrong('Nothing.', 'metadata.yaml is written at the end, so it is missing.'),
@@ -92,7 +116,7 @@ QUIZ = Quiz(
         explain=_explain_silent,
     ),
     Number(
-        'And at which second of bags/trip does the robot run against the wall, and stop?',
+        'And at which second of bags/trip does the robot run into the wall, and stop?',
         stop_sec,
         'From there on x stays the same, and the speed in its odometry is 0.',
         'Plot /odom.pose.pose.position.x, and move the slider to where the line bends.',

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from labkit.exercises import Lesson
+from labkit.lessons._robot import ROBOT_TOPICS
 from labkit.lessons.chat.greeter import greeter
 from labkit.lessons.chat.hearer import hearer
 from labkit.lessons.chat.polite import polite
-from labkit.lessons.chat.quiz import QUIZ
+from labkit.lessons.chat.quiz import QUIZ, WARM_UP
 from labkit.lessons.chat.teller import teller
 
 __all__ = ['LESSON']
@@ -20,9 +21,11 @@ LESSON = Lesson(
         'without an end'
     ),
     exercises=[teller, hearer, greeter, polite],
-    quizzes=[QUIZ],
-    topics=['/shared_chatter', '/heard_next_door'],
+    quizzes=[WARM_UP, QUIZ],
+    topics=['/shared_chatter', '/heard_next_door', *ROBOT_TOPICS],
     given={
+        '/turtlebot': 'rosie-go',
+        '/rosie': 'rosie-go',
         '/chat': 'chat',
         '/domain_bridge': 'join',
         '/neighbour': '',

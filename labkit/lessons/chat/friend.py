@@ -10,8 +10,8 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from labkit.background.child_processes import Process
-    from labkit.background.joining import Joined
+    from labkit.programs.child_processes import Process
+    from labkit.sharing.joining import Joined
 
 __all__ = ['start_friend']
 
@@ -37,8 +37,8 @@ def start_friend(room: Joined) -> None:
         LabTimeout: He did not come.
     """
     global _process
-    from labkit.background.child_processes import environment, start_process
     from labkit.background.runtime import runtime
+    from labkit.programs.child_processes import environment, start_process
 
     if _process is not None:
         _process.stop()
@@ -61,29 +61,32 @@ def main() -> None:
     from rclpy.node import Node
     from std_msgs.msg import String
 
-    from labkit.background.program import publish_when_heard, spin_until_interrupted
+    from labkit.programs.program import publish_when_heard, spin_until_interrupted
 
     rclpy.init()
     node = Node(NAME.lower(), start_parameter_services=False, enable_rosout=False)
     publisher = node.create_publisher(String, TOPIC, 10)
     looking: list[Any] = []
 
+    def say(text: str) -> None:
+        # Bo hears himself, too.
+        publish_when_heard(publisher, String(data=f'{NAME}: {text}'), 2, MEET_SEC)
+
     def answer(msg: Any) -> None:
         who, _, text = msg.data.partition(': ')
         if who == NAME:
             return
-        # Bo hears himself, too.
         if QUESTION in text:
             looking.append(node.create_timer(LOOK_SEC, look))
         else:
-            publish_when_heard(publisher, String(data=f'{NAME}: I hear you, {who}'), count=2)
+            say(f'I hear you, {who}')
 
     def look() -> None:
         # The name of a node comes a moment later than what it has to say.
         ends = node.get_publishers_info_by_topic(TOPIC)
         if len(ends) > 1 and all(end.node_name in node.get_node_names() for end in ends):
             node.destroy_timer(looking.pop())
-            publish_when_heard(publisher, String(data=f'{NAME}: {_seen(node)}'), count=2)
+            say(_seen(node))
 
     node.create_subscription(String, TOPIC, answer, 10)
     spin_until_interrupted(node)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from labkit.lessons._companion import start_companion
 
 if TYPE_CHECKING:
-    from labkit.background.child_processes import Process
+    from labkit.programs.child_processes import Process
 
 __all__ = ['start_neighbour']
 
@@ -39,7 +39,7 @@ def main() -> None:
     from rclpy.node import Node
     from std_msgs.msg import String
 
-    from labkit.background.program import publish_when_heard, spin_until_interrupted
+    from labkit.programs.program import publish_when_heard, spin_until_interrupted
 
     rclpy.init()
     node = Node('neighbour', start_parameter_services=False)

@@ -2,111 +2,116 @@
 
 from __future__ import annotations
 
-import random
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 
-from labkit.exercises import Exercise, Outcome, Solution, Style, Wrong, changed
-from labkit.lessons._script import in_process
-from labkit.lessons.chat.clauses import STRING, Replies, split
+from labkit.exercises import Exercise, Mistake, Solution
+from labkit.exercises.clauses import WITHIN, Answers, Words
+from labkit.exercises.draws import draw_names
 
 __all__ = ['polite']
 
-TOPIC = '/lounge'
-NAMES = ('Bo', 'Chidi', 'Dilek', 'Eva', 'Finn', 'Guo', 'Hana')
+TOPIC, STRING = '/lounge', 'std_msgs/msg/String'
 ME = 'Ada'
-
-_POLITE = """
-from rclpy.node import Node
-from std_msgs.msg import String
+NOTHING = Words(f'publish nothing for all other messages, nor for what {ME} has said herself')
 
 
-class Polite(Node):
-    def __init__(self):
-        super().__init__('polite')
-        self.greeted = {'Ada'}
-        self.publisher = self.create_publisher(String, 'lounge', 10)
-        self.subscription = self.create_subscription(String, 'lounge', self.on_message, 10)
-
-    def on_message(self, msg):
-        who, _, text = msg.data.partition(': ')
-        if 'Hello' in text and who not in self.greeted:
-            self.greeted.add(who)
-            self.publisher.publish(String(data=f'Ada: Hello, {who}'))
+def _greet(message: str) -> str:
+    return f'{ME}: Hello, {message.partition(": ")[0]}'
 
 
-polite = lab.spin(Polite())
-"""
-_IF = "if 'Hello' in text and who not in self.greeted:"
-_ADD = '            self.greeted.add(who)\n'
-_SAID = "f'Ada: Hello, {who}'"
+def _says_hello(message: str) -> bool:
+    return 'Hello' in message.partition(': ')[2]
 
 
-def _replies(texts: Sequence[str]) -> list[str | None]:
-    greeted, replies = {ME}, []
-    for message in texts:
-        who, text = split(message)
-        due = 'Hello' in text and who not in greeted
-        replies.append(f'{ME}: Hello, {who}' if due else None)
-        greeted |= {who} if due else set()
-    return replies
+MISTAKES = (
+    Mistake(
+        'polite/herself',
+        f'That was said by {ME} herself.',
+        f'Leave out what {ME} has said: who != {ME!r}',
+        model=lambda message: {ME: _greet(ME)}[message.partition(': ')[0]],
+    ),
+    Mistake(
+        'polite/each-time',
+        'The same person was greeted before. Two nodes that always reply never come to an end.',
+        'Keep the names of those whom you have greeted, in a set: self.greeted.add(who)',
+        model=lambda message: _greet(message) if _says_hello(message) else None,
+        change=[('            self.greeted.add(who)\n', '')],
+    ),
+    Mistake(
+        'polite/everything',
+        'This message does not say Hello.',
+        "Reply if 'Hello' in text.",
+        model=_greet,
+        change=[("'Hello' in text and ", 'msg.data != text and ')],
+    ),
+)
+NOT_YET = Mistake(
+    'polite/not-yet',
+    '{who} says Hello and was not greeted yet.',
+    'Greet each one at the first Hello, and only then put the name into the set.',
+)
+
+
+def _politely(_memory: object) -> Generator[str | None, str, None]:
+    """Greet each person once."""
+    greeted: set[str] = {f'{ME}: Hello, {ME}'}
+    reply = None
+    while True:
+        message = yield reply
+        reply = _greet(message) if _says_hello(message) else None
+        reply = None if reply in greeted else reply
+        greeted |= {reply} if reply else set()
 
 
 def _draw() -> list[str]:
-    """Return what people say whom nobody knows yet: each has a number of its own."""
-    number = iter(random.sample(range(100, 1000), 12))
-    bo, chidi, eva, finn, *more = [f'{name}{next(number)}' for name in (*NAMES, *NAMES[:5])]
+    """Return what people say whom nobody knows yet, and whom all know by then."""
+    bo, chidi, eva, finn, guo, hana, *more = draw_names(18)
+    kitty = f'Hello {draw_names(2)[0]}'
     return [
         f'{bo}: Hello',
         f'{chidi}: How are you?',
         f'{bo}: Hello again',
         f'{chidi}: Well, Hello',
-        f'{eva}: Hello, {ME}',
-        f'{eva}: Hello, {ME}',
+        f'{eva}: Hello {ME}',
+        f'{eva}: Hello {ME}',
         f'{finn}: {bo} says Hi',
-        f'{bo}: Hello, {finn}',
+        f'{bo}: Hello {finn}',
         f'{ME}: Hello',
+        f'{kitty}: Good morning',
+        f'{guo}: hello',
+        f'{guo}: HELLO',
+        f'{hana}: at 7: 30 I say Hello',
         *(f'{name}: Hello' for name in more),
         f'{finn}: Hello',
-        f'{chidi}: Hello',
+        f'{kitty}: Hello',
+        f'{guo}: Hello',
+        *(f'{name}: Hello' for name in (chidi, bo, eva)),
     ]
 
 
-def _explain(message: str, came: Sequence[str]) -> tuple[str, str]:
-    who, text = split(message)
-    if came and who == ME:
-        return 'That was said by Ada herself.', f'Leave out what {ME} has said: who != {ME!r}'
-    if came and 'Hello' not in text:
-        return 'This message does not say Hello.', "if 'Hello' in text"
-    if came and f'{ME}: Hello, {who}' in came:
-        return (
-            f'{who} was greeted before. Two nodes that always reply never come to an end.',
-            'Keep the names of those whom you have greeted, in a set: self.greeted.add(who)',
-        )
-    if came:
-        return '', ''
-    return (
-        f'{who} says Hello and was not greeted yet.',
-        'Greet each one at the first Hello, and only then put the name into the set.',
-    )
+def _silent(message: str, came: Sequence[str]) -> Mistake | None:
+    return None if came else NOT_YET.of(who=message.partition(': ')[0])
 
 
 polite = Exercise(
     name='polite',
     task='Greet each person on /lounge once, at the first Hello.',
-    subscribes={TOPIC: STRING},
-    publishes={TOPIC: STRING},
     shared=[TOPIC],
     clauses=(
-        Replies(
+        Answers(
             TOPIC,
-            f'messages on `{TOPIC}` (`{STRING}`) are a name, a colon, a blank and a text; when a '
-            'text has the word `Hello` in it for the first time from a name, publish '
-            f'`{ME}: Hello, ` and that name, within a second; upon all others, and what {ME} has '
-            'said herself, publish nothing',
-            _replies,
-            _draw,
-            _explain,
+            TOPIC,
+            STRING,
+            f'when a name says `Hello` for the first time on `{TOPIC}`, publish `{ME}: Hello, ` '
+            f'and that name, {WITHIN}',
+            answer=_politely,
+            draw=_draw,
+            mistakes=MISTAKES,
+            explain=_silent,
+            resume=None,
+            otherwise=NOTHING.text,
         ),
+        NOTHING,
     ),
     hints=[
         'A node hears what it publishes itself, if it subscribes to the same topic.',
@@ -114,157 +119,9 @@ polite = Exercise(
         "if 'Hello' in text and who not in self.greeted: with {'Ada'} in it from the beginning",
     ],
     answer=Solution(
-        _POLITE,
+        __file__,
+        'polite.py',
         'The set remembers who was greeted. With their own name in it from the beginning, nobody '
         'greets himself.',
     ),
-    styles=[
-        Style(
-            'functions and a list',
-            """
-import rclpy
-from std_msgs.msg import String
-
-node = rclpy.create_node('host')
-publisher = node.create_publisher(String, '/lounge', 10)
-known = []
-
-
-def greet(msg):
-    who = msg.data.split(': ')[0]
-    said = msg.data[len(who) + 2 :]
-    if who == 'Ada' or 'Hello' not in said or who in known:
-        return
-    known.append(who)
-    publisher.publish(String(data='Ada: Hello, ' + who))
-
-
-node.create_subscription(String, '/lounge', greet, 10)
-lab.spin(node)
-""",
-        ),
-        Style(
-            'a dictionary that counts',
-            changed(
-                _POLITE,
-                ("{'Ada'}", "{'Ada': 1}"),
-                (_ADD, '            self.greeted[who] = 1\n'),
-            ),
-        ),
-        Style(
-            'a list and a timer',
-            changed(
-                _POLITE,
-                (
-                    'self.on_message, 10)\n',
-                    'self.note, 10)\n        self.waiting = []\n'
-                    '        self.create_timer(0.1, self.on_timer)\n\n'
-                    '    def note(self, msg):\n        self.waiting.append(msg)\n\n'
-                    '    def on_timer(self):\n        while self.waiting:\n'
-                    '            self.on_message(self.waiting.pop(0))\n',
-                ),
-            ),
-        ),
-        Style(
-            'a queue and a thread',
-            changed(
-                _POLITE,
-                ('\nfrom rclpy', '\nimport queue\nimport threading\n\nfrom rclpy'),
-                (
-                    'self.on_message, 10)\n',
-                    'self.heard.put, 10)\n'
-                    '        threading.Thread(target=self.work, daemon=True).start()\n\n'
-                    '    def work(self):\n        while True:\n'
-                    '            msg = self.heard.get()\n'
-                    '            sum(range(1_000_000))  # it takes its time\n'
-                    '            self.on_message(msg)\n',
-                ),
-                (
-                    "        self.greeted = {'Ada'}\n",
-                    "        self.greeted = {'Ada'}\n        self.heard = queue.Queue()\n",
-                ),
-            ),
-        ),
-        Style(
-            'greets before it remembers',
-            changed(
-                _POLITE,
-                (
-                    f'{_ADD}            self.publisher.publish(String(data={_SAID}))\n',
-                    f'            self.publisher.publish(String(data={_SAID}))\n{_ADD}',
-                ),
-            ),
-        ),
-        Style('own process', in_process(_POLITE), process=True),
-    ],
-    wrong=[
-        Wrong(
-            'greets each time',
-            changed(_POLITE, (_ADD, '')),
-            'was greeted before',
-        ),
-        Wrong(
-            'greets itself, without an end',
-            changed(_POLITE, (_IF, "if 'Hello' in text:"), (_ADD, '')),
-            'without an end',
-        ),
-        Wrong(
-            'greets itself once',
-            changed(_POLITE, ("{'Ada'}", 'set()')),
-            'What it has said itself comes to it',
-        ),
-        Wrong(
-            'replies to everything',
-            changed(_POLITE, ("'Hello' in text and ", 'msg.data != text and ')),
-            'does not say Hello',
-        ),
-        Wrong(
-            'remembers who said nothing yet',
-            changed(
-                _POLITE,
-                (
-                    f'        {_IF}\n{_ADD}',
-                    '        new = who not in self.greeted\n        self.greeted.add(who)\n'
-                    "        if 'Hello' in text and new:\n",
-                ),
-            ),
-            'says Hello and was not greeted yet',
-        ),
-        Wrong(
-            'one for all',
-            changed(
-                _POLITE,
-                (_IF, "if 'Hello' in text and len(self.greeted) == 1:"),
-            ),
-            'says Hello and was not greeted yet',
-        ),
-        Wrong(
-            'without the name',
-            changed(_POLITE, (_SAID, "'Ada: Hello'")),
-            'Ada: Hello, ',
-        ),
-        Wrong(
-            'ten people and no more',
-            changed(_POLITE, (_IF, f'{_IF[:-1]} and len(self.greeted) < 5:')),
-            'says Hello and was not greeted yet',
-        ),
-        Wrong(
-            'greets twice',
-            changed(
-                _POLITE,
-                (
-                    f'            self.publisher.publish(String(data={_SAID}))\n',
-                    '            for _ in range(2):\n'
-                    f'                self.publisher.publish(String(data={_SAID}))\n',
-                ),
-            ),
-            'It replies more than once.',
-        ),
-        Wrong(
-            'a list that is not there',
-            changed(_POLITE, ('self.greeted.add', 'self.known.add')),
-            "no attribute 'known'",
-            outcome=Outcome.ERROR,
-        ),
-    ],
 )

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from labkit.exercises import Lesson
+from labkit.lessons._robot import ROBOT_TOPICS
 from labkit.lessons.command_line.drive import drive
 from labkit.lessons.command_line.harbour import NODES, TOPICS
 from labkit.lessons.command_line.look_around import HARBOUR
 from labkit.lessons.command_line.odds import odds
-from labkit.lessons.command_line.quiz import QUIZ
+from labkit.lessons.command_line.quiz import QUIZ, WARM_UP
 
 __all__ = ['LESSON']
 
@@ -19,7 +20,17 @@ LESSON = Lesson(
         '`ros2` topics, nodes, messages and parameters from the command line; ROS 1 in ROS 2 words'
     ),
     exercises=[odds, drive],
-    quizzes=[HARBOUR, QUIZ],
-    topics=['/chatter', '/limit', '/turtle/cmd_vel', *TOPICS],
-    given=dict.fromkeys(('/talker', '/listener', *NODES), ''),
+    quizzes=[WARM_UP, HARBOUR, QUIZ],
+    topics=[
+        '/chatter',
+        '/limit',
+        *(f'/turtle{topic}' for topic in ROBOT_TOPICS),
+        *ROBOT_TOPICS,
+        *TOPICS,
+    ],
+    given={
+        **dict.fromkeys(('/talker', '/listener', *NODES), ''),
+        '/turtle/turtlebot': 'background',
+        '/turtlebot': '*',
+    },
 )

@@ -14,7 +14,7 @@ from labkit.lessons._companion import start_companion
 if TYPE_CHECKING:
     from rclpy.node import Node
 
-    from labkit.background.child_processes import Process
+    from labkit.programs.child_processes import Process
 
 __all__ = ['MEASURES', 'NODES', 'TOPICS', 'open_harbour']
 
@@ -56,7 +56,7 @@ def main() -> None:
     import rclpy
     from rclpy.node import Node
 
-    from labkit.background.program import spin_until_interrupted
+    from labkit.programs.program import spin_until_interrupted
 
     rclpy.init()
     # Parameters are asked for at the lighthouse only; services cost time at the start.

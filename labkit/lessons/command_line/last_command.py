@@ -10,36 +10,57 @@ import difflib
 import re
 from collections.abc import Collection, Sequence
 
-from labkit.exercises import Fail
+from labkit.exercises import Fail, Mistake, words
 from labkit.rosgraph.refusals import Refusal
 
 __all__ = ['commanded_rate', 'explain_last_command', 'forget_commands', 'other_topic']
 
 # How much of two names has to be the same, from 0 to 1.
 NEAR = 0.75
-# The misconception behind a refusal, in words of the lesson.
-_WHY = {
-    Refusal.SPACE_AFTER_COLON: 'In YAML a colon is followed by a space: data: 1',
-    Refusal.QUOTES_MISSING: 'A space ends a word of a command. Quotation marks around the YAML '
-    'hold its words together.',
-    Refusal.LIST_FOR_NUMBER: 'The brackets make a list. A field of this type holds one number, so '
-    'each number needs a message of its own.',
-    Refusal.NOT_A_WHOLE_NUMBER: 'An Int16 holds whole numbers from -32768 to 32767, written in '
-    'digits.',
-    Refusal.OUT_OF_RANGE: 'An Int16 holds whole numbers from -32768 to 32767.',
-    Refusal.UNKNOWN_TYPE: 'The name of a type has three parts: the package, the word msg, and the '
-    'type.',
-    Refusal.OTHER_TYPE: 'A topic carries one type of message. Another type is refused, or nobody '
-    'hears it.',
-    Refusal.NO_SUCH_FIELD: 'The message has other fields. Fields that are messages themselves '
-    'take braces of their own.',
-    Refusal.FIELDS_WANTED: 'Fields that are messages themselves take braces of their own.',
-    Refusal.REPEATED_SLASH: 'One slash at the beginning is enough.',
+# What the lesson says to a refusal; the next step is that of the complaint.
+_REFUSED = {
+    Refusal.SPACE_AFTER_COLON: Mistake(
+        'command/space-after-colon', 'In YAML a colon is followed by a space: data: 1'
+    ),
+    Refusal.QUOTES_MISSING: Mistake(
+        'command/quotes',
+        'A space ends a word of a command. Quotation marks around the YAML hold its words '
+        'together.',
+    ),
+    Refusal.LIST_FOR_NUMBER: Mistake(
+        'command/list',
+        'The brackets make a list. A field of this type holds one number, so each number needs a '
+        'message of its own.',
+    ),
+    Refusal.NOT_A_WHOLE_NUMBER: Mistake(
+        'command/whole-number',
+        'An Int16 holds whole numbers from -32768 to 32767, written in digits.',
+    ),
+    Refusal.OUT_OF_RANGE: Mistake(
+        'command/out-of-range', 'An Int16 holds whole numbers from -32768 to 32767.'
+    ),
+    Refusal.UNKNOWN_TYPE: Mistake(
+        'command/type',
+        'The name of a type has three parts: the package, the word msg, and the type.',
+    ),
+    Refusal.OTHER_TYPE: Mistake(
+        'command/other-type',
+        'A topic carries one type of message. Another type is refused, or nobody hears it.',
+    ),
+    Refusal.NO_SUCH_FIELD: Mistake(
+        'command/field',
+        'The message has other fields. Fields that are messages themselves take braces of their '
+        'own.',
+    ),
+    Refusal.FIELDS_WANTED: Mistake(
+        'command/braces', 'Fields that are messages themselves take braces of their own.'
+    ),
+    Refusal.REPEATED_SLASH: Mistake('command/slash', 'One slash at the beginning is enough.'),
 }
 
 
 def explain_last_command(topic: str, expected: str) -> None:
-    """Raise Fail if the last `ros2 topic pub` of this notebook was refused, or went elsewhere.
+    """Explain the last `ros2 topic pub` of this notebook, if it was refused or went elsewhere.
 
     Args:
         topic: Full name of the topic where something should have come.
@@ -56,27 +77,17 @@ def explain_last_command(topic: str, expected: str) -> None:
     if not tried:
         return
     last = tried[-1]
-    if last.topic != topic and last.reason not in _WHY:
-        why = f'{last.topic} is not {topic}: names must be equal to the last letter.'
-        if last.topic.lower() == topic:
-            why = (
-                f'Capital and small letters differ in names: {last.topic} and {topic} are two '
-                'topics.'
-            )
+    if last.topic != topic and last.reason not in _REFUSED:
+        mistake = words.CAPITALS if last.topic.lower() == topic else words.OTHER_NAME
         raise Fail(
             expected,
             f'a command that publishes on {last.topic}',
-            why=why,
-            todo=f'Write the topic as {topic}.',
+            mistake.of(seen=last.topic, wanted=topic).then(f'Write the topic as {topic}.'),
         )
     if last.reason is not None:
         what, _, todo = last.complaint.partition('\n')
-        raise Fail(
-            expected,
-            f'a command that was refused: {what}',
-            why=_WHY.get(last.reason, ''),
-            todo=todo,
-        )
+        mistake = _REFUSED.get(last.reason, Mistake(''))
+        raise Fail(expected, f'a command that was refused: {what}', mistake.then(todo))
 
 
 def commanded_rate(topic: str) -> float | None:

@@ -35,12 +35,12 @@ def _graph() -> Node:
     Raises:
         LabError: The harbour is closed.
     """
-    from labkit.background.discovery import asking_node, soon
+    from labkit.asking.discovery import asking_node, poll_until
     from labkit.rosgraph.snapshot import node_names
 
     node = asking_node()
     # After lab.stop() the harbour is still open, and has to be discovered again.
-    if not soon(lambda: set(NODES) <= set(node_names(node))):
+    if not poll_until(lambda: set(NODES) <= set(node_names(node))):
         raise _closed()
     return node
 
@@ -51,11 +51,11 @@ def _closed() -> LabError:
 
 def _publishers(topic: str) -> Sequence[Endpoint]:
     """Return the publishers of a topic of the harbour; there is one at least."""
-    from labkit.background.discovery import soon
+    from labkit.asking.discovery import poll_until
     from labkit.rosgraph.endpoints import publishers
 
     node = _graph()
-    found = soon(lambda: [end for end in publishers(node, topic) if end.is_known])
+    found = poll_until(lambda: [end for end in publishers(node, topic) if end.is_known])
     if not found:
         raise _closed()
     return found
@@ -160,7 +160,7 @@ def _no_listeners(number: float) -> str:
 def _parameter(name: str) -> int:
     from rcl_interfaces.srv import GetParameters
 
-    from labkit.background.service_calls import call_node
+    from labkit.asking.service_calls import call_node
 
     request = GetParameters.Request(names=[name])
     response = call_node(_graph(), GetParameters, LIGHTHOUSE, 'get_parameters', request)
@@ -187,10 +187,10 @@ def _no_reliability(word: str) -> str:
 
 
 def _service_type() -> list[str]:
-    from labkit.background.discovery import soon
+    from labkit.asking.discovery import poll_until
 
     node = _graph()
-    found = soon(lambda: dict(node.get_service_names_and_types()).get(FOGHORN))
+    found = poll_until(lambda: dict(node.get_service_names_and_types()).get(FOGHORN))
     if not found:
         raise _closed()
     return found

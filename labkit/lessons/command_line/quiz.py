@@ -4,7 +4,32 @@ from __future__ import annotations
 
 from labkit.exercises import Choice, Quiz, Several, Word, right, spelling, wrong
 
-__all__ = ['QUIZ']
+__all__ = ['QUIZ', 'WARM_UP']
+
+WARM_UP = Quiz(
+    'warm_up',
+    Choice(
+        "Why does `Node('2nd_talker')` raise an error?",
+        right('A name must not begin with a digit.', 'Letters, digits and _ are fine after that.'),
+        wrong('There is a talker already.', 'ROS lets two nodes of one name run.'),
+        wrong('It is not a class of your own.', 'Node itself makes nodes, too.'),
+    ),
+    Choice(
+        'A talker and a listener run, and the listener hears nothing. What must be the same at '
+        'both ends?',
+        right('topic and type', 'A subscriber receives messages of one type on one topic.'),
+        wrong('the name of the node', 'Each node needs a name of its own.'),
+        wrong('the depth of the queue', 'Each end has its own queue, and chooses its depth.'),
+    ),
+    Choice(
+        "Why do no brackets follow `self.on_message` in `create_subscription(String, 'chatter', "
+        'self.on_message, 10)`?',
+        right('The function is passed, not called.', 'ROS calls it later, for each message.'),
+        wrong('It takes no argument.', 'It takes one, the message.'),
+        wrong('Its brackets are in the class.', 'The definition has some. A call needs its own.'),
+    ),
+    cell_id='warm-up',
+)
 
 QUIZ = Quiz(
     'commands',
@@ -21,7 +46,7 @@ QUIZ = Quiz(
         ),
         wrong(
             'Nodes find each other only in different terminals.',
-            'Discovery does not know terminals. What counts is the domain.',
+            'Terminals do not matter to discovery. The domain does.',
         ),
     ),
     Choice(
@@ -66,7 +91,7 @@ QUIZ = Quiz(
         'What is true of a node whose name begins with an underscore?',
         right('node list leaves it out.', 'Such names are hidden. Tools use them for themselves.'),
         right('node list -a shows it.', 'The option -a stands for all.'),
-        wrong('It can not publish.', 'It is a node like any other. Only the lists leave it out.'),
+        wrong('It cannot publish.', 'It is a node like any other. Only the lists leave it out.'),
         wrong('It runs in another domain.', 'It is in the same domain, and everybody hears it.'),
     ),
     Choice(

@@ -6,16 +6,17 @@ A message does not say who has sent it, but as which one: every publisher counts
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 from statistics import mean, median
 from typing import TYPE_CHECKING, NoReturn
 
-from labkit.exercises import Fail, NotAttempted, Probe
-from labkit.exercises.clauses import Clause
-from labkit.exercises.clauses.base import naming
+from labkit.exercises import Clause, Fail, Mistake, NotAttempted, Probe, Stage, words
+from labkit.exercises.judging import naming
 from labkit.exercises.recorder import Recording
+from labkit.exercises.scope import PUBLISHER, Role
 from labkit.exercises.watch import Sample
 from labkit.lessons.command_line.last_command import (
     explain_last_command,
@@ -27,11 +28,11 @@ if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = [
-    'Asked',
+    'TOLERANCE',
+    'Commands',
     'OnTopic',
     'Sent',
     'is_every',
-    'judge_sent',
     'messages_at_once',
     'newest_run',
     'period',
@@ -48,11 +49,22 @@ MANY = 10
 # A publisher that was silent so long, and for so many of its periods, begins anew.
 PAUSE_SEC = 1.0
 PAUSE_PERIODS = 3.0
-# How far a rate may be off, as the task says, and what two clocks may differ by: on a busy machine
+# How far a rate may be off, as a part of it, and what two clocks may differ by: on a busy machine
 # one of a few messages is late.
-TOLERANCE = 0.155
+TOLERANCE, CLOCKS_DIFFER = 0.15, 0.005
 # Gaps that differ by this factor are no longer even.
 EVEN = 1.3
+
+ELSEWHERE_TOO = Mistake(
+    'commands/elsewhere-too',
+    'The task asks for {topic} only.',
+    'End what publishes on {other}, and send the messages to {topic} once more.',
+)
+OTHER_TYPE = Mistake(
+    'commands/other-type',
+    'A topic carries one type of message. Nobody hears messages of another type.',
+    'Stop that command with Ctrl-C, and use {msg_type}.',
+)
 
 
 @dataclass(frozen=True)
@@ -80,7 +92,7 @@ class Sent:
 
 
 @dataclass(frozen=True)
-class OnTopic(Clause):
+class OnTopic(Clause[Sent]):
     """Messages of a type are sent to a topic, and to no other one.
 
     Attributes:
@@ -96,118 +108,160 @@ class OnTopic(Clause):
         """What is asked for."""
         return f'on `{self.topic}` and no other topic, with the type `{self.msg_type}`'
 
+    @property
+    def roles(self) -> dict[Role, str]:
+        """Commands publish."""
+        return {(PUBLISHER, self.topic): self.msg_type}
+
 
 @dataclass(frozen=True)
-class Asked(Clause):
-    """What else a task asks of the messages.
+class Commands(Stage[Sent]):
+    """Commands of the learner's that send messages to a topic.
 
     Attributes:
-        words: What is asked for, in words of the task.
-        look: Raises Fail if the messages are otherwise, NotAttempted if it is too early to tell.
-    """
-
-    words: str
-    look: Callable[[Sent], None]
-
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
-
-
-def judge_sent(
-    probe: Probe,
-    where: OnTopic,
-    clauses: Sequence[Asked],
-    expected: str,
-    *,
-    is_whole: Callable[[Samples], bool],
-    is_too_much: Callable[[Samples], bool],
-    keep: Callable[[Sent], Samples],
-) -> None:
-    """Wait for what commands send, and look at it clause by clause.
-
-    Args:
-        probe: The probe of the check.
         where: The first clause of the task.
-        clauses: The others.
         expected: What should have come, in words.
+        says: What is said if all was right.
         is_whole: Whether nothing is missing.
         is_too_much: Whether it is clear already that it is not what was asked for.
-        keep: Which messages count for the next check, if this is no PASS.
-
-    Raises:
-        Fail: A clause is not fulfilled; the exception names it.
-        NotAttempted: Nothing has come, or it is too early to tell.
+        keep: Which messages count for the next check, if this is no PASS; all if not given.
     """
-    with naming(where):
-        sent = _sent_to(probe, where, expected, is_whole, is_too_much)
-    try:
-        for clause in clauses:
-            with naming(clause):
-                clause.look(sent)
-        with naming(where):
-            _refuse_other_topics(probe, where)
-    except Fail:
-        sent.recording.keep(keep(sent))
-        # A command that was refused later explains why the messages are not all there.
-        with naming(where):
-            explain_last_command(where.topic, expected)
+
+    where: OnTopic
+    expected: str
+    says: str
+    is_whole: Callable[[Samples], bool]
+    is_too_much: Callable[[Samples], bool]
+    keep: Callable[[Sent], Samples] = lambda sent: sent.samples
+
+    @contextmanager
+    def scenes(self, probe: Probe, clauses: Sequence[Clause[Sent]]) -> Iterator[Sequence[Sent]]:
+        """Wait for what commands send."""
+        with naming(self.where):
+            sent = self._sent(probe)
+        try:
+            yield [sent]
+            with naming(self.where):
+                self._refuse_other_topics(probe)
+        except Fail:
+            sent.recording.keep(self.keep(sent))
+            # A command that was refused later explains why the messages are not all there.
+            with naming(self.where):
+                explain_last_command(self.where.topic, self.expected)
+            forget_commands()
+            raise
         forget_commands()
-        raise
-    forget_commands()
 
+    def tell(self, seen: Sequence[Sent]) -> str:
+        """Say that all was right."""
+        return self.says
 
-def _sent_to(
-    probe: Probe,
-    where: OnTopic,
-    expected: str,
-    is_whole: Callable[[Samples], bool],
-    is_too_much: Callable[[Samples], bool],
-) -> Sent:
-    """Wait as long as a command runs or messages keep coming; return what was sent."""
-    topic = where.topic
-    recording = probe.recorded[topic]
-    assert isinstance(recording, Recording)
-    started = time.monotonic()
+    def _sent(self, probe: Probe) -> Sent:
+        """Wait as long as a command runs or messages keep coming; return what was sent."""
+        from labkit.background.runtime import runtime
 
-    def samples() -> Samples:
-        return [*recording.earlier, *recording.samples]
+        topic = self.where.topic
+        recording = probe.recorded[topic]
+        assert isinstance(recording, Recording)
+        started = time.monotonic()
 
-    def silent_sec() -> float:
-        return time.monotonic() - max(started, recording.last_arrival)
+        def samples() -> Samples:
+            return [*recording.earlier, *recording.samples]
 
-    def is_there() -> bool:
-        recording.pump()
-        return bool(recording.samples or _commands(probe, topic) or probe.publishers(topic))
+        def silent_sec() -> float:
+            return time.monotonic() - max(started, recording.last_arrival)
 
-    def is_over() -> bool:
-        recording.pump()
-        if len(recording.samples) - count > MANY:
-            return True
-        if recording.samples and is_too_much(samples()):
-            return True
-        if _commands(probe, topic):
-            return False
-        if is_whole(samples()) or not probe.publishers(topic):
-            return silent_sec() > GONE_SEC
-        return silent_sec() > SILENT_SEC
+        def is_there() -> bool:
+            recording.pump()
+            return bool(recording.samples or _commands(probe, topic) or probe.publishers(topic))
 
-    probe.wait_to_appear(is_there)
-    count = len(recording.samples)
-    in_time = probe.wait(is_over, MOST_SEC)
-    _refuse_other_type(probe, where, expected)
-    if not recording.samples:
-        _refuse_nothing(probe, where, expected, recording.earlier)
-    is_running = _commands(probe, topic)
-    keeps_coming = not in_time and not is_running and silent_sec() < SILENT_SEC
-    return Sent(
-        recording,
-        earlier=list(recording.earlier),
-        new=list(recording.samples),
-        is_running=is_running,
-        goes_on=keeps_coming or len(recording.samples) - count > MANY,
-    )
+        def is_over() -> bool:
+            recording.pump()
+            if len(recording.samples) - count > MANY:
+                return True
+            if recording.samples and self.is_too_much(samples()):
+                return True
+            if _commands(probe, topic):
+                return False
+            whole = self.is_whole(samples()) or not probe.publishers(topic)
+            longest = GONE_SEC if whole else SILENT_SEC
+            # A timer of this notebook may be late.
+            if silent_sec() <= longest or not runtime.executor.settle(longest):
+                return False
+            recording.pump()
+            return silent_sec() > longest
+
+        probe.wait_to_appear(is_there)
+        count = len(recording.samples)
+        in_time = probe.wait(is_over, MOST_SEC)
+        self._refuse_other_type(probe)
+        if not recording.samples:
+            self._refuse_nothing(probe, recording.earlier)
+        is_running = _commands(probe, topic)
+        keeps_coming = not in_time and not is_running and silent_sec() < SILENT_SEC
+        return Sent(
+            recording,
+            earlier=list(recording.earlier),
+            new=list(recording.samples),
+            is_running=is_running,
+            goes_on=keeps_coming or len(recording.samples) - count > MANY,
+        )
+
+    def _refuse_other_topics(self, probe: Probe) -> None:
+        """Raise Fail if messages of the type of the task are sent to another topic as well."""
+        topic, msg_type = self.where.topic, self.where.msg_type
+        found = [end.topic for end in self._elsewhere(probe)]
+        other = found[0] if found else other_topic(topic, msg_type, probe.scope.known)
+        if other:
+            raise Fail(
+                f'messages on {topic}, and on no other topic',
+                f'what was asked for, and messages on {other} as well',
+                ELSEWHERE_TOO.of(topic=topic, other=other),
+            )
+
+    def _elsewhere(self, probe: Probe) -> list[Endpoint]:
+        """Return the learner's publishers of the type on topics that the lesson does not know."""
+        return [
+            end
+            for end in probe.all_publishers()
+            if end.msg_type == self.where.msg_type and end.topic not in probe.scope.known
+        ]
+
+    def _refuse_nothing(self, probe: Probe, earlier: Samples) -> NoReturn:
+        """Raise what explains why nothing new has come."""
+        topic = self.where.topic
+        explain_last_command(topic, self.expected)
+        if earlier:
+            raise NotAttempted(f'Nothing new has come on {topic} since the last check.')
+        for end in self._elsewhere(probe):
+            raise Fail(
+                self.expected,
+                f'{end.node} publishes on {end.topic}',
+                words.OTHER_NAME.of(seen=end.topic, wanted=topic).then(
+                    f'Write the topic as {topic}.'
+                ),
+            )
+        if _commands(probe, topic) or probe.publishers(topic):
+            raise NotAttempted(
+                f'There is a publisher on {topic}, but nothing has come yet. Run this cell again '
+                'when the command has ended.'
+            )
+        raise NotAttempted(
+            f'Not attempted yet: nothing has come on {topic}. Write your commands in the cell '
+            'above, run that cell, then run this one again. If a command says that something is '
+            'wrong, nothing was sent.'
+        )
+
+    def _refuse_other_type(self, probe: Probe) -> None:
+        """Raise Fail if a command, of a terminal perhaps, is there with another type."""
+        topic, msg_type = self.where.topic, self.where.msg_type
+        for info in probe.node.get_publishers_info_by_topic(topic):
+            if info.topic_type != msg_type:
+                raise Fail(
+                    self.expected,
+                    f'a publisher on {topic} with messages of type {info.topic_type}',
+                    OTHER_TYPE.of(msg_type=msg_type),
+                )
 
 
 def newest_run(samples: Samples) -> list[Sample]:
@@ -248,15 +302,14 @@ def is_every(period_sec: float, run: Samples, commanded_hz: float | None) -> boo
         run: The messages.
         commanded_hz: The rate that the command was given, if it is known.
     """
+    off = TOLERANCE + CLOCKS_DIFFER
     gaps = [later.stamp - earlier.stamp for earlier, later in pairwise(run)]
     seen = (mean(gaps), period(run))
     if max(gaps) < EVEN * min(gaps):
-        return any(abs(period_sec / sec - 1.0) <= TOLERANCE for sec in seen)
+        return any(abs(period_sec / sec - 1.0) <= off for sec in seen)
     if commanded_hz is not None:
-        return abs(period_sec * commanded_hz - 1.0) <= TOLERANCE
-    return min(gaps) <= period_sec * (1.0 + TOLERANCE) and max(seen) >= period_sec * (
-        1.0 - TOLERANCE
-    )
+        return abs(period_sec * commanded_hz - 1.0) <= off
+    return min(gaps) <= period_sec * (1.0 + off) and max(seen) >= period_sec * (1.0 - off)
 
 
 def period(run: Samples) -> float:
@@ -265,66 +318,6 @@ def period(run: Samples) -> float:
         (later.stamp - earlier.stamp) / (later.number - earlier.number)
         for earlier, later in combinations(run, 2)
     )
-
-
-def _refuse_other_topics(probe: Probe, where: OnTopic) -> None:
-    """Raise Fail if messages of the type of the task are sent to another topic as well."""
-    topic = where.topic
-    found = [end.topic for end in _elsewhere(probe, where)]
-    other = found[0] if found else other_topic(topic, where.msg_type, probe.scope.known)
-    if other:
-        raise Fail(
-            f'messages on {topic}, and on no other topic',
-            f'what was asked for, and messages on {other} as well',
-            why=f'The task asks for {topic} only.',
-            todo=f'End what publishes on {other}, and send the messages to {topic} once more.',
-        )
-
-
-def _elsewhere(probe: Probe, where: OnTopic) -> list[Endpoint]:
-    """Return the learner's publishers of the type on topics that the lesson does not know."""
-    return [
-        end
-        for end in probe.all_publishers()
-        if end.msg_type == where.msg_type and end.topic not in probe.scope.known
-    ]
-
-
-def _refuse_nothing(probe: Probe, where: OnTopic, expected: str, earlier: Samples) -> NoReturn:
-    """Raise what explains why nothing new has come."""
-    topic = where.topic
-    explain_last_command(topic, expected)
-    if earlier:
-        raise NotAttempted(f'Nothing new has come on {topic} since the last check.')
-    for end in _elsewhere(probe, where):
-        raise Fail(
-            expected,
-            f'{end.node} publishes on {end.topic}',
-            why=f'{end.topic} is not {topic}: names must be equal to the last letter.',
-            todo=f'Write the topic as {topic}.',
-        )
-    if _commands(probe, topic) or probe.publishers(topic):
-        raise NotAttempted(
-            f'Somebody is going to publish on {topic}, but nothing has come yet. Run this cell '
-            'again when the command has ended.'
-        )
-    raise NotAttempted(
-        f'Not attempted yet: nothing has come on {topic}. Write your commands in the cell above, '
-        'run that cell, then run this one again. If a command says that something is wrong, '
-        'nothing was sent.'
-    )
-
-
-def _refuse_other_type(probe: Probe, where: OnTopic, expected: str) -> None:
-    """Raise Fail if a command, of a terminal perhaps, is there with another type."""
-    for info in probe.node.get_publishers_info_by_topic(where.topic):
-        if info.topic_type != where.msg_type:
-            raise Fail(
-                expected,
-                f'a publisher on {where.topic} with messages of type {info.topic_type}',
-                why='A topic carries one type of message. Nobody hears messages of another type.',
-                todo=f'Stop that command with Ctrl-C, and use {where.msg_type}.',
-            )
 
 
 def _commands(probe: Probe, topic: str) -> bool:

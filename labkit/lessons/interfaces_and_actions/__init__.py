@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from labkit.exercises import Lesson
+from labkit.lessons._robot import ROBOT_TOPICS
 from labkit.lessons.interfaces_and_actions.asker import asker
 from labkit.lessons.interfaces_and_actions.countdown import countdown
-from labkit.lessons.interfaces_and_actions.quiz import QUIZ
+from labkit.lessons.interfaces_and_actions.quiz import QUIZ, WARM_UP
 from labkit.lessons.interfaces_and_actions.squares import squares
 from labkit.lessons.interfaces_and_actions.stairs import stairs
 
@@ -20,16 +21,9 @@ LESSON = Lesson(
         'by colcon (this part needs a C++ compiler)'
     ),
     exercises=[squares, stairs, countdown, asker],
-    quizzes=[QUIZ],
+    quizzes=[WARM_UP, QUIZ],
     topics=[
-        '/odom',
-        '/scan',
-        '/joint_states',
-        '/imu',
-        '/battery_state',
-        '/camera/image_raw',
-        '/camera/camera_info',
-        '/cmd_vel',
+        *ROBOT_TOPICS,
     ],
     given={
         '/turtlebot': '*',

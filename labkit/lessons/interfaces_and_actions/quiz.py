@@ -4,17 +4,40 @@ from __future__ import annotations
 
 from labkit.exercises import Choice, Number, Quiz, Several, Word, right, wrong
 
-__all__ = ['QUIZ']
+__all__ = ['QUIZ', 'WARM_UP']
+
+WARM_UP = Quiz(
+    'warm_up',
+    Choice(
+        'What does `call_async()` of a client return?',
+        right('a future', 'A place for the response, which comes later.'),
+        wrong('the response', 'That is what call() returns, when it has come.'),
+        wrong('None', 'Then nothing could tell you when the response is there.'),
+    ),
+    Choice(
+        'A type of a service has two parts. What stands between them?',
+        right('a line of three hyphens', 'Above it is the request, below it the response.'),
+        wrong('an empty line', 'An empty line means nothing in such a file.'),
+        wrong('the word response', 'No words: three hyphens.'),
+    ),
+    Choice(
+        'Your package imports std_msgs, and `package.xml` does not name it. Where does that fail?',
+        right('on a machine without std_msgs', 'Nothing there says that it has to be installed.'),
+        wrong('in colcon build', 'A build of Python does not look into your modules.'),
+        wrong('in ros2 run, on any machine', 'Where std_msgs is installed, the import works.'),
+    ),
+    cell_id='warm-up',
+)
 
 QUIZ = Quiz(
     'interfaces_and_actions',
     Choice(
-        'A robot is to drive to the kitchen, which takes two minutes. You want to know how far it '
-        'is, and to be able to call it back. What fits best?',
-        right('an action', 'It takes long, tells how far it is, and can be canceled.'),
+        'A robot is to drive to the kitchen, which takes two minutes. You want to see how far it '
+        'has come, and to be able to cancel the drive. What fits best?',
+        right('an action', 'It takes long, reports how far it has come, and can be canceled.'),
         wrong('a service', 'It has one answer, at the end, and nobody can cancel a request.'),
-        wrong('a topic', 'Whoever publishes a place learns neither that it is heard nor reached.'),
-        wrong('a parameter', 'A parameter is a setting. To drive somewhere is something to do.'),
+        wrong('a topic', 'A publisher never learns whether a place was heard, or reached.'),
+        wrong('a parameter', 'A parameter is a setting, and driving somewhere is work.'),
     ),
     Number(
         'A file of an action has three parts. How many lines of three hyphens stand between them?',
@@ -28,9 +51,9 @@ QUIZ = Quiz(
         'the work?',
         right(
             'execute_callback, when it looks at is_cancel_requested',
-            'To accept only says that it will stop. The loop has to look, and to end the goal.',
+            'Accepting stops nothing by itself. The loop has to look, and end the goal.',
         ),
-        wrong('ROS, at once', 'ROS can not stop code of Python half way, and does not try to.'),
+        wrong('ROS, at once', 'ROS cannot stop Python code half way, and does not try to.'),
         wrong('the client', 'The client asks. What is done is done by the server.'),
     ),
     Choice(
@@ -47,7 +70,7 @@ QUIZ = Quiz(
         'Who can see the feedback of an action?',
         right('the client that has sent the goal', 'It has a feedback_callback for it.'),
         right(
-            'whoever subscribes to the hidden topic of the feedback',
+            'any node that subscribes to the hidden topic of the feedback',
             'Feedback is an ordinary topic, whose name has a part that begins with _.',
         ),
         wrong('nobody before the result is there', 'Feedback is what comes before the result.'),
@@ -55,7 +78,7 @@ QUIZ = Quiz(
     Choice(
         'execute_callback returns a result, and has called neither succeed() nor canceled(). How '
         'does the goal end?',
-        right('aborted', 'A goal that nobody ends is taken for one that has failed.'),
+        right('aborted', 'A goal that nobody ends counts as failed.'),
         wrong('succeeded', 'The server has to say so: goal_handle.succeed().'),
         wrong('it goes on for ever', 'When the callback has returned, the goal is over.'),
     ),

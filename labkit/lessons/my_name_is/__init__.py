@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from labkit.exercises import Lesson
+from labkit.lessons._robot import ROBOT_TOPICS
 from labkit.lessons.my_name_is.own_process import own_process
-from labkit.lessons.my_name_is.quiz import QUIZ
+from labkit.lessons.my_name_is.quiz import QUIZ, WARM_UP
 from labkit.lessons.my_name_is.third_stage import third_stage
 from labkit.lessons.my_name_is.two_names import two_names
 from labkit.lessons.my_name_is.two_stages import two_stages
@@ -17,7 +18,7 @@ LESSON = Lesson(
     title='My name is',
     teaches='a chain of nodes, in one process and in several',
     exercises=[two_stages, own_process, third_stage, two_names],
-    quizzes=[QUIZ],
-    topics=['/celsius', '/fahrenheit'],
-    given={'/observer': 'remove-stage-one'},
+    quizzes=[WARM_UP, QUIZ],
+    topics=['/celsius', '/fahrenheit', '/word', *ROBOT_TOPICS],
+    given={'/observer': 'remove-stage-one', '/turtlebot': 'word', '/translator': 'word'},
 )

@@ -7,7 +7,8 @@ import time
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from labkit.background.child_processes import Process
+    from labkit.exercises.probe import Probe
+    from labkit.programs.child_processes import Process
 
 __all__ = ['ended_program', 'start_program']
 
@@ -33,8 +34,8 @@ def start_program(program: str) -> Process:
         The process; `stop()` ends it.
     """
     global _last, _started
-    from labkit.background.child_processes import environment, start_process
     from labkit.background.runtime import runtime
+    from labkit.programs.child_processes import environment, start_process
     from labkit.rosgraph.snapshot import node_names
 
     runtime.start()
@@ -56,15 +57,23 @@ def start_program(program: str) -> Process:
     return process
 
 
-def ended_program() -> Process | None:
+def ended_program(probe: Probe) -> Process | None:
     """Return the program that was started last, if it has ended and no process was started since.
 
-    A process may be started in another way, too.
+    A process may be started in another way, too. One whose node has left the graph is waited for:
+    a program ends a moment after its node.
     """
     import psutil  # type: ignore[import-untyped]
 
-    if _last is None or _last.running:
+    from labkit.programs.child_processes import gids_in
+
+    program = _last
+    if program is None:
+        return None
+    if program.nodes:
+        probe.wait(lambda: not program.running or any(map(program.owns, gids_in(probe.node))))
+    if program.running:
         return None
     children = psutil.Process().children()
     later = (child for child in children if child.create_time() > _started)
-    return None if any(child.status() != psutil.STATUS_ZOMBIE for child in later) else _last
+    return None if any(child.status() != psutil.STATUS_ZOMBIE for child in later) else program

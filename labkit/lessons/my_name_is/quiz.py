@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from labkit.exercises import Choice, Number, Quiz, Several, right, wrong
 
-__all__ = ['QUIZ']
+__all__ = ['QUIZ', 'WARM_UP']
 
 
 def _listeners_of_incomplete() -> int:
     """Count the subscriptions to /incomplete at this moment."""
-    from labkit.background.discovery import asking_node
+    from labkit.asking.discovery import asking_node
 
     return asking_node().count_subscribers('/incomplete')
 
@@ -21,13 +21,38 @@ def _nobody_listens(number: float) -> str:
     return 'At this moment it has none. Run the cell with your StageTwo, and ask the graph again.'
 
 
+WARM_UP = Quiz(
+    'warm_up',
+    Choice(
+        '`Driver` of lesson 04 hears numbers on `/speed` and drives the robot. When does it '
+        'publish?',
+        right('in its callback, once for each number', 'It has no timer: a message sets it off.'),
+        wrong('ten times a second', 'That takes a timer, and Driver has none.'),
+        wrong('when it is spun for the first time', 'Spinning waits for messages. It sends none.'),
+    ),
+    Choice(
+        '`topic list` shows `/odds`, and nobody has published there yet. Why is it in the list?',
+        right('Somebody subscribes to it.', 'A topic exists as soon as either end does.'),
+        wrong('ROS comes with that topic.', 'ROS comes with /rosout and /parameter_events.'),
+        wrong('It is left from the lesson before.', 'A topic ends with the last node on it.'),
+    ),
+    Choice(
+        'A sensor is faster than your callback, and only its newest value counts. Which depth do '
+        'you choose?',
+        right('a small one', 'Old values fall out, so the next one is a new one.'),
+        wrong('a large one', 'Then the callback works through old values first.'),
+        wrong('any: it changes nothing', 'The depth says how many old values wait.'),
+    ),
+    cell_id='warm-up',
+)
+
 QUIZ = Quiz(
     'my_name_is',
     Choice(
         'Stage two is started before stage one. What happens?',
         right(
-            'It waits. When stage one speaks, it hears that.',
-            'A subscription needs no publisher. Whoever comes later is found.',
+            'It waits, and hears stage one as soon as that speaks.',
+            'A subscription needs no publisher. One that comes later is found.',
         ),
         wrong(
             'It ends with an error, because the topic does not exist.',
@@ -60,7 +85,7 @@ QUIZ = Quiz(
         ),
         wrong(
             'ROS refuses it.',
-            'One node may publish on a topic and subscribe to it. Mostly that is a mistake.',
+            'One node may publish on a topic and subscribe to it. Usually that is a mistake.',
         ),
     ),
     Number(
@@ -72,7 +97,7 @@ QUIZ = Quiz(
         wrong={
             10: 'A callback of 0.2 s fits into one second only five times.',
             2: 'That is 10 times 0.2: the seconds of work that come in each second.',
-            50: 'That is 10 divided by 0.2. A stage can not publish more than it gets.',
+            50: 'That is 10 divided by 0.2. A stage cannot publish more than it gets.',
         },
         unit='Hz',
     ),

@@ -2,44 +2,220 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Exercise, Solution, Style, Wrong, changed
-from labkit.lessons.my_name_is.two_names_clauses import EachAnswers, NamesDiffer, TwoNodes
-from labkit.lessons.my_name_is.two_stages_clauses import STRING
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from labkit.exercises import Exercise, Fail, Mistake, Solution, expect
+from labkit.exercises.clauses import WITHIN, Answers, Evidence, GraphClause, Test
+from labkit.exercises.draws import draw_texts
+from labkit.exercises.life import Life
+from labkit.exercises.watch import Lived, streams_of
+from labkit.lessons.my_name_is.stages import (
+    CHANGED,
+    INNER,
+    NOTHING_ADDED,
+    OPENING,
+    STRING,
+    name_trouble,
+)
 
 __all__ = ['two_names']
 
+OUTER = '/names'
 
-_NAMES = """
-from rclpy.node import Node
-from std_msgs.msg import String
+_NAME_EACH = "Give the name of the node as an argument, too: Introducer('ada', 'Ada')"
+REPLACED = Mistake(
+    'two-names/replaced',
+    'Were two nodes of the same name started? lab.spin() ends the first of them when the second '
+    'one comes.',
+    _NAME_EACH,
+    change=[("'bob', 'Bob'", "'ada', 'Bob'")],
+)
+SAME_NODE_NAME = Mistake(
+    'two-names/same-node-name',
+    'Two nodes have the same name. ROS allows it, and nobody can tell them apart.',
+    _NAME_EACH,
+)
+TWO_PUBLISHERS = Mistake(
+    'two-names/two-publishers',
+    'One node has two publishers. Two nodes are asked for, with one publisher each.',
+    _NAME_EACH,
+)
+ONLY_SOME = Mistake(
+    'two-names/only-some',
+    'Only {answered} of {count} nodes answered: {nodes}.',
+    'Do the same in each node, for each text.',
+)
+SHARED = Mistake(
+    'two-names/shared',
+    'Both say {name!r}: they share the name. A variable of the notebook or of the class is the '
+    'same for all objects.',
+    'Keep the name in the object: self.first_name = first_name in __init__',
+    change=[('self.first_name = first_name', 'Introducer.first_name = first_name')],
+)
 
 
-class Introducer(Node):
-    def __init__(self, node_name, first_name):
-        super().__init__(node_name)
-        self.first_name = first_name
-        self.publisher = self.create_publisher(String, 'names', 10)
-        self.subscription = self.create_subscription(String, 'incomplete', self.on_text, 10)
+class _TwoNodes(GraphClause):
+    """There are at least two nodes of different names, and each has both ends."""
 
-    def on_text(self, msg):
-        self.publisher.publish(String(data=msg.data + self.first_name))
+    text = (
+        f'two nodes of different names, or more, subscribe to `{INNER}` and publish on `{OUTER}` '
+        f'(both `{STRING}`)'
+    )
+    recognises = (REPLACED, SHARED)
+
+    def find(self, evidence: Evidence) -> None:
+        """Look for the nodes."""
+        probe = evidence.probe
+        expect.publisher(probe, OUTER)
+        # Nodes of a process of their own come into the graph one after the other.
+        probe.wait_to_appear(lambda: len({end.node for end in probe.publishers(OUTER)}) > 1)
+        count = Counter(end.node for end in probe.publishers(OUTER))
+        node, number = count.most_common(1)[0]
+        if len(count) == 1 or number > 1:
+            same = probe.node_names().count(node) > 1
+            mistake = SAME_NODE_NAME if same else TWO_PUBLISHERS if number > 1 else REPLACED
+            raise Fail(
+                f'two nodes, of different names, that publish on {OUTER}',
+                f'{number} publisher{"s" * (number > 1)} on {OUTER} of {node} alone',
+                mistake,
+            )
+        for node in sorted(count):
+            evidence.publisher(OUTER, node)
+            evidence.subscription(INNER, node)
 
 
-ada = lab.spin(Introducer('ada', 'Ada'))
-bob = lab.spin(Introducer('bob', 'Bob'))
-"""
-_PUBLISH = '        self.publisher.publish(String(data=msg.data + self.first_name))\n'
-_START = _NAMES[_NAMES.index('ada = ') :].strip()
+class _EachAnswers(GraphClause):
+    """Each node answers each text once. What it appends, the first answers tell."""
+
+    text = (
+        f'for each text on `{INNER}`, each of them publishes it with a first name appended, once, '
+        f'{WITHIN}'
+    )
+
+    def tests(self, evidence: Evidence) -> Sequence[Test]:
+        """Return texts to be completed."""
+        for (kind, _, _), end in evidence.ends.items():
+            if kind == 'subscription':
+                expect.spun(evidence.probe, end)
+        texts = [OPENING, *draw_texts()]
+        due = len(_nodes(evidence))
+        return [Test(INNER, STRING, {'data': text}, (OUTER,), due=due) for text in texts]
+
+    def judge(self, evidence: Evidence) -> str:
+        """Judge the answers of each node. Which name is whose, its first answer tells."""
+        life, nodes, found = evidence.life, _nodes(evidence), _said(evidence)
+        # One that has said something before the check does not answer each text, but does answer.
+        speak = [said for said in found if said.samples or evidence.said_by(said.node, OUTER)]
+        if 0 < len(speak) < len(nodes):
+            raise Fail(
+                f'{len(nodes)} texts on {OUTER} for each one on {INNER}, one of each node',
+                f'data = {expect.show([OPENING + said.name for said in speak])}',
+                ONLY_SOME.of(answered=len(speak), count=len(nodes), nodes=', '.join(nodes)),
+            )
+        for said in found:
+            own = replace(life, samples={**life.samples, OUTER: said.samples})
+            _appends(said.name or 'Ada', said.node).judge(replace(evidence, life=own))
+        shown = ' and '.join(repr(OPENING + said.name) for said in found)
+        return f'Each text was completed by {len(nodes)} nodes: {shown}.'
+
+
+class _NamesDiffer(GraphClause):
+    """Each node has a first name of its own."""
+
+    text = 'the first names are different, and each node keeps its own'
+
+    def judge(self, evidence: Evidence) -> str:
+        """Compare the names."""
+        names = [said.name for said in _said(evidence)]
+        if len({*names}) < len(names):
+            raise Fail(
+                f'texts on {OUTER} with different names',
+                f'data = {expect.show([OPENING + name for name in names])}',
+                SHARED.of(name=names[0]),
+            )
+        return ''
+
+
+@dataclass(frozen=True)
+class _Said:
+    """The messages of a node, and the name that it appends; empty if that is not known."""
+
+    node: str
+    samples: list[Lived]
+    name: str
+
+
+def _nodes(evidence: Evidence) -> list[str]:
+    """Return the names of the nodes that answer."""
+    return sorted(by for kind, _, by in evidence.ends if kind == 'publisher')
+
+
+def _said(evidence: Evidence) -> list[_Said]:
+    """Return what each node has said.
+
+    Nobody knows which messages are whose in another process: there each name is taken for a node.
+    """
+    life, nodes = evidence.life, _nodes(evidence)
+    said = life.on(OUTER, before=True)
+    samples = {node: [sample for sample in said if sample.node == node] for node in nodes}
+    others = [node for node in nodes if not samples[node]]
+    rest = [sample for sample in said if sample.node not in nodes]
+    streams, names = streams_of(rest), _names(life, rest)
+    if len(streams) < len(others) or len(names) < len(others):
+        # One speaks for several, or they share a name: what each publisher has said is known.
+        samples.update(zip(others, streams, strict=False))
+    else:
+        texts = {sample.message.data for sample in life.on(INNER, before=True)}
+        of = {text + name: name for text in texts for name in names}
+        for node, name in zip(others, names, strict=False):
+            # What is nobody's may be anybody's.
+            samples[node] = [each for each in rest if of.get(each.message.data, name) == name]
+    return [_Said(node, own, next(iter(_names(life, own)), '')) for node, own in samples.items()]
+
+
+def _names(life: Life, said: Sequence[Lived]) -> Counter[str]:
+    """Return how often each name was appended to a test; none if that is not known."""
+    came = [(sample.at, sample.message.data) for sample in said]
+    sent = [(sent.at, str(sent.fields['data'])) for sent in life.sent if sent.topic == INNER]
+    # The lesson's first stage opens sentences, too, and each one may be answered just then.
+    found = [
+        Counter(
+            answer.removeprefix(text)
+            for t, answer in came
+            if at <= t < at + 1.0 and name_trouble(text, answer) is None
+        )
+        for at, text in [*[each for each in sent if each[1] != OPENING][:1], *sent[:1]]
+    ]
+    return max(found, key=len, default=Counter())
+
+
+def _trouble(text: str, came: Sequence[str]) -> Mistake | None:
+    return (name_trouble(text, came[-1]) or CHANGED) if came else None
+
+
+def _appends(name: str, node: str) -> Answers:
+    return Answers(
+        INNER,
+        OUTER,
+        STRING,
+        _EachAnswers.text,
+        answer=lambda text: f'{text}{name}',
+        by=node,
+        mistakes=[NOTHING_ADDED],
+        explain=_trouble,
+    )
 
 
 two_names = Exercise(
     name='two_names',
-    task='Two nodes of one class hear /incomplete. Each appends a first name of its own, and '
-    'publishes on /names.',
-    subscribes={'/incomplete': STRING},
-    publishes={'/names': STRING},
-    shared=['/names'],
-    clauses=(TwoNodes(), EachAnswers(), NamesDiffer()),
+    task=f'Two nodes of one class hear {INNER}. Each appends a first name of its own, and '
+    f'publishes on {OUTER}.',
+    subscribes={INNER: STRING},
+    publishes={OUTER: STRING},
+    shared=[OUTER],
+    clauses=(_TwoNodes(), _EachAnswers(), _NamesDiffer()),
     hints=[
         'A class is a plan: two objects of it are two nodes. In what do the two differ?',
         'In two things: the name of the node and the first name. Both can be arguments of '
@@ -48,261 +224,9 @@ two_names = Exercise(
         'self.first_name = first_name.',
     ],
     answer=Solution(
-        _NAMES,
+        __file__,
+        'two_names.py',
         'What differs is an argument and is kept in self, so each object has its own. Both '
         'publish on one topic, and both hear the same message.',
     ),
-    styles=[
-        Style(
-            'functions',
-            """
-import rclpy
-from std_msgs.msg import String
-
-
-def introduce(name):
-    node = rclpy.create_node('stage_' + name.lower())
-    publisher = node.create_publisher(String, '/names', 10)
-
-    def answer(text):
-        publisher.publish(String(data=text.data + name))
-
-    node.create_subscription(String, '/incomplete', answer, 10)
-    lab.spin(node)
-
-
-for name in ('Eve', 'Finn', 'Gus'):
-    introduce(name)
-""",
-        ),
-        Style(
-            'a class each',
-            changed(
-                _NAMES,
-                (
-                    _START,
-                    """class Ada(Introducer):
-    def __init__(self):
-        super().__init__('lady', 'Ada')
-
-
-class Bob(Introducer):
-    def __init__(self):
-        super().__init__('builder', 'Bob')
-
-
-lab.spin(Ada())
-lab.spin(Bob())
-""",
-                ),
-            ),
-        ),
-        Style(
-            'one more, and a list and a timer',
-            """
-from rclpy.node import Node
-from std_msgs.msg import String
-
-
-class Guest(Node):
-    def __init__(self, name):
-        super().__init__(f'{name.lower()}_node', namespace='party')
-        self.name = name
-        self.waiting = []
-        self.publisher = self.create_publisher(String, '/names', 10)
-        self.create_subscription(String, '/incomplete', self.waiting.append, 10)
-        self.create_timer(0.3, self.speak)
-
-    def speak(self):
-        while self.waiting:
-            self.publisher.publish(String(data=self.waiting.pop(0).data + self.name))
-
-
-guests = [lab.spin(Guest(name)) for name in ('Ada', 'Bob', 'Zoe')]
-""",
-        ),
-        Style(
-            'names that the lesson has used',
-            changed(
-                _NAMES, ("'ada', 'Ada'", "'observer', 'Ada'"), ("'bob', 'Bob'", "'display', 'Bob'")
-            ),
-        ),
-        Style(
-            'executors of their own, in threads',
-            changed(
-                _NAMES,
-                (
-                    'from rclpy.node',
-                    'import threading\n\nfrom rclpy.executors import SingleThreadedExecutor\n'
-                    'from rclpy.node',
-                ),
-                (
-                    _START,
-                    """for name in ('Ada', 'Bob'):
-    executor = SingleThreadedExecutor()
-    executor.add_node(Introducer(name.lower(), name))
-    threading.Thread(target=executor.spin, daemon=True).start()
-""",
-                ),
-            ),
-        ),
-        Style(
-            'own process',
-            changed(
-                _NAMES,
-                (
-                    'from rclpy.node',
-                    'import rclpy\nfrom rclpy.executors import MultiThreadedExecutor\n'
-                    'from rclpy.node',
-                ),
-                (
-                    _START,
-                    """rclpy.init()
-executor = MultiThreadedExecutor()
-for node in (Introducer('ada', 'Ada'), Introducer('bob', 'Bob')):
-    executor.add_node(node)
-executor.spin()
-""",
-                ),
-            ),
-            process=True,
-        ),
-    ],
-    wrong=[
-        Wrong(
-            'one node only',
-            changed(_NAMES, ("bob = lab.spin(Introducer('bob', 'Bob'))\n", '')),
-            'of /ada alone',
-        ),
-        Wrong(
-            'same node name',
-            changed(_NAMES, ("'bob', 'Bob'", "'ada', 'Bob'")),
-            'lab.spin() ends the first of them',
-        ),
-        Wrong(
-            'same first name',
-            changed(_NAMES, ("'bob', 'Bob'", "'bob', 'Ada'")),
-            "Both say 'Ada'",
-        ),
-        Wrong(
-            'a variable for all',
-            changed(
-                _NAMES,
-                ('self.first_name = first_name', 'Introducer.first_name = first_name'),
-            ),
-            "Both say 'Bob': they share the name.",
-        ),
-        Wrong(
-            'second one not spun',
-            changed(_NAMES, ("lab.spin(Introducer('bob', 'Bob'))", "Introducer('bob', 'Bob')")),
-            '/bob is there, but it is not spun',
-        ),
-        Wrong(
-            'string built once',
-            changed(_NAMES, ('msg.data + self', "'My name is ' + self")),
-            'The text that came in is not part of what goes out.',
-        ),
-        Wrong(
-            'space too many',
-            changed(_NAMES, ('msg.data + self', "msg.data + ' ' + self")),
-            'There is a space too many beside the name.',
-        ),
-        Wrong(
-            'one node with two publishers',
-            changed(
-                _NAMES,
-                (_START, "ada = lab.spin(Introducer('ada', 'Ada'))"),
-                (
-                    '    def on_text',
-                    "        self.other = self.create_publisher(String, 'names', 10)\n\n"
-                    '    def on_text',
-                ),
-                (
-                    'self.first_name))',
-                    "self.first_name))\n        self.other.publish(String(data=msg.data + 'Bob'))",
-                ),
-            ),
-            'One node has two publishers.',
-        ),
-        Wrong(
-            'capital letter',
-            changed(_NAMES, ("String, 'names', 10", "String, 'Names', 10")),
-            'Capital and small letters differ in names',
-        ),
-        Wrong(
-            'answers twice',
-            changed(_NAMES, (_PUBLISH, _PUBLISH + _PUBLISH)),
-            'A node publishes more than one text',
-        ),
-        Wrong(
-            'passes on, and answers',
-            changed(_NAMES, (_PUBLISH, _PUBLISH + '        self.publisher.publish(msg)\n')),
-            'A node publishes more than one text',
-        ),
-        Wrong(
-            'a name that changes',
-            changed(
-                _NAMES,
-                (_PUBLISH, _PUBLISH + '        self.first_name = self.first_name[::-1]\n'),
-            ),
-            'The names are others than those that came with the first text.',
-        ),
-        Wrong(
-            'only the first time',
-            changed(
-                _NAMES,
-                (
-                    _PUBLISH,
-                    '        if self.first_name:\n    '
-                    + _PUBLISH
-                    + "        self.first_name = ''\n",
-                ),
-            ),
-            'nothing on /names',
-        ),
-        Wrong(
-            'one of them knows one text only',
-            changed(
-                _NAMES,
-                (
-                    _PUBLISH,
-                    "        if self.first_name == 'Ada' or msg.data == 'My name is ':\n    "
-                    + _PUBLISH,
-                ),
-            ),
-            'Only 1 of 2 nodes answered',
-        ),
-        Wrong(
-            'repeats its answer',
-            changed(
-                _NAMES,
-                (
-                    '        self.first_name = first_name\n',
-                    '        self.first_name = first_name\n        self.heard = None\n'
-                    '        self.timer = self.create_timer(0.2, self.on_timer)\n',
-                ),
-                (
-                    _PUBLISH,
-                    '        self.heard = msg\n\n    def on_timer(self):\n'
-                    '        if self.heard:\n'
-                    '            self.publisher.publish('
-                    'String(data=self.heard.data + self.first_name))\n',
-                ),
-            ),
-            'a timer or a loop publishes them',
-        ),
-        Wrong(
-            'one of them listens elsewhere',
-            changed(
-                _NAMES,
-                ("String, 'incomplete', self", 'String, self.inner, self'),
-                (
-                    '        self.first_name = first_name\n',
-                    '        self.first_name = first_name\n'
-                    "        self.inner = 'incomplete' if first_name == 'Ada' else 'complete'\n",
-                ),
-            ),
-            '/bob with a subscription to /incomplete',
-        ),
-    ],
 )

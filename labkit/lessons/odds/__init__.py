@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from labkit.exercises import Lesson
+from labkit.lessons._robot import ROBOT_TOPICS
 from labkit.lessons.odds.count_up import count_up
 from labkit.lessons.odds.evens import evens
 from labkit.lessons.odds.find_gate import find_gate
 from labkit.lessons.odds.ones import ones
-from labkit.lessons.odds.quiz import QUIZ
+from labkit.lessons.odds.quiz import QUIZ, WARM_UP
 from labkit.lessons.odds.stadium import GOALS, NODES, VISITORS
 from labkit.lessons.odds.stay_within import stay_within
 
@@ -19,12 +20,14 @@ LESSON = Lesson(
     title='Odd numbers',
     teaches='numbers on topics, types and their limits, queues; finding a silent fault',
     exercises=[ones, count_up, stay_within, evens, find_gate],
-    quizzes=[QUIZ],
-    topics=['/high', '/burst', GOALS, VISITORS],
+    quizzes=[WARM_UP, QUIZ],
+    topics=['/high', '/burst', '/speed', GOALS, VISITORS, *ROBOT_TOPICS],
     given={
         '/counter': 'counter',
         '/one': 'add-one',
         '/add_one': 'add-one',
+        '/turtlebot': 'speed',
+        '/driver': 'speed',
         '/reader': 'burst',
         '/sprinter': 'burst',
         '/announcer': 'stadium repair',

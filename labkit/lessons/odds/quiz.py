@@ -5,12 +5,12 @@ from __future__ import annotations
 from labkit.exercises import Choice, Number, Quiz, Several, right, wrong
 from labkit.lessons.odds.stadium import VISITORS
 
-__all__ = ['QUIZ']
+__all__ = ['QUIZ', 'WARM_UP']
 
 
 def _publishers_of_visitors() -> int:
     """Count the publishers of the stadium's topic at this moment."""
-    from labkit.background.discovery import asking_node
+    from labkit.asking.discovery import asking_node
 
     return asking_node().count_publishers(VISITORS)
 
@@ -21,6 +21,31 @@ def _stadium_is_closed(number: float) -> str:
         return ''
     return 'At this moment there is none. Run the cell with open_stadium(), and count again.'
 
+
+WARM_UP = Quiz(
+    'warm_up',
+    Choice(
+        'Which command shows how many messages come in a second?',
+        right('ros2 topic hz', 'It subscribes, and measures the rate.'),
+        wrong('ros2 topic info', 'It counts publishers and subscriptions, not messages.'),
+        wrong('ros2 topic echo', 'It shows each message, and measures nothing.'),
+    ),
+    Choice(
+        'You publish a Twist from the command line, and name only `linear.x`. What is in its '
+        'other fields?',
+        right('0', 'Fields that are not named keep their defaults.'),
+        wrong('what was there before', 'Each message is a new one, without a memory.'),
+        wrong('nothing: it is refused', 'A message always has all of its fields.'),
+    ),
+    Choice(
+        'A node is not spun. Five letters come to its subscriber, whose depth is 3. Then the node '
+        'is spun. Which one does it hear first?',
+        right('the third', 'The newest three have waited. The two oldest fell out.'),
+        wrong('the first', 'It fell out when the fourth one came.'),
+        wrong('the fifth', 'That is the newest. What waited longest is heard first.'),
+    ),
+    cell_id='warm-up',
+)
 
 QUIZ = Quiz(
     'odds',
@@ -45,12 +70,12 @@ QUIZ = Quiz(
         wrong("'7'", 'That is a text. A message does not convert it: write int(...) around it.'),
     ),
     Number(
-        'A program without the check of fields sends 32769 as an Int16. Which number arrives?',
+        'A program that does not check fields sends 32769 as an Int16. Which number arrives?',
         -32767,
         '16 bits start over: 32769 - 65536 = -32767.',
         'The 65536 values lie on a circle. How far beyond 32767 is 32769?',
         wrong={
-            32769: 'It does not fit into 16 bits, so it can not arrive as it is.',
+            32769: 'It does not fit into 16 bits, so it cannot arrive as it is.',
             32767: 'Nothing is cut off at the limit. The values start over from below.',
             1: 'After 32767 comes -32768, the smallest number, and not 0.',
             -32768: 'That is what 32768 becomes. 32769 is one step further.',
@@ -72,7 +97,7 @@ QUIZ = Quiz(
         '/level with String. What happens?',
         right(
             'Nothing. No message arrives, and nobody reports an error.',
-            'The two do not match, and ROS does not take that for an error. The graph shows it.',
+            'The two do not match, and to ROS that is no error. The graph shows it.',
         ),
         wrong(
             'The numbers arrive as texts.',

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from labkit.lessons._companion import start_companion
 
 if TYPE_CHECKING:
-    from labkit.background.child_processes import Process
+    from labkit.programs.child_processes import Process
 
 __all__ = ['GATES', 'GOALS', 'NODES', 'VISITORS', 'open_stadium', 'wrong_gates']
 
@@ -67,7 +67,7 @@ def main() -> None:
     from rclpy.utilities import get_default_context
     from std_msgs.msg import Int16, Int32
 
-    from labkit.background.program import spin_until_interrupted
+    from labkit.programs.program import spin_until_interrupted
 
     # A context has a DDS participant of its own, and each can have its own type for a topic.
     right, wrong = get_default_context(), Context()

@@ -6,7 +6,7 @@ from labkit.exercises import Lesson
 from labkit.lessons.package.beacon import beacon
 from labkit.lessons.package.counter import counter
 from labkit.lessons.package.listener import listener
-from labkit.lessons.package.quiz import QUIZ
+from labkit.lessons.package.quiz import QUIZ, WARM_UP
 from labkit.lessons.package.repair import repair
 
 __all__ = ['LESSON']
@@ -20,6 +20,6 @@ LESSON = Lesson(
         'it; turn the class of a notebook into a package'
     ),
     exercises=[listener, repair, counter, beacon],
-    quizzes=[QUIZ],
+    quizzes=[WARM_UP, QUIZ],
     topics=['/chatter', '/count', '/half', '/lit', '/news'],
 )

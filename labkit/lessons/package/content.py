@@ -5,32 +5,120 @@ from __future__ import annotations
 import os
 import re
 import subprocess
+import time
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
+from labkit import stop_button
 from labkit.errors import nearest
-from labkit.exercises import Fail, NotAttempted, Probe
-from labkit.exercises.clauses import Clause
-from labkit.exercises.clauses.base import naming
+from labkit.exercises import Clause, Fail, Mistake, NotAttempted, Probe, Stage, words
 from labkit.exercises.exercise import NOTHING_YET
+from labkit.exercises.expect.timing import FOUND_SEC
+from labkit.exercises.life import Life, live
+from labkit.exercises.watch import Lived
 from labkit.lessons.package.workspace import workspace
 
 if TYPE_CHECKING:
-    from labkit.background.child_processes import Process
+    from labkit.programs.child_processes import Process
+    from labkit.rosgraph.endpoints import Endpoint
 
-__all__ = ['Built', 'Does', 'Runs', 'Tested', 'Work', 'judge_package']
+__all__ = ['Built', 'InAWorkspace', 'Runs', 'Tested', 'Work', 'dependencies']
 
 APPEAR_SEC = 15.0
-ANSWER_SEC = 2.0
-# So long it is waited for messages that come several times a second, on a machine at rest.
-WAIT_SEC = 3.0
+# How long a node is watched that keeps a time of its own, s of real time.
+WATCH_SEC = 8.0
 # The packages of the lesson, some of which have names that are close to each other.
 PACKAGES = ('beacon_lab', 'broken_lab', 'counter_lab', 'ears_lab', 'odds_lab', 'robot_basics_lab')
 _SOURCES = ('.py', '.xml', '.cfg')
+
+NO_PACKAGE = Mistake(
+    'package/none',
+    'A node of a notebook ends with the notebook.',
+    "lab.export(..., package='{package}', folder='src', overwrite=True)",
+)
+_CREATE = "ros2 pkg create {package} --destination-directory src, or lab.export(..., folder='src')"
+BESIDE_SRC = Mistake(
+    'package/beside-src', 'Packages lie in the folder src of a workspace.', _CREATE
+)
+OTHER_NAME = Mistake('package/other-name', 'The name is close, and it is another one.', _CREATE)
+NOT_BUILT = Mistake(
+    'package/not-built',
+    'colcon build has not been run since, or it has failed.',
+    'Run !colcon build in the workspace, and read what it says under stderr.',
+)
+OLD_BUILD = Mistake(
+    'package/old-build',
+    'A change in src reaches install only with the next build that succeeds.',
+    'Run !colcon build once more, and read what it says.',
+)
+NO_TEST_SINCE = Mistake(
+    'package/no-test-since',
+    'colcon build does not run tests.',
+    '!colcon test --packages-select {package}',
+)
+TEST_FAILED = Mistake(
+    'package/test-failed',
+    'A test says that something is not as it should be.',
+    '!colcon test-result --verbose shows which one, and why.',
+)
+NO_TEST = Mistake(
+    'package/no-test',
+    'Tests are the functions test_... in the files test_... of the folder test.',
+    'Write one: a function test_... with an assert, in test/test_....py',
+)
+_ENTRY = "In console_scripts: '{program} = {package}.MODULE:main', then build again."
+NEW_ENTRY = Mistake(
+    'package/new-entry',
+    'It stands in setup.py, but was not there when the package was built.',
+    _ENTRY,
+)
+OTHER_ENTRY = Mistake(
+    'package/other-entry',
+    '{near} is close. What stands before = in setup.py is the name for ros2 run.',
+    _ENTRY,
+)
+NO_ENTRY = Mistake(
+    'package/no-entry', 'A module alone cannot be run: setup.py needs an entry for it.', _ENTRY
+)
+RUNS_ALREADY = Mistake(
+    'package/runs-already',
+    '',
+    'End it: lab.processes().stop(), and lab.remove for a node of a cell.',
+)
+_CORRECT = 'Correct the file in src, build again, and check again.'
+NO_FUNCTION = Mistake(
+    'package/no-function',
+    'The entry in setup.py names a function that the module does not have.',
+    _CORRECT,
+)
+NO_MODULE = Mistake(
+    'package/no-module',
+    'The entry in setup.py, or an import, names a module that is not there.',
+    _CORRECT,
+)
+RETURNED = Mistake(
+    'package/returned', 'main() returned at once: nothing in it spins the node.', _CORRECT
+)
+RAISED = Mistake('package/raised', 'The program has raised. The last line says what.', _CORRECT)
+NOT_XML = Mistake(
+    'package/not-xml',
+    'colcon builds it by its setup.py. rosdep can not read what the package needs.',
+    'Look at that line of package.xml: each <tag> has its </tag>, all inside of <package>.',
+)
+NODE_NAME = Mistake(
+    'package/node-name',
+    'The name of the node is what super().__init__() gets.',
+    'super().__init__({node!r})',
+)
+NO_NODE = Mistake(
+    'package/no-node',
+    'main() does not make a node, or waits before that.',
+    'Make it in main(), and spin it.',
+)
 
 
 @dataclass
@@ -43,6 +131,7 @@ class Work:
         folder: The workspace.
         running: What was started of it last, and runs.
         ran: The names of all executables that were started.
+        lives: What was seen of its nodes, by their full names.
     """
 
     probe: Probe
@@ -50,6 +139,7 @@ class Work:
     folder: Path
     running: Process | None = None
     ran: list[str] = field(default_factory=list)
+    lives: dict[str, Life] = field(default_factory=dict)
 
     @property
     def source(self) -> Path:
@@ -69,7 +159,7 @@ class Work:
 
     def sourced(self) -> dict[str, str]:
         """Return the variables of a terminal that has sourced the workspace."""
-        from labkit.background.child_processes import environment
+        from labkit.programs.child_processes import environment
 
         said = subprocess.run(
             ['bash', '-c', '. install/setup.bash && env -0'],
@@ -82,14 +172,12 @@ class Work:
         return {name: value for name, _, value in pairs if name}
 
     def wait(self, condition: Callable[[], object]) -> bool:
-        """Wait until something is true, longer where the machine is busy; tell whether it is."""
-        from labkit.background.patience import busyness
-
-        return self.probe.wait(condition, WAIT_SEC * busyness())
+        """Wait until something is true; tell whether it is."""
+        return self.probe.wait(condition, FOUND_SEC)
 
     def start(self, program: str) -> Process:
         """Start one of its executables, as `ros2 run` does, after the end of the one before."""
-        from labkit.background.child_processes import start_process
+        from labkit.programs.child_processes import start_process
         from labkit.rosgraph.snapshot import node_names
 
         path = self.folder / 'install' / self.package / 'lib' / self.package / program
@@ -100,15 +188,69 @@ class Work:
         process.wait_for_nodes(self.probe.spun_node, before, APPEAR_SEC)
         return process
 
+    def life(self, node: str, topics: Mapping[str, str], step: float) -> Life:
+        """Let half a minute pass for a node of it, and return what it said, once for all clauses.
+
+        One that keeps a time of its own is watched for some seconds.
+
+        Args:
+            node: Its full name.
+            topics: What is listened to, with the types.
+            step: How often it is told the time, s. A timer is called once in it at most.
+        """
+        if node not in self.lives:
+            life = live(self.probe, topics, nodes=[node], step=step)
+            self.lives[node] = life if life.remote else self._watched(topics)
+        return self.lives[node]
+
+    def _watched(self, topics: Mapping[str, str]) -> Life:
+        watches = {topic: self.probe.watch(topic, name) for topic, name in topics.items()}
+        began = time.time()
+        self.probe.wait(lambda: False, WATCH_SEC)
+        life = Life(time.time() - began)
+        for topic, watch in watches.items():
+            life.samples[topic] = [
+                Lived(each.message, each.stamp, each.number, each.stamp - began)
+                for each in watch.samples
+            ]
+        return life
+
     def stop(self) -> None:
         """End what is running of it."""
         process, self.running = self.running, None
         if process is not None:
             process.stop()
 
+    def end(self, node: str, topic: str, msg_type: str, kind: str = 'publisher') -> Endpoint:
+        """Return a node's publisher on a topic, or its subscription to it.
+
+        Raises:
+            Fail: There is none, or it has another type.
+        """
+        publishes = kind == 'publisher'
+        ends = self.probe.all_publishers() if publishes else self.probe.all_subscriptions()
+        own = {end.topic: end for end in ends if end.node == node}
+        package, _, name = msg_type.replace('/msg/', '/').partition('/')
+        told = {'kind': kind, 'topic': topic, 'msg_type': name, 'package': package}
+        if topic not in own:
+            does = 'publishes on' if publishes else 'subscribes to'
+            near = nearest(topic, list(own))
+            raise Fail(
+                f'a {kind} of {node} on {topic}',
+                f'it {does}: {", ".join(sorted(own)) or "no topic"}',
+                (words.STRANGE_TOPIC if near else words.NOT_MADE).of(**told),
+            )
+        if own[topic].msg_type != msg_type:
+            raise Fail(
+                f'messages of type {msg_type} on {topic}',
+                f'messages of type {own[topic].msg_type}',
+                words.OTHER_TYPE.of(**told),
+            )
+        return own[topic]
+
 
 @dataclass(frozen=True)
-class Built(Clause):
+class Built(Clause[Work]):
     """A package lies in the workspace, and is built as it is now."""
 
     package: str
@@ -116,9 +258,9 @@ class Built(Clause):
     @property
     def text(self) -> str:
         """What is asked for."""
-        return f'the package `{self.package}` lies in `src`, and is built as it is now'
+        return f'the package `{self.package}` is in `src`, and its build is up to date'
 
-    def look(self, work: Work) -> None:
+    def judge(self, work: Work) -> str:
         """Raise if it is not there, or not built."""
         if not (work.source / 'package.xml').is_file():
             _refuse_misplaced(work)
@@ -130,22 +272,20 @@ class Built(Clause):
             raise Fail(
                 wanted,
                 f'no install/{self.package}',
-                why='colcon build has not been run since, or it has failed.',
-                todo='Run !colcon build in the workspace, and read what it says under stderr.',
+                NOT_BUILT,
             )
         changed = max(_written(path) for path in work.source.rglob('*') if _is_source(path))
         if _ended(work.build / 'colcon_build.rc') < changed:
             raise Fail(
                 wanted,
                 'files in src that are newer than the last build that went well',
-                why='What is changed in src is not in install before the next build has gone '
-                'well.',
-                todo='Run !colcon build once more, and read what it says.',
+                OLD_BUILD,
             )
+        return ''
 
 
 @dataclass(frozen=True)
-class Runs(Clause):
+class Runs(Clause[Work]):
     """An executable of the package runs a node."""
 
     program: str
@@ -157,9 +297,9 @@ class Runs(Clause):
         """What is asked for."""
         return f'`ros2 run {self.package} {self.program}` runs a node of the name `{self.node}`'
 
-    def look(self, work: Work) -> None:
+    def judge(self, work: Work) -> str:
         """Start it, and raise Fail unless its node comes."""
-        from labkit.background.service_calls import wait_until_spun
+        from labkit.asking.service_calls import wait_until_spun
         from labkit.rosgraph.snapshot import node_names
 
         wanted = f'the node /{self.node}, after: ros2 run {self.package} {self.program}'
@@ -169,46 +309,35 @@ class Runs(Clause):
             raise Fail(
                 f'no node of the name /{self.node} before the check starts one',
                 f'/{self.node} is running already',
-                todo='End it: lab.processes().stop(), and lab.remove for a node of a cell.',
+                RUNS_ALREADY,
             )
         process = work.start(self.program)
         if f'/{self.node}' in process.nodes:
             # One that does not answer may be about to end: nothing spins it.
-            if wait_until_spun(work.probe.spun_node, f'/{self.node}', ANSWER_SEC):
-                return
+            if wait_until_spun(work.probe.spun_node, f'/{self.node}'):
+                return ''
             if not work.wait(lambda: not process.running):
-                return
+                return ''
         if not process.running:
             last = process.output[-1] if process.output else 'nothing'
             raise Fail(
                 wanted,
                 f'it ended with exit code {process.exit_code}, and said at last: {last}',
-                why=_why_ended(last, process.exit_code),
-                todo='Correct the file in src, build again, and check again.',
+                _why_ended(last, process.exit_code),
             )
-        seen = ', '.join(process.nodes) or 'it runs, and no node has come'
         raise Fail(
             wanted,
-            seen,
-            why='The name of the node is what super().__init__() gets.'
-            if process.nodes
-            else 'main() does not make a node, or waits before that.',
-            todo=f"super().__init__('{self.node}')",
+            ', '.join(process.nodes) or 'it runs, and no node has come',
+            NODE_NAME.of(node=self.node) if process.nodes else NO_NODE,
         )
 
 
-@dataclass(frozen=True)
-class Tested(Clause):
+class Tested(Clause[Work]):
     """`colcon test` has run, and its tests pass."""
 
-    package: str
+    text = '`colcon test` has run after the build, at least one test, and none has failed'
 
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return '`colcon test` has run after the build, at least one test, and none has failed'
-
-    def look(self, work: Work) -> None:
+    def judge(self, work: Work) -> str:
         """Raise Fail if there is no result, or a bad one."""
         wanted = 'at least one test, and none that has failed'
         result = work.build / 'pytest.xml'
@@ -216,81 +345,76 @@ class Tested(Clause):
             raise Fail(
                 wanted,
                 'no result of a test since the last build',
-                why='colcon build does not run tests.',
-                todo=f'!colcon test --packages-select {self.package}',
+                NO_TEST_SINCE.of(package=work.package),
             )
         suites = list(ET.parse(result).getroot().iter('testsuite'))
-        count = {key: sum(int(s.get(key) or 0) for s in suites) for key in _COUNTS}
-        if count['failures'] or count['errors']:
-            raise Fail(
-                wanted,
-                f'{count["failures"]} failures and {count["errors"]} errors in '
-                f'{count["tests"]} tests',
-                why='A test says that something is not as it should be.',
-                todo='!colcon test-result --verbose shows which one, and why.',
-            )
-        if count['tests'] == count['skipped']:
-            raise Fail(
-                wanted,
-                'no test that has run',
-                why='Tests are the functions test_... in the files test_... of the folder test.',
-                todo='Write one: a function test_... with an assert, in test/test_....py',
-            )
-
-
-_COUNTS = ('tests', 'failures', 'errors', 'skipped')
+        failures, errors, skipped, tests = (
+            sum(int(suite.get(key) or 0) for suite in suites)
+            for key in ('failures', 'errors', 'skipped', 'tests')
+        )
+        if failures or errors:
+            seen = f'{failures} failures and {errors} errors in {tests} tests'
+            raise Fail(wanted, seen, TEST_FAILED)
+        if tests == skipped:
+            raise Fail(wanted, 'no test that has run', NO_TEST)
+        return ''
 
 
 @dataclass(frozen=True)
-class Does(Clause):
-    """What else is asked of the package.
+class InAWorkspace(Stage[Work]):
+    """A package in the learner's workspace.
 
     Attributes:
-        words: What is asked for, in words of the task.
-        look: Raises Fail if it is otherwise.
+        package: Its name.
+        is_untouched: Whether its source is still as the lesson has made it.
     """
 
-    words: str
-    look: Callable[[Work], None]
+    package: str
+    is_untouched: Callable[[Work], bool] = lambda work: False
 
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
+    @contextmanager
+    def scenes(self, probe: Probe, clauses: Sequence[Clause[Work]]) -> Iterator[Sequence[Work]]:
+        """Give the package, and end what was started of it."""
+        folder = workspace()
+        if folder is None:
+            raise NotAttempted(NOTHING_YET)
+        work = Work(probe, self.package, folder)
+        if self.is_untouched(work):
+            raise NotAttempted(NOTHING_YET)
+        _refuse_without_package(work, clauses)
+        try:
+            yield [work]
+        finally:
+            with stop_button.undoing():
+                work.stop()
+
+    def tell(self, seen: Sequence[Work]) -> str:
+        """Say what was started, and what was seen for a moment only."""
+        said = f'{self.package} is built, and runs: {" and ".join(seen[0].ran)}.'
+        for node, life in seen[0].lives.items():
+            if not life.remote:
+                said += (
+                    f' {node} keeps a time of its own, so the check has watched it for '
+                    f'{life.seconds:.1f} s. What it does later was not seen.'
+                )
+        return said
 
 
-def judge_package(
-    probe: Probe, clauses: Sequence[Built | Runs | Tested | Does], package: str
-) -> str:
-    """Look at a package, clause by clause, and end what was started of it.
-
-    Returns:
-        What was seen, in a sentence.
+def dependencies(work: Work) -> list[str]:
+    """Return what package.xml names for building and running: the names of packages.
 
     Raises:
-        NotAttempted: It is not there.
-        Fail: A clause is not fulfilled; the exception names it.
+        Fail: It is not XML. colcon builds the package all the same, by its setup.py.
     """
-    folder = workspace()
-    if folder is None:
-        raise NotAttempted(NOTHING_YET)
-    with _ending(Work(probe, package, folder)) as work:
-        _refuse_without_package(work, clauses)
-        for clause in clauses:
-            with naming(clause):
-                clause.look(work)
-    return f'{package} is built, and runs: {" and ".join(work.ran)}.'
-
-
-@contextmanager
-def _ending(work: Work) -> Iterator[Work]:
     try:
-        yield work
-    finally:
-        work.stop()
+        root = ET.parse(work.source / 'package.xml').getroot()
+    except ET.ParseError as error:
+        raise Fail('a package.xml that is XML', str(error), NOT_XML) from None
+    tags = ('depend', 'exec_depend', 'build_depend')
+    return [(each.text or '').strip() for tag in tags for each in root.findall(tag)]
 
 
-def _refuse_without_package(work: Work, clauses: Sequence[Clause]) -> None:
+def _refuse_without_package(work: Work, clauses: Sequence[Clause[Work]]) -> None:
     """Raise Fail if a node runs in the notebook, and nothing was made of it."""
     nodes = {f'/{clause.node}' for clause in clauses if isinstance(clause, Runs)}
     here = sorted(nodes & {*work.probe.node_names()})
@@ -298,8 +422,7 @@ def _refuse_without_package(work: Work, clauses: Sequence[Clause]) -> None:
         raise Fail(
             f'the package {work.package} in src',
             f'{here[0]} runs in this notebook, and there is no package',
-            why='A node of a notebook ends with the notebook.',
-            todo=f"lab.export(..., package='{work.package}', folder='src', overwrite=True)",
+            NO_PACKAGE.of(package=work.package),
         )
 
 
@@ -309,17 +432,12 @@ def _refuse_misplaced(work: Work) -> None:
     for path in found:
         if path.name != work.package and path.name in PACKAGES:
             continue
-        place = path.relative_to(work.folder)
-        same, close = path.name == work.package, nearest(work.package, [path.name])
-        if same or close:
+        same = path.name == work.package
+        if same or nearest(work.package, [path.name]):
             raise Fail(
                 f'the package {work.package} in src',
-                f'a package in {place}',
-                why='Packages lie in the folder src of a workspace.'
-                if same
-                else 'The name is close, and it is another one.',
-                todo=f'ros2 pkg create {work.package} --destination-directory src, or '
-                "lab.export(..., folder='src')",
+                f'a package in {path.relative_to(work.folder)}',
+                (BESIDE_SRC if same else OTHER_NAME).of(package=work.package),
             )
 
 
@@ -329,32 +447,25 @@ def _is_in_source(path: Path) -> bool:
 
 def _refuse_program(program: str, work: Work) -> NoReturn:
     """Say why an executable is not there."""
-    wanted = f'the executable {program} in the package {work.package}'
     names = work.programs
     near = nearest(program, names)
     setup = (work.source / 'setup.py').read_text(encoding='utf-8', errors='replace')
+    mistake = OTHER_ENTRY.of(near=near) if near else NO_ENTRY
     if re.search(rf"'{program}\s*=", setup) and near != program:
-        why = 'It stands in setup.py, but was not there when the package was built.'
-    elif near:
-        why = f'{near} is close. What stands before = in setup.py is the name for ros2 run.'
-    else:
-        why = 'A module alone can not be run: setup.py needs an entry for it.'
+        mistake = NEW_ENTRY
     raise Fail(
-        wanted,
+        f'the executable {program} in the package {work.package}',
         f'executables: {", ".join(names)}' if names else 'no executable at all',
-        why=why,
-        todo=f"In console_scripts: '{program} = {work.package}.MODULE:main', then build again.",
+        mistake.of(program=program, package=work.package),
     )
 
 
-def _why_ended(last: str, code: int | None) -> str:
+def _why_ended(last: str, code: int | None) -> Mistake:
     if 'has no attribute' in last:
-        return 'The entry in setup.py names a function that the module does not have.'
+        return NO_FUNCTION
     if last.startswith('ModuleNotFoundError'):
-        return 'The entry in setup.py, or an import, names a module that is not there.'
-    if code == 0:
-        return 'main() returned at once: nothing in it spins the node.'
-    return 'The program has raised. The last line says what.'
+        return NO_MODULE
+    return RETURNED if code == 0 else RAISED
 
 
 def _is_source(path: Path) -> bool:

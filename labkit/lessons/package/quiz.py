@@ -4,7 +4,30 @@ from __future__ import annotations
 
 from labkit.exercises import Choice, Quiz, Several, Word, right, wrong
 
-__all__ = ['QUIZ']
+__all__ = ['QUIZ', 'WARM_UP']
+
+WARM_UP = Quiz(
+    'warm_up',
+    Choice(
+        'What are the two words after `ros2 run`?',
+        right('a package, and a program in it', 'As in ros2 run demo_nodes_py talker.'),
+        wrong('a node, and its topic', 'Both are named by the program itself.'),
+        wrong('a folder, and a file', 'ros2 finds the folder by the name of the package.'),
+    ),
+    Choice(
+        'A program in Python makes a node before `rclpy.init()`. What happens?',
+        right('It fails, and says so.', 'Nothing of ROS works before init.'),
+        wrong('It works: the order is free.', 'init starts what a node needs.'),
+        wrong('It waits for init.', 'Making a node does not wait. It raises an error.'),
+    ),
+    Choice(
+        'On the command line of a program, what is `--ros-args` for?',
+        right('What follows is for ROS.', 'A file of parameters, for instance, or another name.'),
+        wrong('It starts the master.', 'ROS 2 has none.'),
+        wrong('It lists the arguments.', 'It is a sign between the arguments, and lists nothing.'),
+    ),
+    cell_id='warm-up',
+)
 
 QUIZ = Quiz(
     'package',
@@ -35,7 +58,11 @@ QUIZ = Quiz(
     ),
     Choice(
         'You have changed talker.py in src. What do you do before ros2 run runs the change?',
-        right('colcon build', 'ros2 run starts what is in install, and the build puts it there.'),
+        right(
+            'colcon build',
+            'ros2 run starts what is in install, and the build puts it there. After one '
+            '`colcon build --symlink-install` a link lies there, and the change counts at once.',
+        ),
         wrong(
             'source install/setup.bash',
             'The terminal knows the workspace already. The old file is still in install.',
@@ -73,7 +100,7 @@ QUIZ = Quiz(
     ),
     Choice(
         'In setup.py, listener = robot_basics_lab.listener:mian stands where main is meant. When '
-        'do you learn it?',
+        'do you find out?',
         right(
             'When you run the listener.',
             'The build writes a small program, and does not look into your module.',

@@ -6,7 +6,7 @@ from labkit.exercises import Lesson
 from labkit.lessons.quality_of_service.door import door
 from labkit.lessons.quality_of_service.lock import NODE as LOCK
 from labkit.lessons.quality_of_service.millimetres import SONAR, millimetres
-from labkit.lessons.quality_of_service.quiz import QUIZ
+from labkit.lessons.quality_of_service.quiz import QUIZ, WARM_UP
 from labkit.lessons.quality_of_service.rover import NODE as ROVER
 from labkit.lessons.quality_of_service.rover import TOPICS
 from labkit.lessons.quality_of_service.site import site
@@ -23,7 +23,7 @@ LESSON = Lesson(
         'and where ROS tells'
     ),
     exercises=[site, watchdog, millimetres, door],
-    quizzes=[QUIZ],
+    quizzes=[WARM_UP, QUIZ],
     topics=['/frames', *TOPICS, '/numbers', '/fresh', '/kept', '/beat'],
     given={
         '/camera': 'slow',

@@ -4,7 +4,30 @@ from __future__ import annotations
 
 from labkit.exercises import Choice, Number, Quiz, Several, right, wrong
 
-__all__ = ['QUIZ']
+__all__ = ['QUIZ', 'WARM_UP']
+
+WARM_UP = Quiz(
+    'warm_up',
+    Choice(
+        'Why does `Bot` drive more slowly, the nearer it is to its goal?',
+        right('Its command is v = -x.', 'A small distance makes a small speed.'),
+        wrong('The robot brakes by itself.', 'It drives as it is told, and does not slow down.'),
+        wrong('It publishes less often.', 'It takes its steps at 10 Hz from first to last.'),
+    ),
+    Choice(
+        'A message passes a chain of three nodes. What takes most of the time?',
+        right('the work in the callbacks', 'One that slept 50 ms made the whole chain slow.'),
+        wrong('the way over the topics', 'Measured, it was a small part of a millisecond.'),
+        wrong('finding the next node', 'Nodes find each other once, and not for each message.'),
+    ),
+    Choice(
+        'Which command lists each publisher and each subscription of a topic by its node?',
+        right('ros2 topic info --verbose', 'It also lists the quality of service of each.'),
+        wrong('ros2 topic list -t', 'It lists all topics, with their types.'),
+        wrong('ros2 node info', 'It lists what one node has.'),
+    ),
+    cell_id='warm-up',
+)
 
 QUIZ = Quiz(
     'quality_of_service',
@@ -16,7 +39,7 @@ QUIZ = Quiz(
         'The depth says how many messages may wait.',
         wrong={
             5: 'That is how many are heard.',
-            0: 'A queue has an end, also a reliable one. What does not fit pushes the oldest out.',
+            0: 'A queue has an end, even a reliable one. What does not fit pushes the oldest out.',
             12: 'The newest five wait in the queue, and are heard.',
         },
     ),
@@ -90,7 +113,7 @@ QUIZ = Quiz(
         'A command to drive has waited for ten seconds in a queue, and must not be obeyed any '
         'more. Which policy throws it away?',
         right('lifespan', 'A message that is older is not given to the callback.'),
-        wrong('deadline', 'It tells that a message is missing. It throws nothing away.'),
+        wrong('deadline', 'It reports that a message is missing. It throws nothing away.'),
         wrong(
             'best effort',
             'It leaves out repairs of what was lost. What has arrived waits as long as before.',

@@ -12,12 +12,13 @@ import signal
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from labkit.lessons._companion import start_companion
 
 if TYPE_CHECKING:
-    from labkit.background.child_processes import Process
+    from labkit.programs.child_processes import Process
 
 __all__ = ['NODE', 'TOPICS', 'behind_a_hill', 'start_rover']
 
@@ -54,6 +55,8 @@ def behind_a_hill() -> Iterator[None]:
     while not _knows_its_publishers(_process.output) and time.monotonic() < end:
         time.sleep(POLL_SEC)
     os.kill(number, signal.SIGSTOP)
+    while not _stands(number) and time.monotonic() < end:
+        time.sleep(POLL_SEC)
     try:
         yield
     finally:
@@ -66,6 +69,12 @@ def _knows_its_publishers(lines: Sequence[str]) -> bool:
     return all(int(counts.get(kind, '0')) for kind in KINDS)
 
 
+def _stands(number: int) -> bool:
+    """Tell whether all threads of a process have stopped: the signal comes some time after."""
+    states = [path.read_text() for path in Path(f'/proc/{number}/task').glob('*/stat')]
+    return all(text.rpartition(')')[2].split()[0] == 'T' for text in states)
+
+
 def main() -> None:
     """Hear and answer until it is interrupted."""
     import rclpy
@@ -74,7 +83,7 @@ def main() -> None:
     from rclpy.qos import QoSProfile, ReliabilityPolicy
     from std_msgs.msg import Int16, String
 
-    from labkit.background.program import publish_when_heard, spin_until_interrupted
+    from labkit.programs.program import publish_when_heard, spin_until_interrupted
 
     print(os.getpid(), flush=True)
     rclpy.init()

@@ -2,73 +2,263 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Exercise, Outcome, Solution, Style, Wrong, changed
-from labkit.lessons._script import in_process, started_by_subprocess
-from labkit.lessons.quality_of_service.heart import ALARM, CLAUSES, EMPTY, HEART, STRING, judge
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, NoReturn
+
+from labkit.exercises import (
+    Clause,
+    Exercise,
+    Fail,
+    Mistake,
+    Probe,
+    Solution,
+    Stage,
+    expect,
+    words,
+)
+from labkit.exercises.clauses import Subscribes, Words
+from labkit.exercises.judging import naming
+
+if TYPE_CHECKING:
+    from labkit.exercises.watch import Watch
 
 __all__ = ['watchdog']
 
-_WATCHDOG = """
-from rclpy.duration import Duration
-from rclpy.event_handler import SubscriptionEventCallbacks
-from rclpy.node import Node
-from rclpy.qos import QoSProfile
-from std_msgs.msg import Empty, String
+EMPTY, STRING = 'std_msgs/msg/Empty', 'std_msgs/msg/String'
+HEART, ALARM = '/heartbeat', '/alarm'
+# What is promised of the heart, and what is asked for, s. It may be so much less.
+OFFERED_SEC = 0.2
+SILENCE_SEC, EARLY_SEC = 0.5, 0.1
+WITHIN_SEC = 2.0
+# The heart of the check beats so often, s, and so often in a row.
+PERIOD_SEC = 0.05
+BEATS = 16
+# What comes so long after the first beat may be of the silence before, s.
+GRACE_SEC = 0.25
+# The heart itself may stumble on a busy machine, and a watchdog of another process hear late what
+# was sent in time: then it beats anew, so many times at most.
+ATTEMPTS = 4
+READY_SEC = 4.0
+ROUNDS = 3
 
 
-class Watchdog(Node):
-    def __init__(self):
-        super().__init__('watchdog')
-        self.publisher = self.create_publisher(String, 'alarm', 10)
-        self.subscription = self.create_subscription(
-            Empty,
-            'heartbeat',
-            self.on_beat,
-            QoSProfile(depth=10, deadline=Duration(seconds=0.5)),
-            event_callbacks=SubscriptionEventCallbacks(deadline=self.on_missed),
+NOISE = Mistake(
+    'watchdog/noise',
+    'The alarm does not depend on whether heartbeats come: a timer or the callback of the '
+    'heartbeat publishes it, or the time is too short.',
+    f'Publish when {SILENCE_SEC} s have passed without a heartbeat, as the event of the deadline '
+    'tells.',
+    change=[('        pass\n', "        self.publisher.publish(String(data='no heartbeat'))\n")],
+)
+USED_UP = Mistake(
+    'watchdog/used-up',
+    'Something is used up by the first alarm: a flag that is never set back, or an event that is '
+    'looked at once.',
+    'Let each missed deadline publish.',
+)
+NOT_TOLD = Mistake(
+    'watchdog/not-told',
+    'Nobody is told in time that heartbeats are missing, or what is told does not publish.',
+    f'Give the subscription a profile with deadline=Duration(seconds={SILENCE_SEC}), and '
+    'event_callbacks=SubscriptionEventCallbacks(deadline=...), where you publish.',
+)
+HASTE = Mistake(
+    'watchdog/haste',
+    'The time is too short: a heart that beats a little late would set it off.',
+    f'Take a deadline of {SILENCE_SEC} s: Duration(seconds={SILENCE_SEC}).',
+    change=[('seconds=0.5', 'seconds=0.25')],
+)
+
+
+ALL_CLEAR = Mistake(
+    'watchdog/all-clear',
+    'It also tells that the heart beats again. Who hears an alarm there stops the robot.',
+    'Publish nothing in the callback of the heartbeat.',
+)
+
+
+_HEARS = Subscribes(HEART, EMPTY)
+_BARKS = Words(
+    f'after {SILENCE_SEC} s without a heartbeat (up to {EARLY_SEC} s less), publish a text on '
+    f'`{ALARM}` (`{STRING}`), once or more'
+)
+_IN_TIME = Words(f'the first alarm comes within {WITHIN_SEC:g} s after the last heartbeat')
+_RESTS = Words(f'publish nothing on `{ALARM}` while heartbeats come')
+_AGAIN = Words('do so each time the heart stops')
+CLAUSES = (_HEARS, _RESTS, _BARKS, _IN_TIME, _AGAIN)
+
+
+class _Heart:
+    """A heart that the check lets beat, in real time: a deadline knows no other.
+
+    Args:
+        probe: The probe of the check.
+        alarms: The messages on the topic of the alarm.
+    """
+
+    def __init__(self, probe: Probe, alarms: Watch) -> None:
+        from rclpy.duration import Duration
+        from rclpy.qos import QoSProfile
+
+        from labkit.exercises.watch import build
+
+        self._probe, self._alarms = probe, alarms
+        self._beat = build(EMPTY, {})
+        profile = QoSProfile(  # type: ignore[no-untyped-call]
+            depth=10, deadline=Duration(seconds=OFFERED_SEC)
+        )
+        self._publisher = probe.node.create_publisher(type(self._beat), HEART, profile)
+        probe.wait(self._publisher.get_subscription_count, READY_SEC)
+        self.last = 0.0
+
+    def beat(self, attempts: int) -> tuple[list[float], bool]:
+        """Beat for a while.
+
+        Args:
+            attempts: How often it beats anew if there was an alarm.
+
+        Returns:
+            The moments of alarms meanwhile, those of a steady heart; and whether there was one
+            at the first beat.
+        """
+        from labkit.background.runtime import runtime
+
+        at_first = False
+        for attempt in range(ATTEMPTS):
+            start = self.last = time.time()
+            gap = begun = 0.0
+            for _ in range(BEATS):
+                began = time.time()
+                self._publisher.publish(self._beat)
+                # The longest that it can have been: it is held up before it publishes, or after.
+                gap, self.last = max(gap, time.time() - self.last), began
+                if not begun:
+                    # On a busy machine, too, an alarm at the first beat comes before this ends.
+                    runtime.executor.settle(READY_SEC)
+                    begun = time.time()
+                self._probe.wait(lambda: False, PERIOD_SEC)
+            alarms = [at for at in self._heard() if start < at < self.last]
+            later = [at for at in alarms if at > max(start + GRACE_SEC, begun)]
+            stalled = begun - start > SILENCE_SEC / 2  # then the alarm may be a right one
+            at_first = at_first or (not attempt and not stalled and len(alarms) > len(later))
+            if not later:
+                return [], at_first
+            attempts -= gap < SILENCE_SEC / 2
+            if attempts <= 0:
+                return later, at_first
+        return [], at_first
+
+    def rest(self) -> float | None:
+        """Be silent until there is an alarm; return how long that took, s, None if none came."""
+
+        def later() -> list[float]:
+            return [at for at in self._heard() if at > self.last]
+
+        self._probe.wait(later, self.last + WITHIN_SEC + GRACE_SEC - time.time())
+        return next((at - self.last for at in later() if at <= self.last + WITHIN_SEC), None)
+
+    def _heard(self) -> list[float]:
+        return [sample.stamp for sample in self._alarms.samples]
+
+
+class _AHeart(Stage[str]):
+    """A heart that the check lets beat and stop, twice."""
+
+    @contextmanager
+    def scenes(self, probe: Probe, clauses: Sequence[Clause[str]]) -> Iterator[Sequence[str]]:
+        """Look at the alarms."""
+        yield [_judge(probe)]
+
+    def tell(self, seen: Sequence[str]) -> str:
+        """Say what was seen."""
+        return seen[0]
+
+
+def _judge(probe: Probe) -> str:
+    with naming(_HEARS):
+        hears = expect.subscription(probe, HEART, deadline_sec=OFFERED_SEC)
+        expect.spun(probe, hears)
+    with naming(_BARKS):
+        source = expect.publisher(probe, ALARM, by=hears.node)
+    attempts = 1 if probe.in_this_process(source) else ATTEMPTS
+    alarms = probe.watch(ALARM, STRING)
+    heart = _Heart(probe, alarms)
+    delays, again = [], []
+    for number in range(ROUNDS):
+        with naming(_RESTS):
+            later, at_first = heart.beat(attempts)
+            _refuse_noise(later)
+            again.append(at_first)
+        delay = heart.rest()
+        if delay is None:
+            with naming(_AGAIN if number else _IN_TIME):
+                _refuse_silence(number)
+        if delay < SILENCE_SEC - EARLY_SEC:
+            # A timer that takes no notice of the heart is early or late, as it happens.
+            with naming(_RESTS):
+                _refuse_noise(heart.beat(attempts)[0])
+            with naming(_BARKS):
+                raise Fail(
+                    f'an alarm when {SILENCE_SEC} s have passed without a heartbeat',
+                    f'one {delay:.2f} s after the last heartbeat',
+                    HASTE,
+                )
+        delays.append(delay)
+    with naming(_BARKS):
+        _refuse_empty(alarms)
+    # An alarm may have been on its way when the heart began anew, but not each time.
+    if attempts == 1 and all(again[1:]):
+        with naming(_RESTS):
+            raise Fail(
+                f'nothing on {ALARM} while heartbeats come',
+                f'a message on {ALARM} each time that the heart begins to beat again',
+                ALL_CLEAR,
+            )
+    return f'{hears.node} noticed each of {len(delays)} silences, and kept quiet in between.'
+
+
+def _refuse_empty(alarms: Watch) -> None:
+    if not all(text.strip() for text in alarms.values('data')):
+        raise Fail(
+            f'a text in each message on {ALARM}',
+            f'data = {expect.show(alarms.values("data"))}',
+            words.NOT_SET.of(field='data'),
         )
 
-    def on_beat(self, msg):
-        pass
 
-    def on_missed(self, event):
-        self.publisher.publish(String(data='no heartbeat'))
-
-
-watchdog = lab.spin(Watchdog())
-"""
-_TIMER = """
-from rclpy.node import Node
-from std_msgs.msg import Empty, String
+def _refuse_noise(alarms: list[float]) -> None:
+    if alarms:
+        raise Fail(
+            f'nothing on {ALARM} while a heartbeat comes every {PERIOD_SEC} s',
+            f'{len(alarms)} message{"s" * (len(alarms) > 1)} on {ALARM} meanwhile',
+            NOISE,
+        )
 
 
-class Watchdog(Node):
-    def __init__(self):
-        super().__init__('watchdog')
-        self.publisher = self.create_publisher(String, 'alarm', 10)
-        self.subscription = self.create_subscription(Empty, 'heartbeat', self.on_beat, 10)
-        self.timer = self.create_timer(0.5, self.on_timer)
+def _refuse_silence(number: int) -> NoReturn:
+    expect.hanging()
+    if number:
+        raise Fail(
+            'an alarm each time that the heart stops',
+            'one when it stopped before, and none this time',
+            USED_UP,
+        )
+    raise Fail(
+        f'a message on {ALARM} within {WITHIN_SEC:g} s after the last heartbeat',
+        f'nothing within {WITHIN_SEC:g} s',
+        NOT_TOLD,
+    )
 
-    def on_beat(self, msg):
-        self.timer.reset()
-
-    def on_timer(self):
-        self.publisher.publish(String(data='no heartbeat'))
-
-
-watchdog = lab.spin(Watchdog())
-"""
-_EVENTS = '            event_callbacks=SubscriptionEventCallbacks(deadline=self.on_missed),\n'
-_HANDLER = 'from rclpy.event_handler import SubscriptionEventCallbacks\n'
-_PUBLISH = "        self.publisher.publish(String(data='no heartbeat'))\n"
 
 watchdog = Exercise(
     name='watchdog',
     task='Listen to /heartbeat, and publish a text on /alarm when it is silent.',
-    subscribes={HEART: EMPTY},
     publishes={ALARM: STRING},
     clauses=CLAUSES,
-    judge=judge,
+    mistakes=(NOISE, HASTE),
+    stage=_AHeart(),
     hints=[
         'A deadline says how much time may pass between two messages. Who tells the node that '
         'more has passed?',
@@ -78,175 +268,9 @@ watchdog = Exercise(
         'event_callbacks=SubscriptionEventCallbacks(deadline=self.on_missed).',
     ],
     answer=Solution(
-        _WATCHDOG,
+        __file__,
+        'watchdog.py',
         'The middleware watches the time, and calls on_missed once for each half second without '
         'a message. So the node needs neither a timer nor a clock.',
     ),
-    styles=[
-        Style('a timer that each beat sets back', _TIMER),
-        Style(
-            'a clock that a timer looks at',
-            changed(
-                _TIMER,
-                ('        self.timer.reset()\n', '        self.last = self.get_clock().now()\n'),
-                (
-                    '        self.timer = self.create_timer(0.5, self.on_timer)\n',
-                    '        self.last = self.get_clock().now()\n'
-                    '        self.timer = self.create_timer(0.1, self.on_timer)\n',
-                ),
-                (
-                    _PUBLISH,
-                    '        silence = self.get_clock().now() - self.last\n'
-                    '        if silence.nanoseconds > 0.5e9:\n    ' + _PUBLISH,
-                ),
-            ),
-        ),
-        Style(
-            'functions',
-            """
-import rclpy
-from rclpy.duration import Duration
-from rclpy.event_handler import SubscriptionEventCallbacks
-from rclpy.qos import QoSProfile
-from std_msgs.msg import Empty, String
-
-node = rclpy.create_node('doctor')
-publisher = node.create_publisher(String, '/alarm', 1)
-node.create_subscription(
-    Empty,
-    '/heartbeat',
-    lambda msg: None,
-    QoSProfile(depth=1, deadline=Duration(seconds=0.5)),
-    event_callbacks=SubscriptionEventCallbacks(
-        deadline=lambda event: publisher.publish(String(data=f'missed {event.total_count}'))
-    ),
-)
-lab.spin(node)
-""",
-        ),
-        Style(
-            'best effort, and a longer deadline',
-            changed(
-                _WATCHDOG,
-                ('import QoSProfile\n', 'import QoSProfile, ReliabilityPolicy\n'),
-                (
-                    '            QoSProfile(depth=10, deadline=Duration(seconds=0.5)),\n',
-                    '            QoSProfile(\n                depth=1,\n'
-                    '                reliability=ReliabilityPolicy.BEST_EFFORT,\n'
-                    '                deadline=Duration(seconds=0.8),\n            ),\n',
-                ),
-            ),
-        ),
-        Style('own process, started here', started_by_subprocess(in_process(_WATCHDOG))),
-        Style('own process', in_process(_WATCHDOG), process=True),
-    ],
-    wrong=[
-        Wrong(
-            'no event callback',
-            changed(_WATCHDOG, (_EVENTS, ''), (_HANDLER, '')),
-            'Nobody is told that heartbeats are missing',
-        ),
-        Wrong(
-            'no deadline',
-            changed(
-                _WATCHDOG,
-                ('QoSProfile(depth=10, deadline=Duration(seconds=0.5))', '10'),
-                ('from rclpy.duration import Duration\n', ''),
-                ('from rclpy.qos import QoSProfile\n', ''),
-            ),
-            'nothing within 4 s',
-        ),
-        Wrong(
-            'an alarm at each heartbeat',
-            changed(_WATCHDOG, ('        pass\n', _PUBLISH)),
-            'nothing on /alarm while a heartbeat comes',
-        ),
-        Wrong(
-            'a timer that nobody sets back',
-            changed(_TIMER, ('        self.timer.reset()\n', '        pass\n')),
-            'The alarm does not depend on whether heartbeats come',
-        ),
-        Wrong(
-            'a deadline that is too short',
-            changed(_WATCHDOG, ('seconds=0.5', 'seconds=0.25')),
-            'The time is too short',
-        ),
-        Wrong(
-            'a deadline that is shorter than what is offered',
-            changed(_WATCHDOG, ('seconds=0.5', 'seconds=0.05')),
-            'Ask for less in the profile of the subscription.',
-        ),
-        Wrong(
-            'five seconds',
-            changed(_WATCHDOG, ('seconds=0.5', 'seconds=5')),
-            'a message on /alarm within 2 s after the last heartbeat',
-        ),
-        Wrong(
-            'asks for transient local',
-            changed(
-                _WATCHDOG,
-                ('import QoSProfile\n', 'import DurabilityPolicy, QoSProfile\n'),
-                (
-                    '            QoSProfile(depth=10, deadline=Duration(seconds=0.5)),\n',
-                    '            QoSProfile(\n                depth=10,\n'
-                    '                deadline=Duration(seconds=0.5),\n'
-                    '                durability=DurabilityPolicy.TRANSIENT_LOCAL,\n'
-                    '            ),\n',
-                ),
-            ),
-            'volatile publisher and transient local subscription',
-        ),
-        Wrong(
-            'logs in place of publishing',
-            changed(_WATCHDOG, (_PUBLISH, "        self.get_logger().error('no heartbeat')\n")),
-            'what is told does not publish',
-        ),
-        Wrong(
-            'one alarm only',
-            changed(
-                _WATCHDOG,
-                (
-                    "        super().__init__('watchdog')\n",
-                    "        super().__init__('watchdog')\n        self.told = False\n",
-                ),
-                (
-                    _PUBLISH,
-                    '        if not self.told:\n            self.told = True\n    ' + _PUBLISH,
-                ),
-            ),
-            'Something is used up by the first alarm',
-        ),
-        Wrong(
-            'other topic',
-            changed(_WATCHDOG, ("'heartbeat',", "'heart_beat',")),
-            'names differ in an underscore',
-        ),
-        Wrong(
-            'no publisher',
-            changed(
-                _WATCHDOG,
-                ("        self.publisher = self.create_publisher(String, 'alarm', 10)\n", ''),
-                (_PUBLISH, "        self.get_logger().error('no heartbeat')\n"),
-                ('import Empty, String', 'import Empty'),
-            ),
-            'create_publisher() for this topic has not been called',
-        ),
-        Wrong(
-            'callback without an argument',
-            changed(_WATCHDOG, ('def on_missed(self, event):', 'def on_missed(self):')),
-            'argument',
-            outcome=Outcome.ERROR,
-        ),
-        Wrong(
-            'not spun',
-            changed(_WATCHDOG, ('lab.spin(Watchdog())', 'Watchdog()')),
-            'lab.spin(node)',
-        ),
-        Wrong(
-            'no event callback, in a process of its own',
-            changed(in_process(_WATCHDOG), (_EVENTS, ''), (_HANDLER, '')),
-            'Nobody is told that heartbeats are missing',
-            process=True,
-        ),
-    ],
 )

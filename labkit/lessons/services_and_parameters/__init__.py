@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from labkit.exercises import Lesson
+from labkit.lessons._robot import ROBOT_TOPICS
 from labkit.lessons.services_and_parameters.lamp import lamp
 from labkit.lessons.services_and_parameters.metronome import metronome
 from labkit.lessons.services_and_parameters.pilot import pilot
 from labkit.lessons.services_and_parameters.porter import porter
-from labkit.lessons.services_and_parameters.quiz import QUIZ
+from labkit.lessons.services_and_parameters.quiz import QUIZ, WARM_UP
 
 __all__ = ['LESSON']
 
@@ -20,15 +21,9 @@ LESSON = Lesson(
         'and refusing bad ones'
     ),
     exercises=[lamp, porter, metronome, pilot],
-    quizzes=[QUIZ],
+    quizzes=[WARM_UP, QUIZ],
     topics=[
-        '/odom',
-        '/scan',
-        '/joint_states',
-        '/imu',
-        '/battery_state',
-        '/camera/image_raw',
-        '/camera/camera_info',
+        *ROBOT_TOPICS,
         '/knock',
     ],
     given={

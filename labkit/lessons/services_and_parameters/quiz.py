@@ -4,7 +4,32 @@ from __future__ import annotations
 
 from labkit.exercises import Choice, Number, Quiz, Several, Word, right, wrong
 
-__all__ = ['QUIZ']
+__all__ = ['QUIZ', 'WARM_UP']
+
+WARM_UP = Quiz(
+    'warm_up',
+    Choice(
+        'What does a service have that a topic does not?',
+        right('an answer', 'One node asks, and one answers it.'),
+        wrong('a type', 'Both have one. That of a service has two parts.'),
+        wrong('many readers', 'That is a topic: each subscriber gets a copy.'),
+    ),
+    Choice(
+        'An executor with one thread runs a callback that takes a second. What do other callbacks '
+        'do meanwhile?',
+        right('They wait.', 'One thread does one thing at a time.'),
+        wrong('They run, too.', 'They would, with several threads and groups that allow it.'),
+        wrong('They are lost.', 'Messages wait in their queues, as many as the depth allows.'),
+    ),
+    Choice(
+        'A reliable publisher has depth 5. A subscriber was away while 20 messages were sent. How '
+        'many does it receive afterwards?',
+        right('5', 'A publisher sends again only what it still has.'),
+        wrong('20', 'Reliable repairs only what is still in the queue of the publisher.'),
+        wrong('0', 'Best effort might end so. Reliable sends its last five again.'),
+    ),
+    cell_id='warm-up',
+)
 
 QUIZ = Quiz(
     'services_and_parameters',
@@ -17,12 +42,12 @@ QUIZ = Quiz(
         ),
         wrong(
             'a topic',
-            'Whoever publishes does not learn whether somebody has heard it. Topics are for what '
-            'comes again and again.',
+            'A publisher does not learn whether anybody has heard it. Topics are for what comes '
+            'again and again.',
         ),
         wrong(
             'a parameter',
-            'A parameter is a setting of a node. Whether a gate is open is no setting.',
+            'A parameter is a setting of a node. Whether a gate is open is not one.',
         ),
     ),
     Number(
@@ -38,7 +63,7 @@ QUIZ = Quiz(
         },
     ),
     Choice(
-        'Nobody serves /open_gate. What becomes of client.call(request), without a timeout?',
+        'Nobody serves /open_gate. What does client.call(request) do, without a time-out?',
         right(
             'It waits for ever.',
             'A request without a server is not an error. So ask wait_for_service() first, or give '
@@ -82,7 +107,7 @@ QUIZ = Quiz(
         'the node is as slow as before. Why?',
         right(
             'The node has read the parameter once, at its start.',
-            'The value has changed, and what was made of it has not. React in a callback, or read '
+            'The value has changed, but not what was made from it. React in a callback, or read '
             'the value anew each time.',
         ),
         wrong(
@@ -95,8 +120,8 @@ QUIZ = Quiz(
         ),
     ),
     Word(
-        'Which verb of ros2 param prints all parameters of a node as a file of parameters holds '
-        'them?',
+        'Which verb of ros2 param prints all parameters of a node, in the form of a parameter '
+        'file?',
         'dump',
         'ros2 param dump prints YAML, and ros2 param load reads it.',
         '%ros2 param -h lists the verbs.',

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from labkit.exercises import Lesson
+from labkit.lessons._robot import ROBOT_TOPICS
 from labkit.lessons.talker_listener.one_message import say_once
 from labkit.lessons.talker_listener.period import four_a_second
 from labkit.lessons.talker_listener.publisher import every_two_seconds
-from labkit.lessons.talker_listener.quiz import QUIZ
+from labkit.lessons.talker_listener.quiz import QUIZ, WARM_UP
 from labkit.lessons.talker_listener.subscriber import hear_chatter
 
 __all__ = ['LESSON']
@@ -17,13 +18,15 @@ LESSON = Lesson(
     title='Talker and listener',
     teaches='publishers, subscribers, timers, the logger; why spin',
     exercises=[four_a_second, every_two_seconds, hear_chatter, say_once],
-    quizzes=[QUIZ],
-    topics=['/mail', '/stamped', '/news'],
+    quizzes=[WARM_UP, QUIZ],
+    topics=['/mail', '/stamped', '/news', *ROBOT_TOPICS],
     given={
         '/talker': 'talker-run listener-run',
         '/listener': 'listener-run',
         '/talker_1': 'two-talkers',
         '/talker_2': 'two-talkers',
+        '/turtlebot': 'circle',
+        '/circle': 'circle',
         '/writer': 'not-spun',
         '/reader': 'not-spun',
         '/stamped_talker': 'rate-loop',

@@ -2,52 +2,141 @@
 
 from __future__ import annotations
 
-from labkit.exercises import (
-    Exercise,
-    Outcome,
-    Solution,
-    Style,
-    Wrong,
-    changed,
-)
-from labkit.exercises.clauses import Runs
-from labkit.lessons._script import in_process, started_by_asyncio, started_by_subprocess
-from labkit.lessons.talker_listener.one_message_clauses import (
-    STRING,
-    TEXT,
-    TOPIC,
-    SaysIt,
-    SilentAfter,
-    SilentBefore,
-)
+import random
+
+from labkit.exercises import Exercise, Fail, Mistake, Solution, Watch, expect
+from labkit.exercises.clauses import Evidence, GraphClause, Runs
+from labkit.exercises.expect.timing import FOUND_SEC
+from labkit.exercises.life import LIFE_SEC, live
 
 __all__ = ['say_once']
 
+TOPIC, STRING = '/door', 'std_msgs/msg/String'
+TEXT = 'The door is open'
+# So long time passes while nobody listens, s: another one each time, but never so long that a node
+# that looks once a minute is just about to.
+ALONE_SEC = (20.0, 29.0)
+# What comes soon after a message comes from a node that keeps a time of its own, s of real time.
+SOON_SEC = 1.2
 
-_DOOR = """
-from rclpy.node import Node
-from std_msgs.msg import String
+_AGAIN = 'Run the cell of your node again before each check: it speaks once only.'
+NOT_HEARD = Mistake(
+    'say-once/not-heard',
+    'If it was published before somebody listened, it is lost: nobody keeps it for those who come '
+    'later. Or publish() was not reached at all.',
+    f'Publish only when get_subscription_count() is not 0. {_AGAIN}',
+    change=[('if self.publisher.get_subscription_count() > 0:', 'if True:')],
+)
+TOO_EARLY = Mistake(
+    'say-once/too-early',
+    'The earlier ones were published while nobody listened.',
+    f'Look at get_subscription_count() before you publish. {_AGAIN}',
+    change=[
+        ('if self.publisher.get_subscription_count() > 0:', 'if True:'),
+        ('            self.timer.cancel()\n', ''),
+    ],
+)
+GOES_ON = Mistake(
+    'say-once/goes-on',
+    'Nothing stops the node after its first message.',
+    'self.timer.cancel() ends the timer.',
+    change=[('            self.timer.cancel()\n', '')],
+)
+HEARD_BEFORE = Mistake(
+    'say-once/heard-before',
+    'The node speaks once. If it has spoken to somebody else, the check hears nothing.',
+    'End the other subscription, and run the cell of your node again.',
+)
 
 
-class Door(Node):
-    def __init__(self):
-        super().__init__('door')
-        self.publisher = self.create_publisher(String, 'door', 10)
-        self.timer = self.create_timer(0.1, self.on_timer)
+class _SaysIt(GraphClause):
+    """When somebody listens, the node says the text."""
 
-    def on_timer(self):
-        if self.publisher.get_subscription_count() > 0:
-            self.publisher.publish(String(data='The door is open'))
-            self.timer.cancel()
+    text = (
+        f'within {LIFE_SEC:.0f} seconds of the first subscription to `{TOPIC}`, publish `{TEXT}` '
+        f'there (`{STRING}`)'
+    )
+
+    def find(self, evidence: Evidence) -> None:
+        """Look for the publisher."""
+        evidence.publisher(TOPIC)
+
+    def judge(self, evidence: Evidence) -> str:
+        """Judge the first message."""
+        watch, source = _heard(evidence), evidence.publisher(TOPIC)
+        if not evidence.probe.wait(lambda: len(watch), FOUND_SEC):
+            expect.hanging()
+            raise Fail(
+                f'one message on {TOPIC}, as soon as somebody subscribes',
+                f'{source.node} has a publisher, but no message came',
+                NOT_HEARD,
+            )
+        first, said = watch.samples[0], watch.samples[0].message.data
+        if first.number <= 1 and said != TEXT:
+            trouble = expect.text_trouble(said, TEXT)
+            raise Fail(f'data = {TEXT!r} on {TOPIC}', f'data = {said!r}', trouble, todo=_AGAIN)
+        return f'{source.node} waited, and said {TEXT!r} once.'
 
 
-door = lab.spin(Door())
-"""
-_INIT = "        super().__init__('door')\n"
-_TIMER = '        self.timer = self.create_timer(0.1, self.on_timer)\n'
-_LOOK = 'if self.publisher.get_subscription_count() > 0:'
-_PUBLISH = "            self.publisher.publish(String(data='The door is open'))\n"
-_CANCEL = '            self.timer.cancel()\n'
+class _SilentBefore(GraphClause):
+    """As long as nobody listens, the node says nothing."""
+
+    text = 'publish nothing before that'
+
+    def find(self, evidence: Evidence) -> None:
+        """Let time pass while nobody listens, and then listen."""
+        from labkit.rosgraph.endpoints import subscriptions
+        from labkit.rosgraph.names import is_hidden
+
+        probe = evidence.probe
+        others = {end.node for end in subscriptions(probe.node, TOPIC)}
+        if others:
+            names = sorted({'a view' if is_hidden(name) else name for name in others})
+            raise Fail(
+                f'nobody subscribes to {TOPIC} before the check does',
+                f'{", ".join(names)} subscribes there',
+                HEARD_BEFORE,
+            )
+        # Nothing is written down here, so its times need not be known.
+        seconds, node = random.uniform(*ALONE_SEC), evidence.publisher(TOPIC).node
+        evidence.life = live(probe, {}, seconds, nodes=[node], step=0.5)
+        evidence.refuse_trouble(())
+        evidence.heard[TOPIC] = probe.watch(TOPIC, STRING)
+
+    def judge(self, evidence: Evidence) -> str:
+        """Judge as which one the first message came."""
+        number = _heard(evidence).samples[0].number
+        if number > 1:
+            raise Fail(
+                f'one message on {TOPIC}, as soon as somebody subscribes',
+                f'the first message that came was number {number} of its publisher',
+                TOO_EARLY,
+            )
+        return ''
+
+
+class _SilentAfter(GraphClause):
+    """Once it is said, the node says nothing more."""
+
+    text = 'publish nothing after that'
+
+    def judge(self, evidence: Evidence) -> str:
+        """Judge what else came."""
+        watch = _heard(evidence)
+        if evidence.probe.wait(lambda: len(watch) > 1, SOON_SEC):
+            raise Fail(
+                f'one message on {TOPIC}, and no other',
+                f'{len(watch)} messages: {expect.show(watch.values("data"))}',
+                GOES_ON,
+            )
+        return ''
+
+
+def _heard(evidence: Evidence) -> Watch:
+    """Return what has come on the topic since the check listens."""
+    watch = evidence.heard[TOPIC]
+    watch.pump()
+    return watch
 
 
 say_once = Exercise(
@@ -55,11 +144,12 @@ say_once = Exercise(
     task=f'Write a node that says "{TEXT}" on {TOPIC} once, when somebody subscribes.',
     publishes={TOPIC: STRING},
     clauses=(
-        SaysIt(),
+        _SaysIt(),
         Runs('the node is spun, and it does not block while it waits', topic=TOPIC),
-        SilentBefore(),
-        SilentAfter(),
+        _SilentBefore(),
+        _SilentAfter(),
     ),
+    mistakes=(NOT_HEARD, TOO_EARLY, GOES_ON),
     hints=[
         'The node must look again and again whether somebody is there. What calls a callback '
         'again and again?',
@@ -67,262 +157,10 @@ say_once = Exercise(
         'After publishing, self.timer.cancel() ends the timer. So nothing is said twice.',
     ],
     answer=Solution(
-        _DOOR,
+        __file__,
+        'say_once.py',
         'The timer looks ten times a second, and the processor rests in between. A loop without '
         'a pause would keep it busy, and no other callback could run.',
     ),
-    styles=[
-        Style(
-            'told by ROS when somebody comes',
-            """
-from rclpy.event_handler import PublisherEventCallbacks
-from rclpy.node import Node
-from std_msgs.msg import String
-
-
-class Door(Node):
-    def __init__(self):
-        super().__init__('front_door')
-        self.said = False
-        self.publisher = self.create_publisher(
-            String,
-            '/door',
-            1,
-            event_callbacks=PublisherEventCallbacks(matched=self.on_matched),
-        )
-
-    def on_matched(self, info):
-        if info.current_count > 0 and not self.said:
-            self.publisher.publish(String(data='The door is open'))
-            self.said = True
-
-
-lab.spin(Door())
-""",
-        ),
-        Style(
-            'remembers that it has spoken, under the name of another node',
-            changed(
-                _DOOR,
-                (_INIT, "        super().__init__('editor')\n        self.said = False\n"),
-                (_LOOK, 'if self.publisher.get_subscription_count() > 0 and not self.said:'),
-                (_CANCEL, '            self.said = True\n'),
-            ),
-        ),
-        Style(
-            'looks every 3 seconds, and keeps it for those who come late',
-            changed(
-                _DOOR,
-                ('0.1', '3.0'),
-                ("String, 'door', 10", "String, 'door', latched"),
-                (
-                    '\n\nclass',
-                    '\nlatched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)'
-                    '\n\n\nclass',
-                ),
-                (
-                    'from rclpy.node import Node\n',
-                    'from rclpy.node import Node\n'
-                    'from rclpy.qos import DurabilityPolicy, QoSProfile\n',
-                ),
-            ),
-        ),
-        Style(
-            'waits in a thread',
-            """
-import threading
-import time
-
-from rclpy.node import Node
-from std_msgs.msg import String
-
-node = lab.spin(Node('door'))
-publisher = node.create_publisher(String, 'door', 10)
-
-
-def work(publisher):
-    try:
-        while publisher.get_subscription_count() == 0:
-            time.sleep(0.1)
-        publisher.publish(String(data='The door is open'))
-    except Exception:
-        return
-
-
-threading.Thread(target=work, args=(publisher,), daemon=True).start()
-""",
-        ),
-        Style(
-            'an executor with several threads',
-            changed(
-                _DOOR,
-                (
-                    'from rclpy.node import Node\n',
-                    'import threading\n\nfrom rclpy.executors import MultiThreadedExecutor\n'
-                    'from rclpy.node import Node\n',
-                ),
-                (
-                    'door = lab.spin(Door())\n',
-                    'executor = MultiThreadedExecutor()\nexecutor.add_node(Door())\n'
-                    'threading.Thread(target=executor.spin, daemon=True).start()\n',
-                ),
-            ),
-        ),
-        Style('own process', in_process(_DOOR), process=True),
-        Style('own process, by subprocess', started_by_subprocess(in_process(_DOOR))),
-        Style('own process, by asyncio', started_by_asyncio(in_process(_DOOR))),
-    ],
-    wrong=[
-        Wrong('does not wait', changed(_DOOR, (_LOOK, 'if True:')), 'it is lost'),
-        Wrong(
-            'waits some seconds, and does not look',
-            changed(_DOOR, (_LOOK, 'if True:'), ('0.1', '3.0')),
-            'it is lost',
-        ),
-        Wrong(
-            'says it again and again',
-            changed(_DOOR, (_CANCEL, '')),
-            'Nothing stops the node after its first message.',
-        ),
-        Wrong(
-            'says it twice',
-            changed(_DOOR, (_PUBLISH, 2 * _PUBLISH)),
-            'one message on /door, and no other',
-        ),
-        Wrong(
-            'says it again after a while',
-            changed(
-                _DOOR,
-                (_INIT, f'{_INIT}        self.calls = 0\n'),
-                (
-                    f'{_PUBLISH}{_CANCEL}',
-                    '            self.calls += 1\n'
-                    f'            if self.calls % 100 == 1:\n    {_PUBLISH}',
-                ),
-            ),
-            'Nothing stops the node after its first message.',
-        ),
-        Wrong(
-            'says more, later',
-            changed(
-                _DOOR,
-                (
-                    _CANCEL,
-                    f'{_CANCEL}            self.create_timer(9.0, self.close)\n\n'
-                    '    def close(self):\n'
-                    "        self.publisher.publish(String(data='The door is shut'))\n",
-                ),
-            ),
-            "'The door is open', 'The door is shut'",
-        ),
-        Wrong(
-            'does not look',
-            changed(_DOOR, (_LOOK, 'if True:'), (_CANCEL, '')),
-            'published while nobody listened',
-        ),
-        Wrong(
-            'says something before',
-            changed(
-                _DOOR,
-                (_TIMER, f"{_TIMER}        self.publisher.publish(String(data='Hello'))\n"),
-            ),
-            'published while nobody listened',
-        ),
-        Wrong(
-            'waits for a second listener',
-            changed(_DOOR, ('count() > 0', 'count() > 1')),
-            'Or publish() was not reached at all.',
-        ),
-        Wrong(
-            'looks once a minute',
-            changed(_DOOR, ('0.1', '60.0')),
-            'Or publish() was not reached at all.',
-        ),
-        Wrong(
-            'looks once',
-            changed(_DOOR, (_TIMER, '        self.on_timer()\n')),
-            'Or publish() was not reached at all.',
-        ),
-        Wrong(
-            'looks for a while only',
-            changed(
-                _DOOR,
-                (_INIT, f'{_INIT}        self.calls = 0\n'),
-                (
-                    _LOOK,
-                    f'self.calls += 1\n        if self.calls > 100:\n{_CANCEL}        el{_LOOK}',
-                ),
-            ),
-            'Or publish() was not reached at all.',
-        ),
-        Wrong('other text', changed(_DOOR, (TEXT, 'The door is Open')), 'Capital and small'),
-        Wrong('empty text', changed(_DOOR, ("data='The door is open'", '')), "data = ''"),
-        Wrong('other topic', changed(_DOOR, ("'door', 10", "'doors', 10")), 'names must be equal'),
-        Wrong(
-            'other type',
-            changed(
-                _DOOR,
-                ('import String', 'import Int16'),
-                ('(String, ', '(Int16, '),
-                ("String(data='The door is open')", 'Int16(data=1)'),
-            ),
-            'A topic carries one type of message.',
-        ),
-        Wrong(
-            'waits in the callback',
-            changed(
-                _DOOR,
-                (
-                    f'        {_LOOK}\n{_PUBLISH}{_CANCEL}',
-                    '        while self.publisher.get_subscription_count() == 0:\n'
-                    '            time.sleep(0.05)\n'
-                    f'        self.timer.cancel()\n{_PUBLISH[4:]}',
-                ),
-                ('from rclpy', 'import time\n\nfrom rclpy'),
-            ),
-            'While a callback runs, no other one can',
-        ),
-        Wrong(
-            'a program that waits in a loop',
-            """
-import time
-
-import rclpy
-from std_msgs.msg import String
-
-rclpy.init()
-node = rclpy.create_node('door')
-publisher = node.create_publisher(String, 'door', 10)
-while publisher.get_subscription_count() == 0:
-    time.sleep(0.05)
-publisher.publish(String(data='The door is open'))
-rclpy.spin(node)
-""",
-            'Its program does something else, such as a loop that waits.',
-            process=True,
-        ),
-        Wrong(
-            'not spun',
-            changed(_DOOR, ('lab.spin(Door())', 'Door()')),
-            '/door is there, but it is not spun',
-        ),
-        Wrong(
-            'a listener of its own',
-            changed(
-                _DOOR,
-                (
-                    _TIMER,
-                    f"{_TIMER}        self.create_subscription(String, 'door', print, 10)\n",
-                ),
-            ),
-            'nobody subscribes to /door before the check does',
-        ),
-        Wrong(
-            'not set up',
-            changed(_DOOR, (_INIT, '')),
-            'super().__init__(...) has not been called',
-            outcome=Outcome.ERROR,
-        ),
-    ],
     once=True,
 )

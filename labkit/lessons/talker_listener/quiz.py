@@ -4,7 +4,31 @@ from __future__ import annotations
 
 from labkit.exercises import Choice, Number, Quiz, Several, right, wrong
 
-__all__ = ['QUIZ']
+__all__ = ['QUIZ', 'WARM_UP']
+
+WARM_UP = Quiz(
+    'warm_up',
+    Choice(
+        'In a picture of the graph an arrow leads from a node to a topic. What does the node do '
+        'there?',
+        right('It publishes.', 'Arrows show which way messages go: here to the topic.'),
+        wrong('It subscribes.', 'Then the arrow leads the other way, from the topic to the node.'),
+        wrong('It waits for an answer.', 'A topic gives no answers. That is what services do.'),
+    ),
+    Choice(
+        'Which of these is the type of a message?',
+        right('std_msgs/msg/String', 'It names the package, the word msg, and the type.'),
+        wrong('/sight', 'That is a topic. The messages on it are of the type String.'),
+        wrong('brain', 'That is the name of a node.'),
+    ),
+    Choice(
+        'Two eyes publish on `/sight`. How does the brain know which of them sent a message?',
+        right('It does not know.', 'Neither side of a topic knows the other.'),
+        wrong('By the topic', 'Both eyes publish on the same one.'),
+        wrong('ROS puts the name into it.', 'A message holds the fields of its type.'),
+    ),
+    cell_id='warm-up',
+)
 
 QUIZ = Quiz(
     'talker_listener',
@@ -26,7 +50,7 @@ QUIZ = Quiz(
     Choice(
         'Who calls on_timer, the callback of the timer?',
         right(
-            'Whoever spins the node, each time the period is over.',
+            'ROS does, each time the period is over, while the node is spun.',
             'You pass the function once. While the node is spun, it is called again and again.',
         ),
         wrong(
@@ -51,7 +75,7 @@ QUIZ = Quiz(
         ),
         wrong(
             'The publisher keeps it and tries again later.',
-            'The publisher is done with it. The message lies in the queue of the subscriber.',
+            'The publisher is done with it. The message is in the queue of the subscriber.',
         ),
     ),
     Several(
@@ -83,7 +107,7 @@ QUIZ = Quiz(
         'A new process makes a publisher and publishes at once. Does a subscriber in another '
         'process hear it?',
         right(
-            'Mostly not: the two have not found each other yet.',
+            'Usually not: the two have not found each other yet.',
             'Discovery takes time. Wait until the publisher has a subscriber.',
         ),
         wrong(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from labkit.exercises import Lesson
+from labkit.lessons._robot import ROBOT_TOPICS
 from labkit.lessons.theory.ears import ears
 from labkit.lessons.theory.mouth import mouth
 from labkit.lessons.theory.quiz import QUIZ
@@ -16,8 +17,9 @@ LESSON = Lesson(
     teaches='the words and pictures of ROS; ROS 1 and ROS 2',
     exercises=[ears, mouth],
     quizzes=[QUIZ],
-    topics=['/sight', '/move'],
+    topics=['/sight', '/move', *ROBOT_TOPICS],
     given={
+        '/turtlebot': 'robot-graph',
         '/left_eye': 'eye-class',
         '/right_eye': 'legs-class',
         '/brain': 'brain-class',

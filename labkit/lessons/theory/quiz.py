@@ -7,7 +7,7 @@ from labkit.exercises import Choice, Number, Quiz, Several, Word, right, wrong
 
 def publishers_of_sight() -> int:
     """Count the publishers of /sight at this moment."""
-    from labkit.background.discovery import asking_node
+    from labkit.asking.discovery import asking_node
 
     return asking_node().count_publishers('/sight')
 
@@ -32,7 +32,7 @@ QUIZ = Quiz(
         wrong('A simulator', 'Simulators such as Gazebo are programs that talk to ROS.'),
     ),
     Several(
-        'Which of these does ROS take off you?',
+        'Which of these jobs does ROS do for you?',
         right('Passing messages between programs', 'That is what topics and services do.'),
         right(
             'One form of data for all laser scanners',
@@ -41,7 +41,7 @@ QUIZ = Quiz(
         right('A way to share code in packages', 'This is package management.'),
         wrong(
             'Deciding what the robot does',
-            'What the robot thinks is your function. ROS carries what goes in and comes out.',
+            'What the robot thinks is up to your code. ROS carries messages to it and from it.',
         ),
     ),
     Choice(
@@ -82,8 +82,8 @@ QUIZ = Quiz(
             'A message is copied for every subscriber',
             'A letter has one reader, a message as many as there are subscribers.',
         ),
-        wrong('It has limited room', 'That is alike: the depth of the queue is the room.'),
-        wrong('Messages wait in it', 'That is alike: they wait until the node reads them.'),
+        wrong('It has limited room', 'A node is like that: the depth of its queue is the room.'),
+        wrong('Messages wait in it', 'A node is like that: they wait until it reads them.'),
     ),
     Choice(
         'A book says: rosrun turtlesim turtlesim_node. What do you type in ROS 2?',

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from labkit.exercises import Lesson
+from labkit.lessons._robot import ROBOT_TOPICS
 from labkit.lessons.turtlebot.bot import bot
-from labkit.lessons.turtlebot.goto import go_to
-from labkit.lessons.turtlebot.quiz import QUIZ
+from labkit.lessons.turtlebot.go_to import go_to
+from labkit.lessons.turtlebot.quiz import QUIZ, WARM_UP
 from labkit.lessons.turtlebot.square import square
 from labkit.lessons.turtlebot.stop import stop
 from labkit.lessons.turtlebot.wall import wall
@@ -17,15 +18,10 @@ LESSON = Lesson(
     '07_turtlebot.ipynb',
     title='The turtlebot',
     teaches='a robot on real topics: drive it, read its odometry, write its controller',
-    exercises=[stop, bot, wall, go_to, square],
-    quizzes=[QUIZ],
+    exercises=[wall, bot, go_to, square, stop],
+    quizzes=[WARM_UP, QUIZ],
     topics=[
-        '/scan',
-        '/joint_states',
-        '/imu',
-        '/battery_state',
-        '/camera/image_raw',
-        '/camera/camera_info',
+        *ROBOT_TOPICS,
     ],
     given={'/turtlebot': '*', '/teleop': '*', '/bot': 'bot-run', '/speedometer': 'speedometer'},
 )

@@ -10,13 +10,18 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from labkit.exercises.watch import Lived, Sample, Watch
-from labkit.sim.kinematics import Pose, Twist2, wrap_angle, yaw_from_quaternion
+from labkit.exercises.clauses import Evidence
+from labkit.exercises.history import Note
+from labkit.exercises.life import Life
+from labkit.exercises.watch import Sample, Watch
+from labkit.sim.kinematics import Pose, wrap_angle, yaw_from_quaternion
 
 __all__ = [
     'EMPTY',
     'ODOMETRY',
+    'SAME',
     'SCAN',
+    'STEP_SEC',
     'TAIL_SEC',
     'TWIST',
     'Command',
@@ -34,10 +39,13 @@ EMPTY = 'std_msgs/msg/Empty'
 
 Point = tuple[float, float]
 
-# After the last command that moves the robot it is looked on for so long, s.
-TAIL_SEC = 2.0
-# If no command has come so long after the sign to start, none will, s.
-NONE_SEC = 1.5
+# From one command to the next, s.
+STEP_SEC = 0.1
+# Numbers that differ by less are the same: times in s, speeds in m/s.
+SAME = 1e-6
+# A drive is over when nothing that moves the robot was commanded for the first time, s, or no
+# command at all for the second time after the sign to start.
+TAIL_SEC, NONE_SEC = 2.0, 1.5
 # A command whose numbers are all below this says stop, m/s and rad/s.
 ZERO = 1e-9
 # A robot that has moved by less than this since the last odometry stands, m.
@@ -53,26 +61,25 @@ class Trial:
     Attributes:
         start: Where the robot is put: x and y in m, yaw in rad.
         fields: Fields of the message that gives the sign.
-        goals: Where the robot should come by, m.
-        from_start: Whether that, and all that is told, is seen from the start.
-        short_sighted: Whether the scanner says 0.0 where it sees nothing.
+        goals: As for `Drive`.
+        from_start: As for `Drive`.
+        nothing: What the scanner says where it sees nothing. It sees less far if that is not inf.
+        walls: What else stands in the room, m: walls from (x1, y1) to (x2, y2),
+        posts: and posts at (x, y) with a radius.
     """
 
     start: tuple[float, float, float]
     fields: Mapping[str, Any] = field(default_factory=dict)
     goals: Sequence[Point] = ()
     from_start: bool = False
-    short_sighted: bool = False
+    nothing: float = math.inf
+    walls: Sequence[tuple[float, float, float, float]] = ()
+    posts: Sequence[tuple[float, float, float]] = ()
 
 
 @dataclass(frozen=True)
 class Command:
-    """A command as it was sent.
-
-    Attributes:
-        at: When, in seconds since the drive is looked at.
-        numbers: The six numbers of the Twist.
-    """
+    """A command as it was sent: when, s, and the six numbers of the Twist."""
 
     at: float
     numbers: tuple[float, ...]
@@ -88,11 +95,6 @@ class Command:
         return self.numbers[5]
 
     @property
-    def twist(self) -> Twist2:
-        """Both of them."""
-        return Twist2(self.v, self.w)
-
-    @property
     def stops(self) -> bool:
         """Tell whether it says stop. Not if a number is none: a comparison with it is false."""
         return all(abs(number) < ZERO for number in self.numbers)
@@ -105,43 +107,44 @@ class Command:
 
     def __str__(self) -> str:
         numbers = {'linear.x': self.v, 'angular.z': self.w, **self.others}
-        return ', '.join(f'{name} = {number:.4g}' for name, number in numbers.items())
+        return ', '.join(f'{name} = {round(number, 6):.9g}' for name, number in numbers.items())
 
 
 @dataclass
 class Drive:
-    """One drive of the robot.
+    """One drive of the robot; before the first one, what was found in the graph.
 
     Attributes:
+        evidence: What was found.
         poses: Each odometry: time in s, and pose.
         commands: Each command.
         scans: Each scan: time in s, and the distances, m.
         sign: When the sign to start was given, s.
-        number: The how manieth drive of the check it is, from 0.
+        number: How many drives of the check came before it.
         goals: Where it should come by, m, in the frame of `told`.
         from_start: Whether places are told as the robot saw them from its start.
         walls: What the scanner saw near its end, beam by beam, m; None where that was nothing.
-        exact: Whether its times are exact. Else it was driven in real time.
-        margin: How far its times may be off, s.
-        slowness: How many times as long as told a thread of the check slept meanwhile, see `Naps`.
-        late: How much longer it slept in the one case of ten that was held up least, s; 0 if the
-            node is in another process, which is held up by other things.
+        margin: How far its times may be off, s: a step of time, for a process of its own.
         cut: Whether the check did not see its end.
     """
 
-    poses: list[tuple[float, Pose]] = field(default_factory=list)
-    commands: list[Command] = field(default_factory=list)
-    scans: list[tuple[float, Sequence[float]]] = field(default_factory=list)
+    evidence: Evidence
+    poses: Sequence[tuple[float, Pose]] = ()
+    commands: Sequence[Command] = ()
+    scans: Sequence[tuple[float, Sequence[float]]] = ()
     sign: float = 0.0
     number: int = 0
     goals: Sequence[Point] = ()
     from_start: bool = False
     walls: Sequence[Point | None] = ()
-    exact: bool = True
-    margin: float = 1e-6
-    slowness: float = 1.0
-    late: float = 0.0
+    margin: float = SAME
     cut: bool = False
+
+    def take(self, life: Life) -> None:
+        """Take what came while time passed."""
+        self.poses = [(sample.at, _pose(sample.message)) for sample in life.on('/odom')]
+        self.commands = [command_of(sample, sample.at) for sample in life.on('/cmd_vel')]
+        self.scans = [(sample.at, sample.message.ranges) for sample in life.on('/scan')]
 
     @property
     def start(self) -> Pose:
@@ -160,13 +163,13 @@ class Drive:
         return max(end - self.sign, 0.0)
 
     @property
-    def moving(self) -> list[Command]:
+    def moving(self) -> Sequence[Command]:
         """The commands up to the last one that does not say stop."""
         last = max((i for i, c in enumerate(self.commands) if not c.stops), default=-1)
         return self.commands[: last + 1]
 
     @property
-    def ending(self) -> list[Command]:
+    def ending(self) -> Sequence[Command]:
         """The commands after that: all of them say stop."""
         return self.commands[len(self.moving) :]
 
@@ -174,47 +177,18 @@ class Drive:
     def gaps(self) -> list[float]:
         """The time from each command to the next one, s, until the first that ends the drive.
 
-        Without the first one if that is short: a rate that has ticked before does not sleep, and
+        Without the first one if that is shorter: a rate that has ticked before does not sleep, and
         the second command comes at once.
         """
         times = [command.at for command in self.commands[: len(self.moving) + 1]]
         gaps = [later - earlier for earlier, later in pairwise(times)]
         usual = statistics.median(gaps) if gaps else 0.0
-        return gaps[1:] if len(gaps) > 3 and gaps[0] < usual / 2 else gaps
-
-    @property
-    def is_even(self) -> bool:
-        """Tell whether commands come as evenly as only a timer that follows the time makes it."""
-        times = [command.at for command in self.commands]
-        gaps = self.gaps or [later - earlier for earlier, later in pairwise(times)]
-        return len(gaps) > 3 and max(gaps) - min(gaps) < self.margin + 1e-6
-
-    @property
-    def period(self) -> float:
-        """The usual time from one command to the next, s; 0 if there are too few."""
-        gaps = self.gaps
-        usual = statistics.median(gaps) if gaps else 0.0
-        # Without pauses, as between the sides of a square.
-        return statistics.mean(gap for gap in gaps if gap <= 1.5 * usual) if gaps else 0.0
-
-    @property
-    def meant(self) -> float:
-        """The time from one command to the next where nothing was held up, s; 0 if too few.
-
-        A thread may sleep longer than it was told to, on a busy machine much longer, and never
-        shorter. What another thread slept too long at the same time is taken off.
-        """
-        gaps = sorted(self.gaps)
-        return gaps[len(gaps) // 10] - self.late if gaps else 0.0
+        return gaps[1:] if len(gaps) > 3 and gaps[0] < usual else gaps
 
     def told(self, pose: Pose) -> Pose:
-        """Return a pose in the frame in which verdict and picture tell it.
+        """Return a pose of the odometry in the frame in which verdict and picture tell it.
 
-        Args:
-            pose: Of the odometry.
-
-        Returns:
-            The same; seen from the start, where the task is about that: x ahead, y to the left.
+        Where the task is about that, it is seen from the start: x ahead, y to the left.
         """
         if not self.from_start:
             return pose
@@ -233,66 +207,43 @@ class Drive:
         first = max(bisect_right(times, at - since) - 1, 0)
         return [pose for _, pose in self.poses[first : last + 1]]
 
-    def take(
-        self, odometry: Sequence[Sample], commands: Sequence[Sample], scans: Sequence[Sample] = ()
-    ) -> None:
-        """Take what has come since it was called last.
-
-        Args:
-            odometry: All messages on /odom so far.
-            commands: All messages on /cmd_vel so far.
-            scans: All messages on /scan so far.
-        """
-        for sample in odometry[len(self.poses) :]:
-            self.poses.append((_time(sample), _pose(sample.message)))
-        for sample in commands[len(self.commands) :]:
-            self.commands.append(command_of(sample))
-        for sample in scans[len(self.scans) :]:
-            self.scans.append((_time(sample), sample.message.ranges))
-
 
 class EndOfDrive:
     """Whether a drive is over: nothing that moves was commanded for long, and the robot stands.
 
     Args:
         sign: When the sign to start was given, s.
-        tail: How long nothing may have been commanded, s.
     """
 
-    def __init__(self, sign: float, tail: float = TAIL_SEC) -> None:
-        self._sign, self._tail = sign, tail
+    def __init__(self, sign: float) -> None:
+        self._sign = self._first = sign
         self._seen = 0
         self._moved: float | None = None
-        self._first: float | None = None
 
     def __call__(self, now: float, watches: Mapping[str, Watch]) -> bool:
         """Look at what has come until now, and tell."""
         commands, odometry = watches['/cmd_vel'].samples, watches['/odom'].samples
-        new, self._seen = commands[self._seen :], len(commands)
-        if now < self._sign:
-            return False
-        if new and self._first is None:
-            self._first = now
+        new = commands[self._seen :]
+        if new and not self._seen:
+            self._first = max(now, self._sign)
+        self._seen = len(commands)
         if any(not command_of(sample).stops for sample in new):
             self._moved = now
+        if now < self._sign:
+            return False
         if self._moved is None:
             # It may say stop first, and drive then.
-            return now > max(self._sign, self._first or 0.0) + NONE_SEC
-        if now < self._moved + self._tail or len(odometry) < 2:
+            return now > self._first + NONE_SEC
+        if now < self._moved + TAIL_SEC or len(odometry) < 2:
             return False
         before, last = (_pose(sample.message) for sample in odometry[-2:])
         return math.dist(before, last) < STANDS
 
 
-def command_of(sample: Sample) -> Command:
+def command_of(sample: Sample | Note, at: float = 0.0) -> Command:
     """Return a message on /cmd_vel as a command."""
     linear, angular = sample.message.linear, sample.message.angular
-    numbers = linear.x, linear.y, linear.z, angular.x, angular.y, angular.z
-    return Command(_time(sample), numbers)
-
-
-def _time(sample: Sample) -> float:
-    return sample.at if isinstance(sample, Lived) else sample.stamp
+    return Command(at, (linear.x, linear.y, linear.z, angular.x, angular.y, angular.z))
 
 
 def _pose(message: Any) -> Pose:

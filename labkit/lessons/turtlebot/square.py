@@ -2,333 +2,249 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+import math
+import random
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import partial
+from itertools import pairwise, starmap
 from typing import Any
 
-from labkit.exercises import Exercise, Probe, Solution, Style, Wrong, changed
-from labkit.exercises.clauses import Clause, Evidence
+from labkit.exercises import Clause, Exercise, Fail, Mistake, Probe, Solution
+from labkit.exercises.clauses import Asked, Evidence
 from labkit.exercises.variants import varied
-from labkit.lessons._script import in_process
 from labkit.lessons.turtlebot.clauses import (
+    RATE,
+    REST_SEC,
+    RESTS,
+    SENSIBLE,
     Begins,
-    Rate,
-    Sensible,
-    Stops,
+    look_at_rate,
+    look_at_time,
 )
-from labkit.lessons.turtlebot.drive import EMPTY, TWIST, Drive
-from labkit.lessons.turtlebot.judge import driven
-from labkit.lessons.turtlebot.mistakes import first_time_only, int_for_float
-from labkit.lessons.turtlebot.robot import find_robot
-from labkit.lessons.turtlebot.square_clauses import Closes, Outline, Sides, draw, tell
-from labkit.lessons.turtlebot.trials import Trials
+from labkit.lessons.turtlebot.drive import EMPTY, STEP_SEC, Drive, Point, Trial
+from labkit.lessons.turtlebot.stage import Drives, Trials
+from labkit.sim.kinematics import wrap_angle
+from labkit.views.arena_picture import two
 
 __all__ = ['square']
 
-SIGN = '/go_square'
+SIGN = ('/go_square', EMPTY)
 # Sides of variants, m. The corner opposite to the start is in none near that of another.
 SIDES = (0.24, 0.4, 0.56, 0.72)
+# How far it may be off a corner, m.
+NEAR = 0.1
+# What it turns while it drives is none of the turns on the spot, m/s; it may be so much, degrees.
+DRIVES, CURVED = 0.05, 180.0
+# An unhurried drive: m/s along a side, and s for each turn with its pauses.
+UNHURRIED, TURN_SEC = 0.2, 3.5
 
-_SQUARE = """
-from geometry_msgs.msg import Twist
-from rclpy.node import Node
-from std_msgs.msg import Empty
-
-
-class Square(Node):
-    def __init__(self):
-        super().__init__('square')
-        self.publisher = self.create_publisher(Twist, 'cmd_vel', 10)
-        self.create_subscription(Empty, 'go_square', self.on_go, 10)
-        self.timer = self.create_timer(0.1, self.on_timer)
-        self.plan = []
-
-    def on_go(self, msg):
-        side = 20 * [(0.2, 0.0)] + 2 * [(0.0, 0.0)]
-        turn = 10 * [(0.0, 1.5708)] + 5 * [(0.0, 0.0)]
-        self.plan = 4 * (side + turn)
-
-    def on_timer(self):
-        if not self.plan:
-            return
-        v, w = self.plan.pop(0)
-        msg = Twist()
-        msg.linear.x, msg.angular.z = v, w
-        self.publisher.publish(msg)
-
-
-square = lab.spin(Square())
-"""
-
-_BY_ODOMETRY = """
-import math
-
-import rclpy
-from geometry_msgs.msg import Twist
-from nav_msgs.msg import Odometry
-from std_msgs.msg import Empty
-
-node = rclpy.create_node('by_odometry')
-pub = node.create_publisher(Twist, '/cmd_vel', 10)
-state = {'pose': None, 'todo': []}
-
-
-def on_odometry(msg):
-    q, p = msg.pose.pose.orientation, msg.pose.pose.position
-    state['pose'] = p.x, p.y, 2 * math.atan2(q.z, q.w)
+OFF_THE_SIDES = Mistake(
+    'square/off-the-sides',
+    'It drives a curve, or a side is longer than it should be.',
+    'A command for a side has angular.z = 0.0, one for a turn linear.x = 0.0.',
+)
+FIVE_SIDES = Mistake(
+    'square/five-sides',
+    'It goes on after the fourth side.',
+    'After the fourth side publish an empty Twist().',
+    change=[('4 *', '5 *')],
+)
+OTHER_WAY = Mistake(
+    'square/other-way',
+    'It turns to the {other}. A positive angular.z turns to the left, a negative one to the '
+    'right.',
+    'Change the sign of angular.z.',
+)
+FIRST_SIDE = Mistake(
+    'square/first-side',
+    'The first side has another length, or it did not drive straight on.',
+    f'Way = speed times time: {UNHURRIED} m/s for {STEP_SEC} s, one step, are '
+    f'{UNHURRIED * STEP_SEC:g} m.',
+)
+LAST_SIDE = Mistake(
+    'square/last-side',
+    'The fourth side is missing, or the corners are no right angles.',
+    'Four times the same: a side, then a turn.',
+    change=[('4 *', '3 *')],
+)
+NO_RIGHT_ANGLE = Mistake(
+    'square/no-right-angle',
+    'The turn is no right angle, or the side has another length. A right angle is 1.57 rad.',
+    f'Angle = turning rate times time: 1.57 rad/s for 1 s, which is 10 steps of {STEP_SEC} s.',
+    change=[('1.5708', '1.0')],
+)
 
 
-def on_go(msg):
-    x, y, yaw = state['pose']
-    corners = [(0.4, 0.0), (0.4, 0.4), (0.0, 0.4), (0.0, 0.0)]
-    state['todo'] = [
-        (x + a * math.cos(yaw) - b * math.sin(yaw), y + a * math.sin(yaw) + b * math.cos(yaw))
-        for a, b in corners
+@dataclass(frozen=True)
+class Outline:
+    """The square that is to be driven: the length of its sides, m, and which way it turns."""
+
+    side: float = 0.4
+    turn: str = 'left'
+
+    @property
+    def corners(self) -> tuple[Point, ...]:
+        """The corners, seen from the start, which is the first and the last: x ahead, m."""
+        side = self.side
+        across = side if self.turn == 'left' else -side
+        return (0.0, 0.0), (side, 0.0), (side, across), (0.0, across), (0.0, 0.0)
+
+    def off(self, point: Point) -> float:
+        """Return how far a point is from the nearest side, m, along an axis."""
+        (x, y), half = point, self.side / 2
+        middle = self.corners[2][1] / 2
+        return abs(max(abs(x - half), abs(y - middle)) - half)
+
+    @property
+    def seconds(self) -> float:
+        """How long the drive may take, s."""
+        return float(round(4 * (self.side / UNHURRIED + TURN_SEC)))
+
+
+def _path(drive: Drive) -> list[Point]:
+    return [drive.told(pose)[:2] for _, pose in drive.poses]
+
+
+def _sides(outline: Outline, drive: Drive) -> None:
+    path, after = _path(drive), 0
+    for number, corner in enumerate(outline.corners[1:], start=1):
+        near = [i for i in range(after, len(path)) if math.dist(path[i], corner) <= NEAR]
+        if not near:
+            raise _missed(drive, path[after:], number, outline)
+        after = near[0]
+    outside = max(path[: after + 1], key=outline.off)
+    if outline.off(outside) > NEAR:
+        seen = f'it came to ({two(outside[0])}, {two(outside[1])}), seen from the start'
+        raise Fail('a way along the sides of the square', seen, OFF_THE_SIDES)
+    curved = math.degrees(
+        sum(
+            abs(wrap_angle(other.yaw - one.yaw))
+            for (at, one), (later, other) in pairwise(drive.poses)
+            if math.dist(one[:2], other[:2]) > DRIVES * (later - at)
+        )
+    )
+    if curved > CURVED:
+        seen = f'it turned by {curved:.0f} degrees while it drove'
+        raise Fail('straight sides, and turns on the spot', seen, OFF_THE_SIDES)
+
+
+def _missed(drive: Drive, path: Sequence[Point], number: int, outline: Outline) -> Fail:
+    if drive.cut:
+        look_at_time(drive, outline.seconds)
+    corner = outline.corners[number]
+    x, y = min(path, key=lambda point: math.dist(point, corner))
+    mistake = {1: FIRST_SIDE, 4: LAST_SIDE}.get(number, NO_RIGHT_ANGLE)
+    mirrored = (corner[0], -corner[1])
+    if number == 2 and any(math.dist(point, mirrored) <= NEAR for point in path):
+        mistake = OTHER_WAY
+    corners = ', '.join(f'({x:g}, {y:g})' for x, y in outline.corners[1:])
+    return Fail(
+        f'corners at {corners} m, seen from the start',
+        f'it came no nearer to corner {number}, ({corner[0]:g}, {corner[1]:g}), than '
+        f'({two(x)}, {two(y)})' + (', and was still driving' if drive.cut else ''),
+        mistake.of(other='right' if outline.turn == 'left' else 'left'),
+    )
+
+
+def _closes(outline: Outline, drive: Drive) -> None:
+    look_at_time(drive, outline.seconds)
+    if drive.cut:
+        return
+    path = _path(drive)
+    away, way = math.dist(path[-1], outline.corners[-1]), sum(starmap(math.dist, pairwise(path)))
+    # It may be as long as six sides of the square.
+    if away > NEAR or way >= 6 * outline.side:
+        seen = f'it ends {away:.2f} m away from there, after {way:.1f} m'
+        raise Fail('it ends where it began, after four sides', seen, FIVE_SIDES)
+
+
+def _draw(outline: Outline) -> list[Trial]:
+    """Return two drives. They are not along an axis: a square is one wherever it begins."""
+    uniform = random.uniform
+    return [
+        Trial(
+            (uniform(-0.4, 0.4), uniform(-0.4, 0.4), uniform(-3, 3)),
+            goals=outline.corners[1:],
+            from_start=True,
+        )
+        for _ in range(2)
     ]
 
 
-def on_timer():
-    if not state['todo']:
-        return
-    x, y, yaw = state['pose']
-    dx, dy = state['todo'][0][0] - x, state['todo'][0][1] - y
-    error = math.remainder(math.atan2(dy, dx) - yaw, math.tau)
-    msg = Twist()
-    if math.hypot(dx, dy) < 0.03:
-        state['todo'].pop(0)
-    elif abs(error) > 0.2:
-        msg.angular.z = 2.0 * error
-    else:
-        msg.linear.x, msg.angular.z = 0.2, 2.0 * error
-    pub.publish(msg)
+def _tell(drives: Sequence[Drive]) -> str:
+    drive = drives[0]
+    away = math.dist(drive.end[:2], drive.start[:2])
+    return f'A square of {drive.way():.2f} m, closed to {away:.2f} m, in {drive.duration:.0f} s.'
 
 
-node.create_subscription(Odometry, 'odom', on_odometry, 10)
-node.create_subscription(Empty, 'go_square', on_go, 10)
-node.create_timer(0.1, on_timer)
-lab.spin(node)
-"""
-
-
-def _clauses(outline: Outline) -> tuple[Clause, ...]:
-    return (
-        Begins(SIGN, EMPTY),
-        Sensible(),
-        Rate(pause=1.0, pauses=8),
-        Sides(outline),
-        Stops(rests=True),
-        Closes(outline),
-    )
-
-
-def _task(outline: Outline) -> str:
-    return (
-        f'On /go_square a node drives a square of {outline.side} m to the {outline.turn}, and '
-        'stops where it began.'
-    )
-
-
-def _hints(outline: Outline) -> list[str]:
+def _task(outline: Outline) -> dict[str, Any]:
+    """Return what depends on the outline."""
     side, turn = outline.side, outline.turn
     sign = '' if turn == 'left' else '-'
-    return [
-        f'A square is four times the same: a side, then a turn of 90 degrees to the {turn}.',
-        f'Way = speed * time. 0.2 m/s for {side / 0.2:g} s are {side} m: {side / 0.02:.0f} steps '
-        f'of 0.1 s. Angle = turning rate * time. {sign}1.57 rad/s for 1 s are 90 degrees to the '
-        f'{turn}: 10 steps.',
-        'Make a list of (v, w), one for each step, and let the timer take one at a time. '
-        'Let it rest for some steps, (0.0, 0.0), after each side and each turn.',
-    ]
+    clauses: tuple[Clause[Drive], ...] = (
+        Begins(*SIGN),
+        SENSIBLE,
+        Asked(
+            f'{RATE}, with pauses of up to {REST_SEC:g} s',
+            partial(look_at_rate, pause=REST_SEC, pauses=8),
+        ),
+        Asked(
+            f'drive four straight sides of {side} m, turning 90° {turn} on the spot (corners up '
+            f'to {NEAR} m off)',
+            partial(_sides, outline),
+        ),
+        RESTS,
+        Asked(
+            f'stop where you began (up to {NEAR} m off), within {outline.seconds:.0f} s',
+            partial(_closes, outline),
+        ),
+    )
+    return {
+        'task': f'On /go_square a node drives a square of {side} m to the {turn}, and stops where '
+        'it began.',
+        'clauses': clauses,
+        'stage': Drives(SIGN, partial(_draw, outline), _tell, seconds=outline.seconds),
+        'hints': [
+            f'A square is four times the same: a side, then a turn of 90 degrees to the {turn}.',
+            f'Way = speed * time. {UNHURRIED} m/s for {side / UNHURRIED:g} s are {side} m: '
+            f'{side / UNHURRIED / STEP_SEC:.0f} steps of {STEP_SEC} s. Angle = turning rate * '
+            f'time. {sign}1.57 rad/s for 1 s are 90 degrees to the {turn}: 10 steps.',
+            'Make a list of (v, w), one for each step, and let the timer take one at a time. '
+            'Let it rest for some steps, (0.0, 0.0), after each side and each turn.',
+        ],
+    }
 
-
-def _judge(outline: Outline) -> Callable[[Probe], str]:
-    drives = partial(draw, outline)
-    return driven((SIGN, EMPTY), _clauses(outline), drives, tell, seconds=outline.seconds)
-
-
-_LOOP = """
-import threading
-
-import rclpy
-from geometry_msgs.msg import Twist
-from std_msgs.msg import Empty
-
-node = lab.spin(rclpy.create_node('surveyor'))
-publisher = node.create_publisher(Twist, '/cmd_vel', 10)
-started = threading.Event()
-
-
-def send(v, w, steps):
-    msg = Twist()
-    msg.linear.x, msg.angular.z = v, w
-    for _ in range(steps):
-        publisher.publish(msg)
-        rate.sleep()
-
-
-def work():
-    while started.wait():
-        started.clear()
-        for _ in range(4):
-            send(0.2, 0.0, 20)
-            send(0.0, 1.5708, 10)
-            send(0.0, 0.0, 6)
-
-
-rate = node.create_rate(10)
-node.create_subscription(Empty, '/go_square', lambda msg: started.set(), 10)
-threading.Thread(target=work, daemon=True).start()
-"""
 
 _USUAL = Exercise(
     name='square',
-    task=_task(Outline()),
-    subscribes={'/go_square': EMPTY},
-    publishes={'/cmd_vel': TWIST},
     shared=['/cmd_vel'],
     reliable=['/cmd_vel'],
-    clauses=_clauses(Outline()),
-    judge=_judge(Outline()),
-    hints=_hints(Outline()),
+    mistakes=[FIVE_SIDES, LAST_SIDE, NO_RIGHT_ANGLE],
     answer=Solution(
-        _SQUARE,
+        __file__,
+        'square.py',
         'Nothing is measured here: it relies on speed and time. By odometry it would be more '
         'exact, as in the exercise before.',
     ),
-    styles=[
-        Style('by odometry', _BY_ODOMETRY),
-        Style(
-            'without commands in its pauses',
-            changed(
-                _SQUARE,
-                ('2 * [(0.0, 0.0)]', '[(0.0, 0.0)] + 2 * [None]'),
-                ('5 * [(0.0, 0.0)]', '[(0.0, 0.0)] + 4 * [None]'),
-                (
-                    '        v, w = self.plan.pop(0)\n',
-                    '        step = self.plan.pop(0)\n        if step is None:\n'
-                    '            return\n',
-                ),
-                ('msg.angular.z = v, w', 'msg.angular.z = step'),
-            ),
-        ),
-        Style(
-            'without a last turn',
-            changed(_SQUARE, ('4 * (side + turn)', '(4 * (side + turn))[:-15]')),
-        ),
-        Style('a loop with a rate, in a thread', _LOOP),
-        Style('own process', in_process(_SQUARE), process=True),
-    ],
-    wrong=[
-        Wrong(
-            'degrees for radians', changed(_SQUARE, ('1.5708', '90.0')), 'Its angles are degrees'
-        ),
-        Wrong('to the right', changed(_SQUARE, ('1.5708', '-1.5708')), 'It turns to the right'),
-        Wrong('turns too little', changed(_SQUARE, ('1.5708', '1.0')), 'no right angle'),
-        Wrong(
-            'sides too long',
-            changed(_SQUARE, ('20 *', '35 *')),
-            'the side has another length',
-        ),
-        Wrong('three sides', changed(_SQUARE, ('4 *', '3 *')), 'The fourth side is missing'),
-        Wrong(
-            'forgets to stop',
-            changed(
-                _SQUARE,
-                ('4 * (side + turn)', '3 * (side + turn) + 17 * [(0.2, 0.0)]'),
-            ),
-            'leaves it driving',
-        ),
-        first_time_only(_SQUARE, 'self.plan = 4 * (side + turn)'),
-        Wrong('five sides', changed(_SQUARE, ('4 *', '5 *')), 'It goes on after the fourth side'),
-        Wrong('two squares', changed(_SQUARE, ('4 *', '8 *')), 'It does not end'),
-        Wrong(
-            'twelve and a half commands a second',
-            changed(_SQUARE, ('create_timer(0.1,', 'create_timer(0.08,')),
-            'a command every 0.08 s (12.5 Hz)',
-        ),
-        Wrong(
-            'a circle',
-            changed(
-                _SQUARE,
-                ('20 * [(0.2, 0.0)] + 2 * [(0.0, 0.0)]', '25 * [(0.178, 0.6283)]'),
-                ('10 * [(0.0, 1.5708)] + 5 * [(0.0, 0.0)]', '[(0.0, 0.0)]'),
-            ),
-            'The first side has another length',
-        ),
-        Wrong(
-            'round corners',
-            changed(
-                _SQUARE,
-                ('20 * [(0.2, 0.0)] + 2 * [(0.0, 0.0)]', '14 * [(0.2, 0.0)]'),
-                ('10 * [(0.0, 1.5708)] + 5 * [(0.0, 0.0)]', '8 * [(0.15, 1.96)]'),
-                ('(side + turn)', '(side + turn) + [(0.0, 0.0)]'),
-            ),
-            'It drives a curve',
-        ),
-        Wrong(
-            'never ends',
-            changed(
-                _SQUARE,
-                (
-                    '        self.publisher.publish(msg)\n',
-                    '        self.publisher.publish(msg)\n        self.plan.append((v, w))\n',
-                ),
-            ),
-            'It does not end',
-        ),
-        Wrong(
-            'says stop for ever',
-            changed(
-                _SQUARE,
-                (
-                    '            return\n',
-                    '            self.publisher.publish(Twist())\n            return\n',
-                ),
-            ),
-            'all of them stop commands',
-        ),
-        Wrong(
-            'rests for long at its end',
-            changed(_SQUARE, ('4 * (side + turn)', '4 * (side + turn) + 15 * [(0.0, 0.0)]')),
-            'It stands, and still publishes.',
-        ),
-        Wrong(
-            'too slow',
-            changed(_SQUARE, ('20 * [(0.2, 0.0)]', '50 * [(0.08, 0.0)]')),
-            'after the message',
-        ),
-        int_for_float(_SQUARE, '(0.0, 1.5708)', '(0, 1.5708)'),
-    ],
+    **_task(Outline()),
 )
 
 
 def _variant(*, outline: tuple[float, str]) -> Exercise:
     wanted = Outline(*outline)
-    code = changed(_SQUARE, ('20 * [(0.2, 0.0)]', f'{wanted.side / 0.02:.0f} * [(0.2, 0.0)]'))
+    steps = f'{wanted.side / UNHURRIED / STEP_SEC:.0f} * [({UNHURRIED}, 0.0)]'
+    answer = _USUAL.answer.changed(('20 * [(0.2, 0.0)]', steps))
     if wanted.turn == 'right':
-        code = changed(code, ('1.5708', '-1.5708'))
-    return replace(
-        _USUAL,
-        task=_task(wanted),
-        clauses=_clauses(wanted),
-        judge=_judge(wanted),
-        hints=_hints(wanted),
-        answer=Solution(code, _USUAL.answer.reason),
-        styles=(),
-        wrong=(),
-    )
+        answer = answer.changed(('1.5708', '-1.5708'))
+    return replace(_USUAL, answer=answer, **_task(wanted))
 
 
 def _guess(probe: Probe) -> dict[str, Any] | None:
-    evidence = Evidence(probe)
-    source = evidence.publisher('/cmd_vel', evidence.subscription(SIGN).node)
     longest = max(map(Outline, SIDES), key=lambda outline: outline.side)
-    trials = Trials(probe, find_robot(probe), source, (SIGN, EMPTY), longest.seconds)
-    drives: list[Drive] = []
+    trials = Trials(Evidence(probe), SIGN, longest.seconds)
     trials.wait_until_quiet()
-    trials.run(draw(longest)[:1], lambda found: None, drives)
-    path = [drives[0].told(pose)[:2] for _, pose in drives[0].poses]
+    path = _path(next(trials.made(_draw(longest), [])))
     if not path:
         return None
     far = max((y for _, y in path), key=abs)

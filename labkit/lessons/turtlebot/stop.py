@@ -2,299 +2,202 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import signal
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import Any
 
-from labkit.exercises import Exercise, Outcome, Solution, Style, Wrong, changed, expect
+from labkit.exercises import Exercise, Fail, Mistake, Probe, Solution, expect
 from labkit.exercises.clauses import (
+    Evidence,
+    GraphClause,
     Messages,
     Named,
     Publishes,
+    Stream,
     often,
 )
 from labkit.exercises.life import live
 from labkit.exercises.variants import varied
-from labkit.lessons.turtlebot.drive import TWIST
-from labkit.lessons.turtlebot.mistakes import int_for_float
-from labkit.lessons.turtlebot.stop_clauses import NODE, SPEED, SaysStop, cruises
-
-if TYPE_CHECKING:
-    from labkit.exercises import Probe
+from labkit.lessons.turtlebot.drive import SAME, TWIST, command_of
 
 __all__ = ['stop']
 
+NODE = '/cruiser'
+SPEED, HZ = 0.1, 10.0
+# How long the last command of another process may be on its way, s.
+LATE_SEC = 0.3
+# How much time passes for another node, to see whether it goes on, s: it sends ten commands a
+# second.
+GOES_ON_SEC = 0.5
 
-_CRUISER = """
-from geometry_msgs.msg import Twist
-from rclpy.node import Node
+_SPEED = 'msg.linear.x = {wanted}'
+OTHER_SPEED = Mistake(
+    'stop/other-speed',
+    'The task asks for another speed.',
+    _SPEED,
+    change=[('= 0.1\n', '= 0.15\n')],
+)
+STANDS = Mistake(
+    'stop/stands',
+    'A robot that does not move need not be stopped.',
+    _SPEED,
+    change=[('= 0.1\n', '= 0.0\n')],
+)
+TURNS = Mistake(
+    'stop/turns',
+    'linear.x is the speed ahead. The other numbers stay 0.0.',
+    _SPEED,
+    change=[('= 0.1\n', '= 0.1\n        msg.angular.z = 0.1\n')],
+)
+HANDLERS = Mistake(
+    'stop/handlers',
+    'With Ctrl-C this handler shuts ROS down while your code is about to publish. Mostly it comes '
+    'first, and the last command is lost.',
+    'rclpy.init(signal_handler_options=SignalHandlerOptions.NO), from rclpy.signals; after the '
+    'last publish(): publisher.wait_for_all_acked()',
+)
+NO_STOP = Mistake(
+    'stop/no-stop',
+    'The node ends without a word. The robot goes on with the last command until it gives up '
+    'waiting, one second later.',
+    'destroy_node() is called whatever ends the node. Publish an empty Twist() there, then call '
+    'super().destroy_node().',
+    change=[('        self.publisher.publish(Twist())\n', '')],
+)
+ANOTHER = Mistake(
+    'stop/another',
+    'The robot does what the newest command says, whichever node has sent it.',
+    'End what does not belong here: lab.remove({name!r})',
+)
 
 
-class Cruiser(Node):
-    def __init__(self):
-        super().__init__('cruiser')
-        self.publisher = self.create_publisher(Twist, 'cmd_vel', 10)
-        self.timer = self.create_timer(0.1, self.on_timer)
-
-    def on_timer(self):
-        msg = Twist()
-        msg.linear.x = 0.1
-        self.publisher.publish(msg)
-
-    def destroy_node(self):
-        self.publisher.publish(Twist())
-        super().destroy_node()
+def _cruises(stream: Stream, wanted: float) -> None:
+    for number, sample in enumerate(stream.samples, start=1):
+        command = command_of(sample)
+        turns = command.w or command.others
+        if abs(command.v - wanted) < SAME and not turns:
+            continue
+        raise Fail(
+            f'linear.x = {wanted} m/s and 0.0 in all other numbers, while the node runs',
+            f'command {number} says {command}',
+            (STANDS if command.stops else TURNS if turns else OTHER_SPEED).of(wanted=wanted),
+        )
 
 
-cruiser = lab.spin(Cruiser())
-"""
-_STOP = """
-    def destroy_node(self):
-        self.publisher.publish(Twist())
-        super().destroy_node()
-"""
-_SCRIPT = """
-import rclpy
-from geometry_msgs.msg import Twist
-from rclpy.node import Node
-from rclpy.signals import SignalHandlerOptions
+@dataclass(frozen=True)
+class _SaysStop(GraphClause):
+    """The last command says stop."""
 
-rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-node = Node('cruiser')
-publisher = node.create_publisher(Twist, 'cmd_vel', 10)
+    @property
+    def text(self) -> str:
+        return 'the last command says stop (all 0.0), whatever ends the node'
+
+    def judge(self, evidence: Evidence) -> str:
+        probe = evidence.probe
+        source = evidence.publisher('/cmd_vel', NODE)
+        is_script = not probe.in_this_process(source)
+        is_lottery = is_script and _ends_ros_first(source.gid)
+        watch = expect.ends_with_node(probe, source)
+        probe.wait(lambda: command_of(watch.samples[-1]).stops, LATE_SEC)
+        last = command_of(watch.samples[-1])
+        if is_lottery:
+            raise Fail(
+                'a script whose last command always says stop',
+                f'the last command says {last}; and rclpy.init() has put a handler of its own in '
+                'the place of that for Ctrl-C',
+                HANDLERS,
+            )
+        _refuse_others(probe)
+        if not last.stops:
+            mistake = NO_STOP
+            if is_script:
+                mistake = NO_STOP.then(
+                    'In finally: publish an empty Twist(), then wait until it is there: '
+                    'publisher.wait_for_all_acked()'
+                )
+            expected = 'a last command with all numbers 0.0'
+            raise Fail(expected, f'the last command says {last}', mistake)
+        return 'The last command says stop.'
 
 
-def drive():
-    msg = Twist()
-    msg.linear.x = 0.1
-    publisher.publish(msg)
+def _refuse_others(probe: Probe) -> None:
+    """Raise Fail if another node of the learner's drives the robot on."""
+    names = sorted({end.node for end in probe.publishers('/cmd_vel')})
+    if not names:
+        return
+    life = live(probe, {'/cmd_vel': TWIST}, GOES_ON_SEC, nodes=names)
+    if any(not command_of(sample).stops for sample in life.on('/cmd_vel')):
+        seen = f'more commands, and {", ".join(names)} publishes on /cmd_vel, too'
+        raise Fail(f'no commands when {NODE} has ended', seen, ANOTHER.of(name=names[0]))
 
 
-node.create_timer(0.1, drive)
-try:
-    rclpy.spin(node)
-except KeyboardInterrupt:
-    pass
-finally:
-    publisher.publish(Twist())
-    publisher.wait_for_all_acked()
-    rclpy.shutdown()
-"""
+def _ends_ros_first(gid: bytes) -> bool:
+    """Tell whether the process of an endpoint has the signal handlers of rclpy.
+
+    rclpy has one for SIGTERM, too. Python by itself has none: so that one tells. Source: rclpy,
+    src/rclpy/signal_handler.cpp; where there is no /proc, it is not known.
+    """
+    import psutil  # type: ignore[import-untyped]
+
+    from labkit.rosgraph.whose import process_id
+
+    for child in psutil.Process().children(recursive=True):
+        status = Path(f'/proc/{child.pid}/status')
+        if child.pid & 0xFFFF == process_id(gid) and status.exists():
+            lines = dict(line.split(':', 1) for line in status.read_text().splitlines())
+            return bool(int(lines['SigCgt'], 16) & 1 << signal.SIGTERM - 1)
+    return False
+
+
+def _task(speed: float, hz: float) -> dict[str, Any]:
+    """Return what depends on the numbers."""
+    said = f', says so {often(hz).partition(" (")[0]}' if (speed, hz) != (SPEED, HZ) else ''
+    return {
+        'task': f'A node `cruiser` drives at {speed} m/s{said}, and its last command says stop, '
+        'whatever ends it.',
+        'clauses': (
+            Named(NODE),
+            Publishes('/cmd_vel', hz, TWIST, by=NODE),
+            Messages(
+                '/cmd_vel',
+                f'each command says `linear.x` = {speed}, all else 0.0',
+                partial(_cruises, wanted=speed),
+                by=NODE,
+            ),
+            _SaysStop(),
+        ),
+    }
 
 
 _USUAL = Exercise(
     name='stop',
-    task='A node `cruiser` drives at 0.1 m/s, and its last command says stop, whatever ends it.',
-    publishes={'/cmd_vel': TWIST},
     shared=['/cmd_vel'],
     reliable=['/cmd_vel'],
-    nodes=['/cruiser'],
-    clauses=(
-        Named(NODE),
-        Publishes('/cmd_vel', 10.0, TWIST, by=NODE),
-        Messages(
-            '/cmd_vel',
-            f'each command says `linear.x` = {SPEED}, all else 0.0',
-            cruises,
-            by=NODE,
-        ),
-        SaysStop(),
-    ),
+    mistakes=[OTHER_SPEED, STANDS, TURNS, NO_STOP],
     hints=[
         'Which method of a node is called when it is removed? You can write your own version.',
         'A new Twist() has 0.0 in all of its fields: it says stop.',
         'def destroy_node(self): publish Twist(), then super().destroy_node()',
     ],
     answer=Solution(
-        _CRUISER,
+        __file__,
+        'stop.py',
         'lab.remove(), lab.stop() and the end of the kernel all call destroy_node(). In a script, '
         '`try: rclpy.spin(node)` with `finally:` does the same.',
     ),
-    styles=[
-        Style(
-            'says stop twice',
-            changed(
-                _CRUISER,
-                (
-                    '        super().destroy_node()',
-                    '        self.timer.cancel()\n'
-                    '        self.publisher.publish(Twist())\n        super().destroy_node()',
-                ),
-            ),
-        ),
-        Style(
-            'each fifth call of a fast timer',
-            changed(
-                _CRUISER,
-                ('create_timer(0.1,', 'create_timer(0.02,'),
-                (
-                    '        self.publisher =',
-                    '        self.calls = 0\n        self.publisher =',
-                ),
-                (
-                    '    def on_timer(self):\n',
-                    '    def on_timer(self):\n        self.calls += 1\n'
-                    '        if self.calls % 5:\n            return\n',
-                ),
-            ),
-        ),
-        Style(
-            'a thread with a rate',
-            changed(
-                _CRUISER,
-                ('\nfrom geometry', '\nimport threading\n\nimport rclpy\nfrom geometry'),
-                (
-                    '        self.timer = self.create_timer(0.1, self.on_timer)\n',
-                    '        self.rate = self.create_rate(10)\n'
-                    '        self.driving = True\n'
-                    '        self.thread = threading.Thread(target=self.drive, daemon=True)\n'
-                    '        self.thread.start()\n\n'
-                    '    def drive(self):\n'
-                    '        while self.driving and rclpy.ok():\n'
-                    '            self.on_timer()\n'
-                    '            self.rate.sleep()\n',
-                ),
-                (
-                    '    def destroy_node(self):\n',
-                    '    def destroy_node(self):\n        self.driving = False\n'
-                    '        self.rate.destroy()\n        self.thread.join(1.0)\n',
-                ),
-            ),
-        ),
-        Style('a script with finally', _SCRIPT, process=True),
-        Style(
-            'a script with a loop',
-            changed(
-                _SCRIPT,
-                ('    rclpy.spin(node)\n', '    while True:\n        rclpy.spin_once(node)\n'),
-            ),
-            process=True,
-        ),
-    ],
-    wrong=[
-        Wrong('forgets to stop', changed(_CRUISER, (_STOP, '')), 'The node ends without a word.'),
-        Wrong(
-            'stops too late',
-            changed(
-                _CRUISER,
-                (
-                    _STOP,
-                    '\n    def destroy_node(self):\n        super().destroy_node()\n'
-                    '        self.publisher.publish(Twist())\n',
-                ),
-            ),
-            'destroy_node of /cruiser raised InvalidHandle',
-            outcome=Outcome.ERROR,
-        ),
-        int_for_float(_CRUISER, '= 0.1', '= 1'),
-        Wrong(
-            'another name',
-            changed(_CRUISER, ("__init__('cruiser')", "__init__('Cruiser')")),
-            'Capital and small letters differ in names',
-        ),
-        Wrong(
-            'eight commands a second',
-            changed(_CRUISER, ('create_timer(0.1,', 'create_timer(0.125,')),
-            'a message every 0.125 s (8 Hz)',
-        ),
-        Wrong(
-            'another speed',
-            changed(_CRUISER, ('= 0.1\n', '= 0.15\n')),
-            'The task asks for another speed',
-        ),
-        Wrong(
-            'turns',
-            changed(_CRUISER, ('= 0.1\n', '= 0.1\n        msg.angular.z = 0.1\n')),
-            'linear.x is the speed ahead',
-        ),
-        Wrong(
-            'a script with the signal handlers of rclpy',
-            changed(
-                _SCRIPT,
-                ('rclpy.init(signal_handler_options=SignalHandlerOptions.NO)', 'rclpy.init()'),
-                ('from rclpy.signals import SignalHandlerOptions\n', ''),
-                ('    rclpy.shutdown()\n', '    rclpy.try_shutdown()\n'),
-            ),
-            'With Ctrl-C this handler shuts ROS down',
-            process=True,
-        ),
-        Wrong(
-            'publishes before the robot listens',
-            changed(
-                _CRUISER,
-                (
-                    '        self.timer = self.create_timer(0.1, self.on_timer)\n',
-                    '        self.on_timer()\n',
-                ),
-            ),
-            'nobody was there to hear it',
-        ),
-        Wrong(
-            'a script that publishes before the robot listens',
-            changed(_SCRIPT, ('node.create_timer(0.1, drive)', 'drive()')),
-            'publish() was called too early',
-            process=True,
-        ),
-        Wrong(
-            'best effort',
-            changed(
-                _CRUISER,
-                (
-                    'import Node\n',
-                    'import Node\nfrom rclpy.qos import qos_profile_sensor_data\n',
-                ),
-                ("'cmd_vel', 10", "'cmd_vel', qos_profile_sensor_data"),
-            ),
-            '/cruiser offers best effort',
-        ),
-        Wrong(
-            'a second one drives on',
-            changed(
-                _CRUISER,
-                ('(self):\n        super', "(self, name='cruiser'):\n        super"),
-                ("__init__('cruiser')", '__init__(name)'),
-                ('Cruiser())\n', "Cruiser())\nhelper = lab.spin(Cruiser('helper'))\n"),
-            ),
-            'The robot does what the newest command says',
-        ),
-        Wrong('does not move', changed(_CRUISER, ('= 0.1\n', '= 0.0\n')), 'need not be stopped'),
-        Wrong(
-            'a script without finally',
-            changed(_SCRIPT, ('    publisher.publish(Twist())\n', '')),
-            'The node ends without a word.',
-            process=True,
-        ),
-    ],
     once=True,
+    **_task(SPEED, HZ),
 )
 
 
 def _variant(*, speed: float, hz: float) -> Exercise:
-    code = changed(
-        _CRUISER,
+    answer = _USUAL.answer.changed(
         ('create_timer(0.1,', f'create_timer({1 / hz:g},'),
         ('msg.linear.x = 0.1', f'msg.linear.x = {speed}'),
     )
-    rate = often(hz).partition(' (')[0]
-    return replace(
-        _USUAL,
-        task=f'A node `cruiser` drives at {speed} m/s, says so {rate}, and its last command says '
-        'stop, whatever ends it.',
-        clauses=(
-            Named(NODE),
-            Publishes('/cmd_vel', hz, TWIST, by=NODE),
-            Messages(
-                '/cmd_vel',
-                f'each command says `linear.x` = {speed}, all else 0.0',
-                partial(cruises, wanted=speed),
-                by=NODE,
-            ),
-            SaysStop(),
-        ),
-        answer=Solution(code, _USUAL.answer.reason),
-        styles=(),
-        wrong=(),
-    )
+    return replace(_USUAL, answer=answer, **_task(speed, hz))
 
 
 def _guess(probe: Probe) -> dict[str, float] | None:

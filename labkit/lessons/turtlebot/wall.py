@@ -2,228 +2,273 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Exercise, Solution, Style, Wrong, changed
-from labkit.lessons._script import in_process
-from labkit.lessons.turtlebot.clauses import Begins, Stops
-from labkit.lessons.turtlebot.drive import EMPTY, SCAN, TWIST
-from labkit.lessons.turtlebot.judge import driven
-from labkit.lessons.turtlebot.mistakes import first_time_only, int_for_float
-from labkit.lessons.turtlebot.wall_clauses import (
-    SIGN,
-    DrivesOn,
-    Scans,
-    Speed,
-    StopsInTime,
-    draw,
-    tell,
-)
+import math
+import random
+from collections.abc import Sequence
+
+from labkit.exercises import Exercise, Fail, Mistake, Solution
+from labkit.exercises.clauses import Asked
+from labkit.lessons.turtlebot.clauses import STOPS, Begins, Hears
+from labkit.lessons.turtlebot.drive import EMPTY, SAME, SCAN, STEP_SEC, Drive, Trial
+from labkit.lessons.turtlebot.stage import Drives
+from labkit.sim.kinematics import BURGER
 
 __all__ = ['wall']
 
-# The longest drive is 1 m, which takes 5 s.
-SECONDS = 9.0
+SIGN = ('/go_wall', EMPTY)
+# The walls of the robot's room stand so far from the origin, m.
+WALL = 2.5
+# It has to drive so fast, m/s, and to stop if something ahead is nearer than this, m; for how much
+# both is right, to stop and to go on, m.
+SPEED, NEAR, EITHER = 0.2, 0.5, 1e-3
+# Ahead are so many beams on each side.
+AHEAD = 10
+# The radius of a rod that just one beam meets in the first scan in which it is too near, and in
+# the next one neither of the beams beside that, m.
+ROD = 0.0035
+# The fewest commands a second, and how late the stop command may be, s.
+FEWEST_HZ, LATE_SEC = 5, 0.2
 
-_GUARD = """
-import math
-
-from geometry_msgs.msg import Twist
-from rclpy.node import Node
-from rclpy.qos import qos_profile_sensor_data
-from sensor_msgs.msg import LaserScan
-from std_msgs.msg import Empty
-
-
-class Guard(Node):
-    def __init__(self):
-        super().__init__('guard')
-        self.publisher = self.create_publisher(Twist, 'cmd_vel', 10)
-        self.create_subscription(LaserScan, 'scan', self.on_scan, qos_profile_sensor_data)
-        self.create_subscription(Empty, 'go_wall', self.on_go, 10)
-        self.timer = self.create_timer(0.1, self.on_timer)
-        self.ahead = math.inf
-        self.driving = False
-
-    def on_scan(self, msg):
-        # A distance of 0.0 means that the beam met nothing.
-        ahead = [way for way in msg.ranges[:10] + msg.ranges[-10:] if way > 0.0]
-        self.ahead = min(ahead, default=math.inf)
-
-    def on_go(self, msg):
-        self.driving = True
-
-    def on_timer(self):
-        if not self.driving:
-            return
-        msg = Twist()
-        if self.ahead > 0.5:
-            msg.linear.x = 0.2
-        else:
-            self.driving = False
-        self.publisher.publish(msg)
-
-
-guard = lab.spin(Guard())
-"""
-
-
-_CLAUSES = (
-    Begins(SIGN, EMPTY),
-    Scans(),
-    Speed(),
-    StopsInTime(),
-    DrivesOn(),
-    Stops(),
+RELIABLE = Mistake(
+    'wall/reliable',
+    'A sensor sends without waiting for receipts: best effort. A subscription that asks for '
+    'receipts does not match it, and never hears it.',
+    'Pass qos_profile_sensor_data in the place of the depth.',
+    change=[('self.on_scan, qos_profile_sensor_data', 'self.on_scan, 10')],
+)
+_SPEED = f'msg.linear.x = {SPEED}'
+BACKWARDS = Mistake('wall/backwards', 'It drives backwards.', _SPEED, change=[('= 0.2', '= -0.2')])
+OTHER_SPEED = Mistake(
+    'wall/other-speed', 'It has another speed.', _SPEED, change=[('= 0.2', '= 0.22')]
+)
+TURNS = Mistake('wall/turns', 'It turns, so the beams look elsewhere than it goes.', _SPEED)
+SAID_ONCE = Mistake(
+    'wall/said-once',
+    'A robot obeys a command for one second only, and then stops. For it to drive on you have to '
+    'say so again and again.',
+    f'Publish in a timer of {STEP_SEC} s.',
+    change=[('create_timer(0.1,', 'create_timer(0.5,')],
+)
+TOO_NEAR = Mistake(
+    'wall/too-near',
+    'It saw the wall too late, or looked elsewhere: ranges[0] looks ahead, ranges[180] back.',
+    f'Compare the nearest of the beams ahead with {NEAR} m at each step.',
+    change=[('> 0.5', '> 0.4')],
+)
+_BEAMS = f'msg.ranges[:{AHEAD}] and msg.ranges[-{AHEAD}:]'
+ZERO = Mistake(
+    'wall/zero',
+    '0.0 m was taken for a wall. A real scanner says 0.0 where a beam met nothing.',
+    'Leave out what is less than range_min before you look for the nearest one.',
+    change=[('msg.range_min <=', '0.0 <=')],
+)
+NO_NUMBER = Mistake(
+    'wall/no-number',
+    'nan was taken for a wall. A comparison with nan is always False, and min() may return it.',
+    'Keep only range_min <= distance <= range_max before you look for the nearest one.',
+    change=[('if msg.range_min <= way <= msg.range_max', 'if not way <= 0.0')],
+)
+BESIDE = Mistake(
+    'wall/beside',
+    'Something beside or behind the robot was taken for the wall ahead. ranges[0] looks ahead, '
+    'and the next beams go round to the left.',
+    f'Look at the beams around index 0 only: {_BEAMS}',
+    change=[('msg.ranges[:10] + msg.ranges[-10:]', 'msg.ranges')],
+)
+_COMPARE = f'Compare {_BEAMS} with {NEAR} m.'
+TOO_EARLY = Mistake(
+    'wall/too-early',
+    'It stopped too early: by its odometry, or at another distance.',
+    _COMPARE,
+    change=[('self.ahead > 0.5', 'self.ahead > 1.0')],
 )
 
-_LOOP = """
-import math
-import threading
 
-import rclpy
-from geometry_msgs.msg import Twist
-from rclpy.qos import qos_profile_sensor_data
-from sensor_msgs.msg import LaserScan
-from std_msgs.msg import Empty
+class _Scans(Hears):
+    @property
+    def text(self) -> str:
+        return f'{super().text}, *best effort*'
 
-node = lab.spin(rclpy.create_node('look_out'))
-pub = node.create_publisher(Twist, '/cmd_vel', 10)
-state = {'ahead': math.inf}
-started = threading.Event()
-
-
-def on_scan(msg):
-    state['ahead'] = msg.ranges[0] or math.inf
+    def find(self, seen: Drive) -> None:
+        super().find(seen)
+        name = seen.evidence.subscription(self.sign).node
+        reliability = seen.evidence.subscription(self.topic, name).qos.reliability.name
+        if reliability != 'BEST_EFFORT':
+            said = f'{name} subscribes with reliability {reliability.lower()}'
+            raise Fail('/scan with reliability best_effort', said, RELIABLE)
 
 
-def run():
-    rate = node.create_rate(10)
-    while True:
-        started.wait()
-        started.clear()
-        while state['ahead'] >= 0.5:
-            msg = Twist()
-            msg.linear.x = 0.2
-            pub.publish(msg)
-            rate.sleep()
-        pub.publish(Twist())
+def _speed(drive: Drive) -> None:
+    gaps = drive.gaps
+    if len(drive.moving) == 1 and not drive.ending:
+        gaps = [math.inf]
+    if gaps and max(gaps) > 1.25 / FEWEST_HZ + drive.margin:
+        seen = f'{max(gaps):.2g} s from one to the next'
+        raise Fail(
+            f'a command every {1 / FEWEST_HZ} s, or more often',
+            'one command' if len(drive.moving) < 3 else seen,
+            SAID_ONCE,
+        )
+    for command in drive.moving:
+        straight = not (command.w or command.others)
+        # One that says stop is another clause's affair.
+        if command.stops or (abs(command.v - SPEED) < SAME and straight):
+            continue
+        raise Fail(
+            f'linear.x = {SPEED} m/s, and 0.0 in all other numbers',
+            f'a command with {command}',
+            BACKWARDS if command.v == -SPEED else TURNS if command.w else OTHER_SPEED,
+        )
 
 
-node.create_subscription(LaserScan, '/scan', on_scan, qos_profile_sensor_data)
-node.create_subscription(Empty, '/go_wall', lambda msg: started.set(), 1)
-threading.Thread(target=run, daemon=True).start()
-"""
+def _stops_in_time(drive: Drive) -> None:
+    near = [at for at, scan in drive.scans if at >= drive.sign and _ahead(scan) < NEAR - EITHER]
+    stop = drive.ending[0].at if drive.ending else math.inf
+    if near and stop > near[0] + LATE_SEC + drive.margin and (drive.ending or drive.cut):
+        way = min(_ahead(scan) for at, scan in drive.scans if at <= stop)
+        expected = f'it stops within {LATE_SEC} s after the first scan below {NEAR} m ahead'
+        raise Fail(expected, f'the wall came as near as {way:.2f} m', TOO_NEAR)
+
+
+def _drives_on(drive: Drive) -> None:
+    if not drive.ending:
+        return
+    heard = [scan for at, scan in drive.scans if at <= drive.ending[0].at + drive.margin]
+    if any(_ahead(scan) < NEAR + EITHER for scan in heard):
+        return
+    last = heard[-1] if heard else [math.inf]
+    ahead = _ahead(last)
+    mistake = TOO_EARLY
+    if min((way for way in last if way > 0), default=math.inf) < NEAR:
+        mistake = BESIDE
+    elif last[0] == 0.0:
+        mistake = ZERO
+    elif math.isnan(last[0]):
+        mistake = NO_NUMBER
+    raise Fail(
+        f'it drives on until something ahead is nearer than {NEAR} m',
+        f'it stopped after {drive.way():.2f} m, and the scan sees '
+        f'{"nothing" if math.isinf(ahead) else f"{ahead:.2f} m"} ahead',
+        mistake,
+    )
+
+
+def _ahead(scan: Sequence[float]) -> float:
+    """Return the nearest distance ahead, m; inf if there is nothing."""
+    return min((way for way in (*scan[:AHEAD], *scan[-AHEAD:]) if way > 0), default=math.inf)
+
+
+def _draw() -> list[Trial]:
+    """Return drives: to a slanted wall, along one, to thin posts, and past walls on both sides."""
+    uniform, nine, side = random.uniform, math.pi / 2, random.choice((-1, 1))
+    # Along a wall, in the corner at x = 2.5 m, y = -2.5 m, where there is no post.
+    beside, ahead, off = WALL - uniform(0.3, 0.4), uniform(0.75, 1.0), uniform(0.0, 0.05)
+    x = WALL - ahead - BURGER.scan_x
+    return [
+        _slanted(side),
+        Trial(random.choice(((x, -beside, 0.0), (beside, -x, 3 * nine)))),
+        Trial(random.choice(((-1.7, 1.62 + off, nine), (-1.62 - off, -1.7, 2 * nine)))),
+        # Each is seen by one of the inner half of the beams: an even one, and an odd one.
+        _thin(side, 2 - uniform(0.05, 0.2), ROD, nothing=0.0),
+        _thin(side, random.choice((1, 3)) - uniform(0.05, 0.2), ROD, nothing=math.nan),
+        _edge(1, AHEAD - 1),
+        _edge(-1, AHEAD),
+    ]
+
+
+def _slanted(side: int) -> Trial:
+    """Return a drive to a wall whose nearer half is to the left (1) or to the right (-1)."""
+    turn = random.uniform(-3, 3)
+    slant, ahead = side * random.uniform(0.7, 0.9), random.uniform(0.95, 1.1)
+    ends = [(ahead - way * math.sin(slant), way * math.cos(slant)) for way in (-0.6, 0.6)]
+    (x1, y1), (x2, y2) = (_turned(point, turn) for point in ends)
+    return Trial((0.0, 0.0, turn), walls=[(x1, y1, x2, y2)])
+
+
+def _thin(side: int, angle: float, radius: float, nothing: float) -> Trial:
+    """Return a drive to a thin post to a side, by an angle in degrees, past one on the other side.
+
+    Only such a post is seen by few of the beams ahead, and the others meet `nothing`.
+    """
+    turn, angle = random.uniform(-3, 3), side * math.radians(angle)
+    thin = random.uniform(0.95, 1.1), NEAR * math.sin(angle)
+    beside = 0.6, -side * 0.2
+    posts = [(*_turned(thin, turn), radius), (*_turned(beside, turn), 0.03)]
+    return Trial((0.0, 0.0, turn), nothing=nothing, posts=posts)
+
+
+def _edge(side: int, outermost: int) -> Trial:
+    """Return a drive past a wall along the way that only the outermost beam of a side meets near.
+
+    Args:
+        side: 1 for the left, -1 for the right.
+        outermost: How many degrees from ahead that beam looks.
+    """
+    turn, begin = random.uniform(-3, 3), random.uniform(0.95, 1.1)
+    # The outermost beam meets it nearer than what is too near, the next one farther away, wherever
+    # the robot is. So it can be long enough for each scan and timer.
+    off = side * NEAR * sum(math.sin(math.radians(outermost - n)) for n in (0, 1)) / 2
+    ends = _turned((begin, off), turn), _turned((begin + 0.2, off), turn)
+    return Trial((0.0, 0.0, turn), walls=[(*ends[0], *ends[1])])
+
+
+def _turned(point: tuple[float, float], turn: float) -> tuple[float, float]:
+    (x, y), c, s = point, math.cos(turn), math.sin(turn)
+    return c * x - s * y, s * x + c * y
+
+
+def _tell(drives: Sequence[Drive]) -> str:
+    gaps = [_ahead(drive.scans[-1][1]) for drive in drives]
+    return f'It stopped {", ".join(f"{gap:.2f} m" for gap in gaps)} in front of the walls.'
+
 
 wall = Exercise(
     name='wall',
-    task='On /go_wall a node drives ahead and stops when the scan sees a wall nearer than 0.5 m.',
-    subscribes={'/scan': SCAN, '/go_wall': EMPTY},
-    publishes={'/cmd_vel': TWIST},
+    task=f'On /go_wall a node drives ahead and stops when the scan sees a wall nearer than {NEAR} '
+    'm.',
     shared=['/cmd_vel'],
     reliable=['/cmd_vel'],
-    clauses=_CLAUSES,
-    judge=driven((SIGN, EMPTY), _CLAUSES, draw, tell, seconds=SECONDS),
+    clauses=(
+        Begins(*SIGN),
+        _Scans('/scan', SCAN, SIGN[0]),
+        Asked(
+            f'publish `linear.x` = {SPEED}, all else 0.0, on `/cmd_vel` (`Twist`), at least '
+            f'{FEWEST_HZ} times a second',
+            _speed,
+        ),
+        Asked(
+            f'stop within {LATE_SEC} s after the first scan with something ahead nearer than '
+            f'{NEAR} m',
+            _stops_in_time,
+        ),
+        Asked(
+            'nothing beside or behind stops it, nor a distance of `inf`, `nan` or 0.0', _drives_on
+        ),
+        STOPS,
+    ),
+    mistakes=[
+        RELIABLE,
+        BACKWARDS,
+        OTHER_SPEED,
+        SAID_ONCE,
+        TOO_NEAR,
+        ZERO,
+        NO_NUMBER,
+        BESIDE,
+        TOO_EARLY,
+    ],
+    # The longest drive is 1 m, which takes 5 s.
+    stage=Drives(SIGN, _draw, _tell, seconds=9.0),
     hints=[
         'The scan has 360 distances. Number 0 looks ahead, number 90 to the left, 180 back.',
-        'msg.ranges[:10] and msg.ranges[-10:] are the beams ahead. min() finds the nearest. A '
-        'beam that meets nothing is inf, and that is far.',
+        f'{_BEAMS} are the beams ahead. min() finds the nearest. A beam that meets nothing is '
+        'inf, and that is far.',
         '/scan is best effort: subscribe with qos_profile_sensor_data.',
     ],
     answer=Solution(
-        _GUARD,
+        __file__,
+        'wall.py',
         'The callback of the scan keeps one number, the timer decides ten times a second, and '
         'the last command says stop.',
     ),
-    styles=[
-        Style(
-            'one beam',
-            changed(_GUARD, ('msg.ranges[:10] + msg.ranges[-10:]', 'msg.ranges[:1]')),
-        ),
-        Style(
-            'in the callback of the scan',
-            changed(
-                _GUARD,
-                ('        self.timer = self.create_timer(0.1, self.on_timer)\n', ''),
-                ('default=math.inf)\n', 'default=math.inf)\n        self.on_timer()\n'),
-            ),
-        ),
-        Style(
-            'twenty commands a second, by the range of the sensor',
-            changed(
-                _GUARD,
-                ('create_timer(0.1,', 'create_timer(0.05,'),
-                ('if way > 0.0', 'if way >= msg.range_min'),
-            ),
-        ),
-        Style('functions and a loop with a rate', _LOOP),
-        Style('own process', in_process(_GUARD), process=True),
-    ],
-    wrong=[
-        Wrong(
-            'forgets to stop',
-            changed(
-                _GUARD,
-                (
-                    '            self.driving = False\n',
-                    '            self.driving = False\n            return\n',
-                ),
-            ),
-            'leaves it driving',
-        ),
-        Wrong(
-            'reliable',
-            changed(_GUARD, ('self.on_scan, qos_profile_sensor_data', 'self.on_scan, 10')),
-            'A sensor sends without waiting for receipts',
-        ),
-        Wrong(
-            'looks all round',
-            changed(_GUARD, ('msg.ranges[:10] + msg.ranges[-10:]', 'msg.ranges')),
-            'Something beside or behind the robot',
-        ),
-        Wrong(
-            'looks back',
-            changed(_GUARD, ('msg.ranges[:10] + msg.ranges[-10:]', 'msg.ranges[180:181]')),
-            'ranges[180] back',
-        ),
-        Wrong(
-            'does not wait for the next sign',
-            changed(_GUARD, ('        else:\n            self.driving = False\n', '')),
-            'It stands, and still publishes',
-        ),
-        Wrong(
-            'another distance',
-            changed(_GUARD, ('self.ahead > 0.5', 'self.ahead > 1.0')),
-            'It stopped too early',
-        ),
-        first_time_only(_GUARD, 'self.driving = True'),
-        Wrong(
-            '0.0 is a wall',
-            changed(_GUARD, ('if way > 0.0', 'if way >= 0.0')),
-            'A real scanner says 0.0 where a beam met nothing',
-        ),
-        Wrong('another speed', changed(_GUARD, ('= 0.2', '= 0.22')), 'It has another speed'),
-        Wrong('backwards', changed(_GUARD, ('= 0.2', '= -0.2')), 'It drives backwards'),
-        Wrong(
-            'says it once',
-            changed(
-                _GUARD,
-                (
-                    '            msg.linear.x = 0.2\n',
-                    '            msg.linear.x = 0.2\n            self.driving = False\n',
-                ),
-            ),
-            'has to say so again and again',
-        ),
-        Wrong(
-            'two commands a second',
-            changed(_GUARD, ('create_timer(0.1,', 'create_timer(0.5,')),
-            'has to say so again and again',
-        ),
-        Wrong('too near', changed(_GUARD, ('> 0.5', '> 0.4')), 'It saw the wall too late'),
-        Wrong(
-            'to the left',
-            changed(_GUARD, ('msg.ranges[:10] + msg.ranges[-10:]', 'msg.ranges[80:100]')),
-            'or looked elsewhere',
-        ),
-        int_for_float(_GUARD, '= 0.2', '= 1'),
-    ],
 )

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Exercise, Probe, Solution, Style, Wrong, changed, expect
+from by_hand import ByHand
+
+from labkit.exercises import Exercise, Probe, Solution, expect
 
 STRING = 'std_msgs/msg/String'
 
@@ -27,29 +29,12 @@ def judge_say_once(probe: Probe) -> str:
     return 'One message, once.'
 
 
-SAY = """
-import rclpy
-from std_msgs.msg import String
-
-node = rclpy.create_node('once')
-pub = node.create_publisher(String, 'demo_news', 10)
-pub.publish(String(data='late'))
-"""
-
 say_once = Exercise(
     name='say_once',
     task='Publish the text late on /demo_news, once.',
     publishes={'/demo_news': STRING},
-    judge=judge_say_once,
+    stage=ByHand(judge_say_once),
     hints=['publish() without a timer', 'pub.publish(String(data="late"))'],
-    answer=Solution(SAY, 'Nothing more is needed: somebody listens already.'),
-    styles=[Style('node gone again', SAY + 'node.destroy_node()\n')],
-    wrong=[
-        Wrong('twice', SAY + "pub.publish(String(data='late'))\n", 'more than once'),
-        Wrong('other text', changed(SAY, ("'late'", "'Late'")), 'Another text was published'),
-        Wrong(
-            'never', changed(SAY, ("pub.publish(String(data='late'))\n", '')), 'no loop publishes'
-        ),
-    ],
+    answer=Solution(__file__, 'say_once.py', 'Nothing more is needed: somebody listens already.'),
     records=['/demo_news'],
 )

@@ -1,0 +1,122 @@
+"""The state of a learner's lessons, and what comes next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from labkit import settings
+from labkit.exercises.progress_store import number_of, text_of
+from labkit.views.progress_picture import Item, Row
+
+if TYPE_CHECKING:
+    from labkit.exercises.exercise import Exercise
+    from labkit.exercises.lesson import Lesson
+
+__all__ = ['entries', 'next_steps', 'onward', 'row_of']
+
+Data = Mapping[str, Any]
+
+
+def entries(lesson: Lesson, data: Data) -> list[dict[str, Any]]:
+    """Return the state of each exercise and question of a lesson from the progress data."""
+    known = data['lessons'].get(lesson.name, {})
+    names = [('exercise', exercise.name) for exercise in lesson.exercises]
+    names += [
+        ('question', f'{quiz.name}.{number}')
+        for quiz in lesson.quizzes
+        for number in range(1, len(quiz) + 1)
+    ]
+    return [
+        _entry(lesson.name, kind, name, known.get(f'{kind}s', {}).get(name, {}))
+        for kind, name in names
+    ]
+
+
+def row_of(lesson: Lesson, data: Data, notebook: str = '') -> Row:
+    """Return a lesson as a row of the progress picture.
+
+    Args:
+        lesson: The lesson.
+        data: Data of the progress file.
+        notebook: File name of the learner's copy; the published name if empty.
+    """
+    file = notebook or lesson.notebook
+    cells = [exercise.task_id for exercise in lesson.exercises]
+    cells += [quiz.cell_id for quiz in lesson.quizzes for _ in quiz.questions]
+    items = [
+        # A link to a cell as JupyterLab understands it.
+        Item(entry['kind'], entry['name'], entry['state'], f'{file}#cell-id={cell_id}')
+        for entry, cell_id in zip(entries(lesson, data), cells, strict=True)
+    ]
+    return Row(lesson.heading, items, file, lesson.teaches)
+
+
+def next_steps(exercise: Exercise, data: Data) -> tuple[Row, list[tuple[str, str]]]:
+    """Return the lesson of a solved exercise, and what comes next.
+
+    Returns:
+        The lesson's row, and pairs of a text and a link: to the next exercise that is not done; if
+        all are, to the quiz unless it is done, and to the next lesson.
+    """
+    lesson = exercise.belongs_to
+    assert lesson is not None
+    row = row_of(lesson, data, _own_file())
+    exercises = row.of_kind('exercise')
+    position = [item.name for item in exercises].index(exercise.name)
+    for item in exercises[position + 1 :] + exercises[:position]:
+        if item.state != 'done':
+            return row, [(f'Next: {item.name}', item.href)]
+    questions = [item for item in row.of_kind('question') if item.state != 'done']
+    # Not to the warm-up, which stands before the exercises.
+    quiz = [('Next: the quiz', item.href) for item in questions[-1:]]
+    return row, quiz + _next_lesson(lesson)
+
+
+def onward(data: Data) -> list[tuple[str, str]]:
+    """Return where to continue: the first open exercise from the lesson of the last attempt on."""
+    from labkit.exercises.lesson import all_lessons
+
+    lessons = all_lessons()
+    times = [
+        max((max(e['passed_at'], e['first_try']) for e in entries(lesson, data)), default='')
+        for lesson in lessons
+    ]
+    if not any(times):
+        return [(lesson.heading, lesson.notebook) for lesson in lessons[:1]]
+    last = times.index(max(times))
+    for lesson in lessons[last:] + lessons[:last]:
+        for item in row_of(lesson, data).of_kind('exercise'):
+            if item.state != 'done':
+                return [(f'{lesson.heading}, {item.name}', item.href)]
+    return []
+
+
+def _next_lesson(lesson: Lesson) -> list[tuple[str, str]]:
+    from labkit.exercises.lesson import all_lessons
+
+    later = [other for other in all_lessons() if other.notebook > lesson.notebook]
+    return [(f'Next lesson: {other.heading}', other.notebook) for other in later[:1]]
+
+
+def _own_file() -> str:
+    """Return the file name of this kernel's notebook, `''` if it has none."""
+    name = Path(settings.notebook_name()).name
+    return name if name.endswith('.ipynb') else ''
+
+
+def _entry(lesson: str, kind: str, name: str, entry: Mapping[str, Any]) -> dict[str, Any]:
+    first, passed = (text_of(entry.get(name)) for name in ('first_try', 'passed_at'))
+    tries = number_of(entry.get('tries'))
+    return {
+        'lesson': lesson,
+        'kind': kind,
+        'name': name,
+        'state': 'done' if passed else 'tried' if tries else 'open',
+        'tries': tries,
+        'hints': number_of(entry.get('hints')),
+        'solution_shown': 'yes' if entry.get('solution') is True else 'no',
+        'first_try': first,
+        'passed_at': passed,
+    }

@@ -1,0 +1,67 @@
+"""What the exercises of the chain have in common: how it begins, and what a name may look like."""
+
+from __future__ import annotations
+
+from labkit.exercises import Mistake
+from labkit.exercises.clauses import Says
+
+__all__ = [
+    'CHANGED',
+    'INNER',
+    'NOTHING_ADDED',
+    'NOT_IN_IT',
+    'OPENING',
+    'STRING',
+    'name_trouble',
+    'says_opening',
+]
+
+INNER, STRING = '/incomplete', 'std_msgs/msg/String'
+OPENING = 'My name is '
+
+_PUT = 'String(data=msg.data + ...), with what is to be added for the dots.'
+NOTHING_ADDED = Mistake(
+    'stages/nothing-added',
+    'The text is passed on as it came: nothing is added.',
+    _PUT,
+    model=str,
+)
+GROWS = Mistake(
+    'stages/grows',
+    'The texts of earlier messages are still in it: the string grows.',
+    'Make a new string from msg.data each time.',
+)
+SPACE_BESIDE = Mistake('stages/space-beside', 'There is a space too many beside the name.', _PUT)
+NO_SPACE = Mistake('stages/no-space', 'The space between the text and the name is missing.', _PUT)
+IN_FRONT = Mistake('stages/in-front', 'The name stands before the text.', _PUT)
+NOT_IN_IT = Mistake(
+    'stages/not-in-it',
+    'What goes out does not hold the text that came in: the string is made beforehand, or the '
+    'text is changed.',
+    'Make the string in the callback, from msg.data as it is.',
+)
+CHANGED = Mistake(
+    'stages/changed',
+    'The name is another one than with the first text.',
+    'Keep the name in the object, self.first_name, and do not change it.',
+)
+
+
+def says_opening() -> Says:
+    """Return what the messages of stage one have to say."""
+    words = f'each message says `{OPENING}`, with the space at the end'
+    return Says(INNER, OPENING, words=words)
+
+
+def name_trouble(text: str, answer: str) -> Mistake | None:
+    """Return what is wrong with a name that was appended to a text; None if nothing is."""
+    name = answer.removeprefix(text)
+    if answer == text or not name.strip():
+        return NOTHING_ADDED
+    if answer.startswith(text):
+        if text and text in name:
+            return GROWS
+        return SPACE_BESIDE if name != name.strip() else None
+    if answer.startswith(text.rstrip()):
+        return NO_SPACE
+    return IN_FRONT if text.strip() in answer else NOT_IN_IT

@@ -1,0 +1,25 @@
+"""The exercises and quizzes of `13_names_and_launch.ipynb`."""
+
+from __future__ import annotations
+
+from labkit.exercises import Lesson
+from labkit.lessons.names_and_launch.arguments import arguments
+from labkit.lessons.names_and_launch.ending import ending
+from labkit.lessons.names_and_launch.faults import faults
+from labkit.lessons.names_and_launch.hearing import hearing
+from labkit.lessons.names_and_launch.quiz import QUIZ, WARM_UP
+from labkit.lessons.names_and_launch.system import system
+
+__all__ = ['LESSON']
+
+LESSON = Lesson(
+    'names_and_launch',
+    '13_names_and_launch.ipynb',
+    title='Names and launch files',
+    teaches=(
+        'namespaces, remapping, parameter files; many nodes started by one file, in XML, YAML and '
+        'Python; what ends with what'
+    ),
+    exercises=[system, hearing, faults, arguments, ending],
+    quizzes=[WARM_UP, QUIZ],
+)

@@ -1,0 +1,99 @@
+"""Exercise: a launch file that works with other arguments, too."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from labkit.exercises import Clause, Exercise, Fail, Mistake, Solution
+from labkit.lessons.names_and_launch.clauses import HasParameters, Launches, OnlyNodes, RunsNode
+from labkit.lessons.names_and_launch.launched import Launched, System
+from labkit.lessons.names_and_launch.system import DECLARED
+
+__all__ = ['arguments']
+
+DEFAULTS = {'robot': 'robot1', 'speed': '0.1', 'talk': 'false'}
+_NAMES = ('amy', 'bo', 'rover7', 'tina')
+
+
+def _draw() -> Sequence[Mapping[str, str]]:
+    """Return no arguments at all, and then a value for each."""
+    speed = f'0.{random.randint(12, 21)}'
+    return [{}, {'robot': random.choice(_NAMES), 'speed': speed, 'talk': 'true'}]
+
+
+ALWAYS = Mistake(
+    'arguments/always',
+    'It is there whether it is wanted or not: nothing asks the argument.',
+    'if="$(var talk)" in the node',
+    change=[(' if="$(var talk)"', '')],
+)
+NEVER = Mistake(
+    'arguments/never',
+    'The argument says true, and it is not there.',
+    'if="$(var talk)" in the node',
+    change=[('if="$(var talk)"', 'if="false"')],
+)
+
+
+@dataclass(frozen=True)
+class _TalksIfWanted(Clause[System]):
+    """A talker is there if the argument says so."""
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return '`talk` says whether a talker runs in that namespace, too, by default not'
+
+    def judge(self, system: System) -> str:
+        """Raise Fail if it is there and not wanted, or the other way round."""
+        talker, wanted = f'/{system.values["robot"]}/talker', system.values['talk'] == 'true'
+        if (talker in system.nodes) != wanted:
+            raise Fail(
+                f'{talker if wanted else "no talker"} with talk:={system.values["talk"]}',
+                ', '.join(system.nodes),
+                NEVER if wanted else ALWAYS,
+            )
+        return ''
+
+
+class _NothingElse(OnlyNodes):
+    def judge(self, system: System) -> str:
+        """Raise Fail if there is another node."""
+        wanted = [*self.nodes, *['/{robot}/talker'] * (system.values['talk'] == 'true')]
+        return OnlyNodes(wanted, self.words).judge(system)
+
+
+arguments = Exercise(
+    name='arguments',
+    task='Write a launch file with the arguments robot, speed and talk.',
+    clauses=(
+        Launches('arguments'),
+        RunsNode(
+            '/{robot}/driver',
+            'a driver runs in the namespace that `robot` says, by default `robot1`',
+        ),
+        HasParameters(
+            '/{robot}/driver',
+            {'speed': '{speed}'},
+            '`speed` is the `speed` of the driver, by default 0.1',
+            DECLARED,
+        ),
+        _TalksIfWanted(),
+        _NothingElse(('/{robot}/driver',), 'no other node is started'),
+    ),
+    stage=Launched('arguments', arguments=_draw, defaults=DEFAULTS),
+    mistakes=(ALWAYS, NEVER),
+    hints=[
+        'Three tags <arg>, each with a default.',
+        '$(var robot) stands for the value of an argument, wherever the file takes a value.',
+        'if="$(var talk)" in a node starts it only if the argument is true.',
+    ],
+    answer=Solution(
+        __file__,
+        'arguments.ipy',
+        'What may differ is an argument, and its default makes it optional. One group puts both '
+        'nodes into the namespace.',
+    ),
+)

@@ -1,0 +1,251 @@
+"""Exercise: go to a point, with the heading too."""
+
+from __future__ import annotations
+
+import math
+import random
+import statistics
+from collections.abc import Callable, Sequence
+from functools import partial
+from itertools import pairwise
+
+from labkit.exercises import Exercise, Fail, Mistake, Solution
+from labkit.exercises.clauses import Asked
+from labkit.lessons.turtlebot.clauses import (
+    RATE,
+    SENSIBLE,
+    Begins,
+    Hears,
+    look_at_end,
+    look_at_rate,
+    look_at_time,
+)
+from labkit.lessons.turtlebot.drive import ODOMETRY, STEP_SEC, Command, Drive, Point, Trial
+from labkit.lessons.turtlebot.stage import Drives
+from labkit.sim.kinematics import wrap_angle
+
+__all__ = ['go_to']
+
+SIGN = ('/goal', 'geometry_msgs/msg/Pose2D')
+# How near it has to come, and how much further off it may stand after braking, m.
+NEAR, BRAKING = 0.05, 0.01
+SECONDS = 14.0
+# Goals are so far away, m.
+WAY = (0.5, 1.0)
+# Turning by less than this from the start is no decision, rad.
+TURNED = 0.15
+
+NOT_WRAPPED = Mistake(
+    'go_to/not-wrapped',
+    'Two angles were subtracted, and the difference was not wrapped: {bearing:.2f} - {yaw:.2f} = '
+    '{difference:.2f} rad is nearly a full turn.',
+    'error = math.atan2(math.sin(error), math.cos(error))',
+)
+WRONG_SIGN = Mistake(
+    'go_to/wrong-sign',
+    'The sign is wrong: the error is the direction of the goal minus the heading, and a positive '
+    'angular.z turns to the left.',
+    'error = math.atan2(dy, dx) - self.yaw',
+    change=[('1.5 * error', '-1.5 * error')],
+)
+EXCHANGED = Mistake(
+    'go_to/exchanged',
+    'x and y are exchanged in the direction of the goal.',
+    'math.atan2(dy, dx): first y, then x.',
+    change=[('math.atan2(dy, dx)', 'math.atan2(dx, dy)')],
+)
+MIXED = Mistake(
+    'go_to/mixed',
+    'Degrees and radians are mixed. math.atan2() gives radians, and math.sin(), math.cos() and '
+    'angular.z take radians.',
+    'Turn nothing into degrees. 2 * math.atan2(q.z, q.w) is in radians as well.',
+)
+HALF = Mistake(
+    'go_to/half-heading',
+    'The heading is taken for half of what it is: math.atan2(q.z, q.w) is half of the yaw.',
+    'self.yaw = 2 * math.atan2(q.z, q.w)',
+    change=[('2 * math.atan2', 'math.atan2')],
+)
+_ANEW = 'At each step: distance and direction of the goal, seen from the newest odometry.'
+TOO_EARLY = Mistake(
+    'go_to/too-early',
+    f'It stops too early: {NEAR} m are asked for.',
+    _ANEW,
+    change=[('< 0.05', '< 0.15')],
+)
+DRIVES_ON = Mistake(
+    'go_to/drives-on',
+    'It was near enough, and drove on.',
+    f'Nearer than {NEAR} m: stop, and forget the goal.',
+    change=[('< 0.05', '< 0.0')],
+)
+ASTRAY = Mistake(
+    'go_to/astray',
+    'It drives past the goal, or turns elsewhere, to and fro or round and round.',
+    _ANEW,
+)
+
+
+def _turns(drive: Drive) -> None:
+    goal, start = drive.goals[0], drive.start
+    bearing = math.atan2(goal[1] - start.y, goal[0] - start.x)
+    error = wrap_angle(bearing - start.yaw)
+    turns = [wrap_angle(pose.yaw - start.yaw) for _, pose in drive.poses]
+    first = next((turn for turn in turns if abs(turn) > TURNED), 0.0)
+    if first * error >= 0:
+        return
+    expected = (
+        f'it turns by {error:.2f} rad, from its heading {start.yaw:.2f} rad to the direction of '
+        f'the goal, {bearing:.2f} rad'
+    )
+    difference = bearing - start.yaw
+    if abs(difference) > math.pi:
+        mistake = NOT_WRAPPED.of(bearing=bearing, yaw=start.yaw, difference=difference)
+        raise Fail(expected, 'it turns the other way, the long way round', mistake)
+    side = 'left' if first > 0 else 'right'
+    raise Fail(
+        expected,
+        f'it turns to the {side}, away from the goal',
+        _why_away(drive, goal) or ASTRAY,
+    )
+
+
+# What may be taken for the angle that is still to be turned, from the direction of the goal and
+# the heading, rad. The first one is right.
+_ERRORS: Sequence[tuple[Mistake | None, Callable[[float, float], float]]] = (
+    (None, lambda bearing, yaw: bearing - yaw),
+    (EXCHANGED, lambda bearing, yaw: math.pi / 2 - bearing - yaw),
+    (WRONG_SIGN, lambda bearing, yaw: yaw - bearing),
+    (HALF, lambda bearing, yaw: bearing - yaw / 2),
+    (MIXED, lambda bearing, yaw: bearing - math.degrees(yaw)),
+    (MIXED, lambda bearing, yaw: math.degrees(bearing) - yaw),
+    (MIXED, lambda bearing, yaw: math.degrees(bearing - yaw)),
+)
+
+
+def _why_away(drive: Drive, goal: Point) -> Mistake | None:
+    """Return why it turns the wrong way, if each of its commands tells the same.
+
+    Of several angles that turn to the same side, it is the one to which the commands are in
+    proportion, most nearly.
+    """
+
+    def taken(command: Command, error: Callable[[float, float], float]) -> list[float]:
+        # The newest one may come at the same moment as the timer.
+        return [
+            wrap_angle(error(math.atan2(goal[1] - pose.y, goal[0] - pose.x), pose.yaw))
+            for pose in drive.seen(command.at, since=STEP_SEC)[-2:]
+        ]
+
+    def fits(error: Callable[[float, float], float]) -> bool:
+        return all(
+            any(command.w * angle >= 0 for angle in taken(command, error))
+            for command in drive.moving
+        )
+
+    def spread(error: Callable[[float, float], float]) -> float:
+        pairs = [(command.w, taken(command, error)[-1]) for command in drive.moving]
+        ratios = [w / angle for w, angle in pairs if angle]
+        if not ratios:
+            return math.inf
+        return statistics.pstdev(ratios) / abs(statistics.fmean(ratios) or math.inf)
+
+    found = [(spread(error), mistake) for mistake, error in _ERRORS if fits(error)]
+    return min(found, key=lambda each: each[0])[1] if found else None
+
+
+def _arrives(drive: Drive) -> None:
+    goal, end = drive.goals[0], drive.end
+    away = math.dist(end[:2], goal)
+    turned = sum(
+        abs(wrap_angle(after.yaw - before.yaw))
+        for (_, before), (_, after) in pairwise(drive.poses)
+    )
+    try:
+        look_at_time(drive, SECONDS)
+    except Fail as fail:
+        near = any(math.dist(pose[:2], goal) <= NEAR for _, pose in drive.poses)
+        mistake = DRIVES_ON if near else _why_away(drive, goal)
+        # It was quick enough, and went elsewhere.
+        quick = drive.way() >= math.dist(drive.start[:2], goal) or turned >= math.tau
+        if mistake is None and not quick:
+            raise
+        raise Fail(fail.expected, f'{fail.seen}, {away:.2f} m away', mistake or ASTRAY) from None
+    if not drive.ending or away <= NEAR + BRAKING:
+        return
+    raise Fail(
+        f'it stands at x = {goal[0]:.2f} m, y = {goal[1]:.2f} m, up to {NEAR} m off',
+        f'it came to x = {end.x:.2f} m, y = {end.y:.2f} m after {drive.duration:.1f} s, '
+        f'{away:.2f} m away',
+        TOO_EARLY if away < 4 * NEAR else ASTRAY,
+    )
+
+
+def _draw() -> list[Trial]:
+    """Return four drives: to a side, across the jump of the angle in both ways, to the other side.
+
+    The shorter way leads from pi to -pi in one of them, and from -pi to pi in another.
+    """
+    side = random.choice((-1, 1))
+    turn = random.uniform(0.5, 1.2)
+    return [
+        _trial(random.uniform(-0.6, 0.6), side * random.uniform(0.6, 1.4)),
+        _trial(side * (math.pi - turn / 2), side * turn),
+        _trial(-side * (math.pi - turn / 2), -side * turn),
+        _trial(random.uniform(-0.6, 0.6), -side * random.uniform(0.6, 1.4)),
+    ]
+
+
+def _trial(yaw: float, turn: float) -> Trial:
+    # Nothing stands within a metre of the origin, and the way leads past it.
+    way = random.uniform(*WAY)
+    x = random.uniform(-0.2, 0.2) - way / 2 * math.cos(yaw + turn)
+    y = random.uniform(-0.2, 0.2) - way / 2 * math.sin(yaw + turn)
+    goal: Point = x + way * math.cos(yaw + turn), y + way * math.sin(yaw + turn)
+    fields = {'x': goal[0], 'y': goal[1], 'theta': random.uniform(-3, 3)}
+    return Trial((x, y, yaw), fields, goals=[goal])
+
+
+def _tell(drives: Sequence[Drive]) -> str:
+    away = [math.dist(drive.end[:2], drive.goals[0]) for drive in drives]
+    return f'It came to {", ".join(f"{d:.2f} m" for d in away)} from its goals, and stands.'
+
+
+go_to = Exercise(
+    name='go_to',
+    task='For each Pose2D on /goal a node drives the robot to that x and y, and stops there.',
+    shared=['/cmd_vel'],
+    reliable=['/cmd_vel'],
+    clauses=(
+        Begins(*SIGN),
+        Hears('/odom', ODOMETRY, SIGN[0]),
+        SENSIBLE,
+        Asked('turn towards its `x` and `y` on the shorter way', _turns),
+        Asked(RATE, look_at_rate),
+        Asked(
+            f'stop within {SECONDS:.0f} s, with `x` and `y` up to {NEAR} m off ({BRAKING} m more '
+            'for braking)',
+            _arrives,
+        ),
+        Asked(
+            'end with one stop command (all 0.0), then nothing more; on its way it may rest',
+            partial(look_at_end, may_pause=True),
+        ),
+    ),
+    mistakes=[EXCHANGED, WRONG_SIGN, HALF, TOO_EARLY, DRIVES_ON],
+    stage=Drives(SIGN, _draw, _tell, seconds=SECONDS),
+    hints=[
+        'dx and dy lead from the robot to the goal. math.hypot(dx, dy) is how far it is, '
+        'math.atan2(dy, dx) is its direction.',
+        'The error of the heading is the direction minus the yaw. Wrap it: '
+        'math.atan2(math.sin(error), math.cos(error)).',
+        'angular.z = 1.5 * error. Drive with linear.x = 0.2 only while the error is small. Nearer '
+        f'than {NEAR} m: stop, and forget the goal.',
+    ],
+    answer=Solution(
+        __file__,
+        'go_to.py',
+        'Each step looks anew at where the robot is, so that no mistake of an earlier step '
+        'remains. This is feedback.',
+    ),
+)

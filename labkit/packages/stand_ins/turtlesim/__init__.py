@@ -1,0 +1,5 @@
+"""The types of turtlesim, each built when it is first asked for."""
+
+from labkit.packages.built_types import stand_in
+
+stand_in(__name__)

@@ -1,0 +1,332 @@
+"""Read a `Scene`: the graph when it has changed, this process's own nodes each time.
+
+It subscribes to nothing, and asks no node of the learner for anything but its attributes.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
+
+from rclpy.exceptions import InvalidHandle
+
+from labkit.asking.silence import offers_service
+from labkit.asking.traffic import sent_by
+from labkit.background import compat
+from labkit.background.nodes import callback_name, existing_nodes, full_name, made
+from labkit.background.runtime import runtime
+from labkit.rosgraph.interfaces import type_name
+from labkit.rosgraph.names import is_hidden
+from labkit.rosgraph.snapshot import Graph, is_whole, read_graph
+from labkit.rosgraph.yaml_loading import load_yaml_file
+from labkit.settings import LONG_SEC
+from labkit.silent.scene import (
+    Client,
+    LongCall,
+    OwnNode,
+    ParameterFile,
+    Publisher,
+    Rule,
+    Scene,
+    Sleeper,
+    Subscription,
+    Timer,
+)
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+    from labkit.background.nodes import NodeEntry
+
+__all__ = ['Reader', 'files_in', 'rules_in']
+
+# A parameter file that is larger was not written by hand, bytes.
+_LARGEST_FILE = 65536
+
+
+@dataclass
+class _Heard:
+    """A subscription, as it was when it was first seen.
+
+    Attributes:
+        entry: The entry of its node, whose counts begin anew with each one.
+        ahead: Number of messages that were published, and not heard, then.
+        since: `time.monotonic()` then.
+    """
+
+    entry: NodeEntry | None
+    ahead: int
+    since: float
+
+
+class Reader:
+    """Reads scenes, and remembers what it needs to see a change."""
+
+    def __init__(self) -> None:
+        self._mark: object = None
+        self._graph = Graph((), ())
+        self._heard: WeakKeyDictionary[Any, _Heard] = WeakKeyDictionary()
+        self._clocks: WeakKeyDictionary[Any, tuple[int, float]] = WeakKeyDictionary()
+
+    def forget(self) -> None:
+        """Begin anew: what has happened up to now counts for nothing."""
+        self._mark = None
+        self._heard.clear()
+        self._clocks.clear()
+
+    def read(self) -> Scene:
+        """Return the scene, with the same graph as at the last call if nothing has changed."""
+        helper = runtime.helper
+        if helper is None:
+            return Scene(Graph((), ()), {})
+        nodes = [node for node in existing_nodes() if _is_learners(node)]
+        counts = {
+            topic: (helper.count_publishers(topic), helper.count_subscribers(topic))
+            for topic, _ in helper.get_topic_names_and_types()
+        }
+        mark = (counts, helper.get_service_names_and_types(), list(map(_identities, nodes)))
+        if mark != self._mark:
+            # The name of a node of another process comes a moment after its ends, which are left
+            # out of the graph until then.
+            self._mark = mark if is_whole(helper) else None
+            self._graph = read_graph(helper, include_services=True)
+        running = runtime.console.running_cell
+        own = []
+        sent = _sent(nodes)
+        for node in nodes:
+            with suppress(InvalidHandle, AttributeError):  # destroyed meanwhile
+                own.append(self._node(node, running, sent))
+        return Scene(
+            self._graph,
+            {topic: count for topic, (count, _) in counts.items()},
+            tuple(own),
+            tuple(_sleepers(nodes)),
+            time.monotonic(),
+        )
+
+    def _node(self, node: Node, running: object, sent: Mapping[str, int]) -> OwnNode:
+        """Return a node of this process; only its requests while its cell is making it."""
+        entry = runtime.entry_of(node)
+        origin = made.origins.get(node)
+        cell = entry.cell if entry is not None else origin and origin.cell
+        is_spun = entry is not None or node.executor is not None
+        name, namespace = full_name(node), node.get_namespace()
+        clients = tuple(_clients(node))
+        if not is_spun and cell is not None and cell is running:
+            return OwnNode(name, namespace, cell, is_spun=False, clients=clients)
+        given, declared = compat.parameters_of(node)
+        args, shared = (origin.args, origin.shared) if origin else ((), ())
+        rules, shared_rules = rules_in(args), rules_in(('--ros-args', *shared))
+        sim_time = bool('use_sim_time' in declared and node.get_parameter('use_sim_time').value)
+        now = node.get_clock().now().nanoseconds
+        return OwnNode(
+            name,
+            namespace,
+            cell,
+            is_spun,
+            sim_time,
+            now,
+            self._jump(node, now) if sim_time else 0.0,
+            frozenset(given),
+            frozenset(declared),
+            rules,
+            files_in(args),
+            shared_rules,
+            files_in(('--ros-args', *shared)),
+            tuple(_publishers(node)),
+            tuple(self._subscriptions(node, entry, sent)),
+            clients,
+            self._names(node, name) if rules or shared_rules else (),
+            offers_service(node),
+            tuple(_timer(timer) for timer in node.timers),
+            tuple(_long_calls(entry)),
+        )
+
+    def _names(self, node: Node, name: str) -> tuple[str, ...]:
+        """Return the full names of the services and actions of a node."""
+        actions = (a.name for a in self._graph.actions if name in (*a.servers, *a.clients))
+        return (*(service.handle.name for service in node.services), *actions)
+
+    def _jump(self, node: Node, now: int) -> float:
+        """Return by how many seconds a clock has last jumped back, 0 if it never did."""
+        last, back = self._clocks.get(node, (now, 0.0))
+        if now < last:
+            back = (last - now) * 1e-9
+        self._clocks[node] = (now, back)
+        return back
+
+    def _subscriptions(
+        self, node: Node, entry: NodeEntry | None, sent: Mapping[str, int]
+    ) -> Iterator[Subscription]:
+        for sub in node.subscriptions:
+            heard = entry.counts.get(sub, 0) if entry is not None else 0
+            ahead = sent.get(sub.topic_name, 0) - heard
+            known = self._heard.get(sub)
+            if known is None or known.entry is not entry or ahead < known.ahead:
+                since = known.since if known is not None else time.monotonic()
+                known = self._heard[sub] = _Heard(entry, ahead, since)
+            yield Subscription(
+                sub.topic_name,
+                type_name(sub.msg_type),
+                sub.qos_profile,
+                sub.callback,
+                heard,
+                # What waits in the queue, and is being handled, may still be heard.
+                max(0, ahead - known.ahead - sub.qos_profile.depth - 1) if entry else 0,
+                known.since,
+            )
+
+
+def _sent(nodes: Sequence[Node]) -> Counter[str]:
+    """Return the number of messages that nodes have published, by topic."""
+    sent: Counter[str] = Counter()
+    for node in nodes:
+        with suppress(InvalidHandle):
+            for publisher in node.publishers:
+                sent[publisher.topic_name] += sent_by(publisher).count
+    return sent
+
+
+def _is_learners(node: Node) -> bool:
+    name = full_name(node)
+    return bool(name) and not is_hidden(name)
+
+
+def _identities(node: Node) -> tuple[int, ...]:
+    """Return what changes when an end of a node is made again in the meantime."""
+    ends = (node.publishers, node.subscriptions, node.clients, node.services)
+    return tuple(id(end) for found in ends for end in found)
+
+
+def _publishers(node: Node) -> Iterator[Publisher]:
+    for publisher in node.publishers:
+        sent = sent_by(publisher)
+        yield Publisher(
+            publisher.topic_name,
+            type_name(publisher.msg_type),
+            publisher.qos_profile,
+            sent.count,
+            sent.first,
+            sent.last,
+            sent.found,
+            sent.stamp,
+        )
+
+
+def _clients(node: Node) -> Iterator[Client]:
+    for client in node.clients:
+        pending = compat.pending_requests(client)
+        is_ready = bool(pending) and client.service_is_ready()
+        name = client.handle.service_name
+        yield Client(name, type_name(client.srv_type), pending, is_ready)
+
+
+def _timer(timer: Any) -> Timer:
+    return Timer(
+        timer.timer_period_ns / 1e9,
+        callback_name(timer),
+        timer.callback,
+        bool(timer.is_canceled()),
+    )
+
+
+def _long_calls(entry: NodeEntry | None) -> Iterator[LongCall]:
+    if entry is None:
+        return
+    running = runtime.executor.running_for()
+    stuck = running is not None and running[0] is entry and running[2] >= LONG_SEC
+    if running is not None and stuck:
+        yield LongCall(running[1], running[2], is_running=True)
+    for callback, seconds in tuple(entry.took.items()):
+        if seconds >= LONG_SEC and not (running and stuck and running[1] == callback):
+            yield LongCall(callback, seconds)
+
+
+def _sleepers(nodes: Sequence[Node]) -> Iterator[Sleeper]:
+    for entity, (words, cell) in tuple(runtime.waits.items()):
+        for node in nodes:
+            known = entity in (*node.timers, *node.clients)
+            if known and runtime.entry_of(node) is None and node.executor is None:
+                yield Sleeper(full_name(node), words, cell)
+
+
+# -- arguments ------------------------------------------------------------------------------------
+
+
+def _values_of(args: Sequence[str], *flags: str) -> Iterator[str]:
+    """Yield the values of an option among the arguments for ROS."""
+    inside = False
+    for word, value in zip(args, [*args[1:], ''], strict=False):
+        if word in ('--ros-args', '--'):
+            inside = word == '--ros-args'
+        elif inside and word in flags and value:
+            yield value
+
+
+def rules_in(args: Sequence[str]) -> tuple[Rule, ...]:
+    """Return the remapping rules in arguments for ROS, without those for a node's own name."""
+    found = []
+    for text in _values_of(args, '-r', '--remap'):
+        old, _, new = text.partition(':=')
+        node, colon, name = old.partition(':')
+        alone = not colon or name.startswith('//')
+        rule = Rule('', old, new) if alone else Rule(node, name, new)
+        if not rule.old.startswith('__'):
+            found.append(rule)
+    return tuple(found)
+
+
+def files_in(args: Sequence[str]) -> tuple[ParameterFile, ...]:
+    """Return the parameter files in arguments for ROS, as far as they can be read."""
+    return tuple(
+        file
+        for path in _values_of(args, '--params-file')
+        for file in [_file(path)]
+        if file is not None
+    )
+
+
+_files: dict[tuple[str, float], ParameterFile | None] = {}
+
+
+def _file(path: str) -> ParameterFile | None:
+    try:
+        seen = Path(path).stat()
+    except OSError:
+        return None
+    key = (path, seen.st_mtime)
+    if key not in _files:
+        _files[key] = _read_file(path) if seen.st_size <= _LARGEST_FILE else None
+    return _files[key]
+
+
+def _read_file(path: str) -> ParameterFile | None:
+    try:
+        tree = load_yaml_file(path)
+    except (OSError, ValueError):
+        return None
+    return ParameterFile(path, tuple(_sections(tree, ''))) if isinstance(tree, dict) else None
+
+
+def _sections(tree: Mapping[Any, Any], start: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    for key, value in tree.items():
+        name = f'{start}/{str(key).strip("/")}'
+        if isinstance(value, dict):
+            inner = value.get('ros__parameters')
+            if isinstance(inner, dict):
+                yield name, dict(_flat(inner))
+            yield from _sections({k: v for k, v in value.items() if k != 'ros__parameters'}, name)
+
+
+def _flat(tree: Mapping[Any, Any], start: str = '') -> Iterator[tuple[str, Any]]:
+    for key, value in tree.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f'{start}{key}.')
+        else:
+            yield f'{start}{key}', value

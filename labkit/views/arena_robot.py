@@ -1,0 +1,221 @@
+"""One robot on the map of `lab.arena()`: what is heard of it, and what the page has of that."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import deque
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from labkit.sim.kinematics import BURGER, Pose, Twist2, wrap_angle
+from labkit.views.arena_picture import Scene
+from labkit.views.live_page import Update
+from labkit.views.robot_messages import beam_ends, motion_of, nearest_of, scanner_place
+
+if TYPE_CHECKING:
+    from nav_msgs.msg import Odometry
+    from sensor_msgs.msg import LaserScan
+
+    from labkit.views.feed import Feed
+
+__all__ = ['MappedRobot']
+
+# Distance between points of the trail, m. A larger jump was not driven.
+TRAIL_STEP, JUMP = 0.01, 0.5
+TRAIL_LENGTH = 5000
+# The page extrapolates the motion of the robot for no longer than this without changes, s.
+GLIDE_SEC = 0.12
+# The robot touches an obstacle this close to it, m: scanner noise plus its motion between scans.
+TOUCH = 0.015
+# An obstacle within this angle of straight ahead can have stopped it, rad.
+AHEAD = math.radians(80)
+# Walls are remembered as one point per square of this size, m.
+SQUARE = 0.02
+MAX_WALLS = 20_000
+
+
+class MappedRobot:
+    """A robot as the arena hears it. The arena's lock guards it.
+
+    Args:
+        name: Its namespace, '' for the root.
+        goals: Points to mark.
+
+    Attributes:
+        scene: The robot and its surroundings.
+        trail: Where it was, oldest first.
+        feeds: Its odometry and its scan.
+        others: The other robots on the map.
+        frame: The frame of its odometry, '' before the first message.
+    """
+
+    def __init__(self, name: str, goals: Sequence[tuple[float, ...]]) -> None:
+        self.name = name
+        self.frame = ''
+        self.scene = Scene(name=name, goals=[(x, y) for x, y, *_ in goals])
+        self.trail: deque[tuple[float, float]] = deque(maxlen=TRAIL_LENGTH)
+        self.feeds: list[Feed] = []
+        self.others: list[MappedRobot] = []
+        # Topics with a message since the subscription began.
+        self._heard: set[str] = set()
+        # Wall points by square.
+        self._walls: dict[int, list[float]] = {}
+        # The last scan: as received, the ends of its beams, and the message until the scene has
+        # it.
+        self._received_scan: tuple[object, Pose] | None = None
+        self._ends: Any = None
+        self._unread_scan: LaserScan | None = None
+        # A scan that came before the first pose: a robot at rest may not send another one.
+        self._pending_scan: LaserScan | None = None
+        # Changes that the page has not received yet, and what it has.
+        self._lifted = False
+        self._new_trail: list[float] = []
+        self._new_scan = self._last_scan = b''
+        self._scanner: tuple[float, float] | None = None
+        self._in_page: dict[str, object] = {}
+        self._sent_twist: Twist2 | None = None
+
+    # -- ROS ------------------------------------------------------------------------------------
+
+    @property
+    def is_heard(self) -> bool:
+        """Whether each of its topics has told something, or has no publisher."""
+        return all(feed.topic in self._heard or not feed.publishers for feed in self.feeds)
+
+    def forget_heard(self) -> None:
+        """Wait anew for a message of each topic."""
+        self._heard.clear()
+
+    def take_odometry(self, message: Odometry) -> bool:
+        """Move the robot, and return whether it has just bumped into something."""
+        motion = motion_of(message)
+        if motion is None:
+            return False
+        pose, twist = motion
+        point = (pose.x, pose.y)
+        self._heard.add(self.feeds[0].topic)
+        self.frame = message.header.frame_id
+        scene, bumped = self.scene, False
+        way = math.dist(self.trail[-1], point) if self.trail else math.inf
+        if way > JUMP:
+            # The robot was moved by hand: its path starts over.
+            self.trail.clear()
+            self._new_trail.clear()
+            self._lifted = True
+        if way > JUMP or twist.v:
+            scene.bump = None
+        elif scene.twist.v:
+            scene.bump = self._touched(pose, scene.twist.v)
+            bumped = scene.bump is not None
+        scene.pose, scene.twist = motion
+        early, self._pending_scan = self._pending_scan, None
+        if early is not None:
+            self.take_scan(early)
+        if way >= TRAIL_STEP:
+            self.trail.append(point)
+            self._new_trail += point
+        return bumped
+
+    def is_news(self, sent_at: float) -> bool:
+        """Return whether the page is wrong about its motion.
+
+        Args:
+            sent_at: `time.monotonic()` of the last update of the page.
+        """
+        # The page extrapolates the motion, so it has to know when that is no longer true.
+        twist = self.scene.twist
+        late = twist != Twist2() and time.monotonic() - sent_at >= GLIDE_SEC
+        return late or twist != self._sent_twist
+
+    def take_scan(self, message: LaserScan) -> None:
+        """Take what its scanner sees."""
+        pose = self.scene.pose
+        if pose is None:
+            self._pending_scan = message
+            return
+        self._heard.add(self.feeds[1].topic)
+        if self._received_scan == (message.ranges, pose):
+            return  # at rest, every scan is the same
+        self._received_scan = (message.ranges, pose)
+        self._unread_scan = message
+        ends = self._ends = beam_ends(message, pose)
+        self._scanner = scanner_place(pose)
+        self._new_scan = ends.astype('<f4').tobytes()
+        walls = ends[np.isfinite(ends[:, 0])]
+        for other in self._places_of_others():
+            # Robots drive on, walls stay.
+            walls = walls[np.hypot(*(walls - other).T) > BURGER.radius + TOUCH]
+        squares = np.rint(walls / SQUARE).astype(np.int64) @ (1 << 32, 1)
+        self._walls.update(zip(squares.tolist(), walls.tolist(), strict=True))
+        while len(self._walls) > MAX_WALLS:
+            del self._walls[next(iter(self._walls))]
+
+    def current_scene(self) -> Scene:
+        """Return the scene with the latest scan: not every scan is needed."""
+        message, self._unread_scan = self._unread_scan, None
+        if message is not None:
+            self.scene.scan = [
+                (end[0], end[1]) if end[0] == end[0] else None for end in self._ends.tolist()
+            ]
+            self.scene.reach = float(message.range_max)
+            self.scene.nearest = nearest_of(message)
+        self.scene.trail = list(self.trail)
+        return self.scene
+
+    def _places_of_others(self) -> list[tuple[float, float]]:
+        poses = [other.scene.pose for other in self.others]
+        return [(pose.x, pose.y) for pose in poses if pose is not None]
+
+    def _touched(self, pose: Pose, v: float) -> tuple[float, float] | None:
+        """Return the nearest point of a thing close ahead of a robot that has just stopped."""
+        ahead = pose.yaw if v > 0 else pose.yaw + math.pi
+
+        def turn(point: Sequence[float]) -> float:
+            return wrap_angle(math.atan2(point[1] - pose.y, point[0] - pose.x) - ahead)
+
+        near = BURGER.radius + TOUCH
+        points: list[Sequence[float]] = [*self._walls.values()]
+        for x, y in self._places_of_others():
+            share = BURGER.radius / (math.dist((x, y), pose[:2]) or 1.0)
+            points.append((x + share * (pose.x - x), y + share * (pose.y - y)))
+        close = [point for point in points if math.dist(point, pose[:2]) <= near]
+        touched = [point for point in close if abs(turn(point)) <= AHEAD]
+        if not touched:
+            return None
+        x, y = min(touched, key=lambda point: math.dist(point, pose[:2]))
+        return x, y
+
+    # -- the page -------------------------------------------------------------------------------
+
+    def update(self, everything: bool) -> Update:
+        """Return what the page does not know of it yet, or everything."""
+        scene = self.scene
+        buffers: list[bytes] = []
+        if scene.pose is None:
+            return {}, buffers
+        if everything:
+            self._in_page.clear()
+            self._lifted, self._new_scan = True, self._new_scan or self._last_scan
+            self._new_trail = [number for point in self.trail for number in point]
+        state: dict[str, object] = {'pose': (*scene.pose, *scene.twist), 'bump': scene.bump}
+        changes = {
+            key: value
+            for key, value in state.items()
+            if key not in self._in_page or self._in_page[key] != value
+        }
+        self._in_page.update(state)
+        self._sent_twist = scene.twist
+        if self._lifted or self._new_trail:
+            changes |= {'lifted': self._lifted, 'trail': self._new_trail}
+        if self._new_scan:
+            changes['eye'] = self._scanner
+            buffers.append(self._new_scan)
+        if everything:
+            changes['met'] = True
+            buffers.append(np.array([*self._walls.values()], '<f4').tobytes())
+        self._last_scan = self._new_scan or self._last_scan
+        self._lifted, self._new_trail, self._new_scan = False, [], b''
+        return changes, buffers

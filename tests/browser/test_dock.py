@@ -1,0 +1,120 @@
+"""The panel of `lab.dock()`: views that stay in sight while the notebook scrolls."""
+
+from __future__ import annotations
+
+import pytest
+from playwright.sync_api import Locator, expect
+
+from tests.browser.page import Notebook
+
+CELLS = {
+    'setup': """
+import labkit as lab
+from geometry_msgs.msg import PoseStamped
+from rclpy.node import Node
+robot = lab.spin(lab.Turtlebot())
+heard = []
+listener = lab.spin(Node('listener'))
+goals = listener.create_subscription(PoseStamped, 'goal_pose', heard.append, 10)
+""",
+    'dock': 'lab.dock(lab.arena(), lab.teleop())',
+    'arena': 'lab.arena()',
+    'wait': """
+lab.wait_until(lambda: robot.pose.x > 0.05 and robot.twist == (0, 0), timeout_sec=50)
+print('drove')
+""",
+    'goal': """
+lab.wait_until(lambda: heard, timeout_sec=50)
+place, turn = heard[-1].pose.position, heard[-1].pose.orientation
+print(heard[-1].header.frame_id, place.x > 0.5, place.y > 0.5, 0.3 < turn.z < 0.5)
+""",
+    **{f'text{number}': '# text\n' * 60 for number in range(3)},
+}
+TABS = '.jp-SideBar.jp-mod-right .lm-TabBar-tab'
+DOCKED = 'is in the panel on the right'
+
+
+class Panel:
+    """What the panel shows, and what of it the notebook shows."""
+
+    def __init__(self, notebook: Notebook) -> None:
+        page = notebook.page
+        self.notebook, self.page = notebook, page
+        self.views: Locator = page.locator('.jupyterlab-sidecar .labkit-view')
+        self.map: Locator = page.locator('.jupyterlab-sidecar .labkit-arena canvas')
+        self.in_cells: Locator = page.locator('.jp-Notebook .labkit-view').locator('visible=true')
+        self.tab: Locator = page.locator(TABS, has_text='Robot')
+
+    def expect_in_panel(self) -> None:
+        expect(self.views).to_have_count(2)
+        expect(self.in_cells).to_have_count(0)
+        expect(self.tab).to_have_count(1)
+
+    def expect_in_cell(self) -> None:
+        expect(self.in_cells).to_have_count(2)
+        expect(self.tab).to_have_count(0)
+
+    def close(self) -> None:
+        # The icon is drawn with what the panel's extension says; the tab lies over its edges.
+        self.tab.locator('.lm-TabBar-tabCloseIcon').click(force=True)
+
+
+@pytest.fixture
+def panel(open_cells) -> Panel:
+    notebook = open_cells(**CELLS)
+    notebook.run_cell('setup')
+    assert DOCKED in notebook.run_cell('dock')
+    made = Panel(notebook)
+    made.expect_in_panel()
+    return made
+
+
+def test_a_robot_is_driven_while_the_notebook_scrolls(panel):
+    panel.notebook.cell('text2')
+    expect(panel.map).to_be_in_viewport()
+    panel.page.locator('.jupyterlab-sidecar .labkit-teleop').click(position={'x': 4, 'y': 4})
+    panel.page.keyboard.down('w')
+    panel.page.wait_for_function(
+        'canvas => parseFloat(canvas.dataset.pose) > 0.05', arg=panel.map.element_handle()
+    )
+    panel.page.keyboard.up('w')
+    assert panel.notebook.run_cell('wait') == 'drove'
+    # Escape gives the keys back.
+    panel.map.click(position={'x': 4, 'y': 4})
+    panel.page.keyboard.press('Escape')
+    expect(panel.map).not_to_be_focused()
+
+
+def test_a_closed_panel_gives_its_views_back(panel):
+    panel.close()
+    panel.expect_in_cell()
+    panel.page.locator('.jp-Notebook .labkit-arena canvas').focus()
+    panel.page.keyboard.press('k')
+    panel.expect_in_panel()
+
+
+def test_there_is_one_panel_whatever_is_run_again(panel):
+    panel.notebook.run_cell('dock')
+    panel.expect_in_panel()
+    panel.notebook.reload()
+    panel.expect_in_panel()
+    panel.notebook.restart_kernel()
+    panel.expect_in_cell()
+    panel.notebook.run_cell('setup')
+    panel.notebook.run_cell('dock')
+    panel.expect_in_panel()
+
+
+def test_a_goal_is_published_where_one_clicks_and_looks_to_where_one_drags(panel):
+    panel.page.get_by_role('button', name='key g').last.click()
+    box = panel.map.bounding_box()
+    at_x, at_y = box['x'] + 0.7 * box['width'], box['y'] + 0.3 * box['height']
+    panel.page.mouse.move(at_x, at_y)
+    panel.page.mouse.down()
+    panel.page.mouse.move(at_x + 20, at_y - 20)
+    panel.page.mouse.up()
+    assert panel.notebook.run_cell('goal') == 'odom True True True'
+    # The next click is none.
+    expect(panel.page.get_by_role('button', name='key g').last).to_have_attribute(
+        'aria-pressed', 'false'
+    )

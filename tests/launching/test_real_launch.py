@@ -1,0 +1,42 @@
+"""Each case was given to the real `launch` 3.4.3 and `launch_ros` 0.26.6 of Jazzy; this is equal.
+
+`real_launch.json` has what they said and would have started, with parameter files as data. They
+were read from source in an environment of their own; nothing of them is here.
+"""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from labkit.errors import LabError
+from tests.launching.stage import visit, write
+
+HERE = Path(__file__).parent
+HEAD = (HERE / 'python_head.txt').read_text(encoding='utf-8')
+CASES: dict[str, Any] = json.loads((HERE / 'real_launch.json').read_text(encoding='utf-8'))
+
+
+@pytest.mark.parametrize('name', CASES)
+def test_does_as_the_real_one(name: str, tmp_path: Path, toys: Path):
+    case = CASES[name]
+    files = dict(case['files'])
+    main = next(iter(files))
+    if main.endswith('.py') and 'LaunchDescription' in files[main]:
+        files[main] = HEAD + files[main]
+    path = write(tmp_path, files)
+    if 'refused' in case:
+        with pytest.raises(LabError) as caught:
+            visit(path, *case['arguments'])
+        # The real one rarely says where; this one always does.
+        assert f'{path.parent}/' in str(caught.value), caught.value
+        return
+    found = visit(path, *case['arguments'])
+    seen = json.dumps([found.said, found.started])
+    seen = seen.replace(str(tmp_path), 'DIR').replace(str(toys), 'PREFIX')
+    assert json.loads(seen) == [case['said'], case['started']]
+
+
+def test_there_are_enough_cases():
+    assert len(CASES) > 250

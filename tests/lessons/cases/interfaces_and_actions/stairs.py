@@ -1,0 +1,80 @@
+"""Answers to `stairs`, and what the check says to each."""
+
+from __future__ import annotations
+
+from cases import ERROR, right, wrong
+
+__all__ = ['ANSWERS']
+
+ANSWERS = [
+    wrong('another topic', "Write the name as '/stairs'"),
+    wrong(
+        'no goal_callback',
+        'No goal at all was rejected',
+        ('        self.server.register_goal_callback(self.on_goal)\n', ''),
+    ),
+    wrong('all rejected', 'it was rejected', ('1 <= goal.order <= 20', 'goal.order > 99')),
+    wrong('20 rejected', 'order = 20 is succeeded', ('<= 20', '< 20')),
+    wrong('1 rejected', 'order = 1 is succeeded', ('1 <=', '1 <')),
+    wrong(
+        'goal_callback accepts all',
+        'or it accepts each goal',
+        ('return GoalResponse.REJECT', 'return GoalResponse.ACCEPT'),
+    ),
+    wrong('0 accepted', 'Others were rejected, and this one was not.', ('1 <=', '0 <=')),
+    wrong(
+        'below 0 only',
+        'Others were rejected, and this one was not.',
+        ('1 <= goal.order <= 20', 'goal.order >= 0'),
+    ),
+    wrong('no lower limit', 'is rejected', ('1 <= goal.order <= 20', 'goal.order <= 20')),
+    wrong(
+        'True in the place of ACCEPT',
+        'goal_callback did not return GoalResponse.ACCEPT',
+        (
+            '        if 1 <= goal.order <= 20:\n            return GoalResponse.ACCEPT\n'
+            '        return GoalResponse.REJECT\n',
+            '        return 1 <= goal.order <= 20\n',
+        ),
+    ),
+    wrong(
+        'refused too late',
+        'comes too late to reject a goal',
+        ('        self.server.register_goal_callback(self.on_goal)\n', ''),
+        (
+            '        goal_handle.succeed()\n',
+            '        if not 1 <= goal_handle.request.order <= 20:\n'
+            '            goal_handle.abort()\n            return Fibonacci.Result()\n'
+            '        goal_handle.succeed()\n',
+        ),
+    ),
+    wrong('one number too few', 'result = ', ('order + 1', 'order')),
+    wrong('from 0 on', 'The numbers are not those of the task.', ('range(1, ', 'range(')),
+    wrong(
+        'a typing error in goal_callback',
+        'AttributeError',
+        ('1 <= goal.order', '1 <= goal.ordr'),
+        outcome=ERROR,
+    ),
+    right(
+        'lambda',
+        ('(self.on_goal)', '(lambda goal: GoalResponse(1 + (0 < goal.order < 21)))'),
+        (
+            '    def on_goal(self, goal):\n        if 1 <= goal.order <= 20:\n'
+            '            return GoalResponse.ACCEPT\n        return GoalResponse.REJECT\n'
+            '\n',
+            '',
+        ),
+    ),
+    right(
+        'a keyword',
+        (
+            "        self.server = ActionServer(self, Fibonacci, 'stairs', "
+            'self.execute)\n        self.server.register_goal_callback(self.on_goal)\n',
+            '        self.server = ActionServer(\n'
+            "            self, Fibonacci, 'stairs', self.execute, "
+            'goal_callback=self.on_goal\n        )\n',
+        ),
+    ),
+    right('own process, several threads', run='process'),
+]

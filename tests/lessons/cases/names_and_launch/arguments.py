@@ -1,0 +1,67 @@
+"""Answers to `arguments`, and what the check says to each."""
+
+from __future__ import annotations
+
+from cases import right, wrong
+
+__all__ = ['ANSWERS']
+
+ANSWERS = [
+    wrong(
+        'the namespace is fixed',
+        'The name is right, and the namespace is not.',
+        ('"$(var robot)"', '"robot1"'),
+    ),
+    wrong('a default is missing', 'arguments.launch.xml, line 2', (' default="robot1"', '')),
+    wrong('another default', 'Seen: /robot/driver', ('default="robot1"', 'default="robot"')),
+    wrong(
+        'the speed is fixed',
+        'That is the value of its declaration',
+        ('value="$(var speed)"', 'value="0.1"'),
+    ),
+    wrong(
+        'another default of the speed',
+        'The file gives it another value.',
+        ('default="0.1"', 'default="0.15"'),
+    ),
+    wrong(
+        'another name of an argument',
+        'That is the value of its declaration',
+        ('<arg name="speed"', '<arg name="velocity"'),
+        ('$(var speed)', '$(var velocity)'),
+    ),
+    wrong(
+        'a condition the wrong way', 'nothing asks the argument', ('if="$(var', 'unless="$(var')
+    ),
+    wrong('an argument misspelt', 'arguments.launch.xml, line', ('$(var talk)', '$(var tallk)')),
+    wrong(
+        'the talker is outside',
+        'it is not there',
+        (
+            '    <node pkg="demo_nodes_py" exec="talker" if="$(var talk)"/>\n  </group>\n',
+            '  </group>\n  <node pkg="demo_nodes_py" exec="talker" if="$(var talk)"/>\n',
+        ),
+    ),
+    wrong(
+        'a listener, too',
+        'The file starts more than the task asks for.',
+        ('  </group>', '    <node pkg="demo_nodes_py" exec="listener"/>\n  </group>'),
+    ),
+    wrong('a speed that is no number', 'InvalidParameterTypeException', ('"0.1"', '"slow"')),
+    right(
+        'no group',
+        ('    <push_ros_namespace namespace="$(var robot)"/>\n', ''),
+        ('exec="driver"', 'exec="driver" namespace="$(var robot)"'),
+        ('exec="talker"', 'exec="talker" namespace="$(var robot)"'),
+    ),
+    right(
+        'a condition around it',
+        (
+            '    <node pkg="demo_nodes_py" exec="talker" if="$(var talk)"/>\n',
+            '    <group unless="$(not $(var talk))">\n'
+            '      <node pkg="demo_nodes_py" exec="talker"/>\n    </group>\n',
+        ),
+    ),
+    right('in YAML'),
+    right('in Python'),
+]

@@ -1,0 +1,186 @@
+"""Answers to `pilot`, and what the check says to each."""
+
+from __future__ import annotations
+
+from cases import ERROR, right, wrong
+
+__all__ = ['ANSWERS']
+
+ANSWERS = [
+    wrong(
+        'best effort',
+        '/pilot offers best effort',
+        ('import Node\n', 'import Node\nfrom rclpy.qos import qos_profile_sensor_data\n'),
+        ("'cmd_vel', 10", "'cmd_vel', qos_profile_sensor_data"),
+    ),
+    wrong(
+        'no callback',
+        'the node uses it',
+        ('        self.add_on_set_parameters_callback(self.on_set)\n', ''),
+    ),
+    wrong(
+        'lets nan pass',
+        'A comparison with nan is always False.',
+        (
+            "        if 0.0 <= values['speed'] <= values['limit']:\n",
+            "        if not (values['speed'] < 0.0 or values['speed'] > values['limit']):\n",
+        ),
+    ),
+    wrong(
+        'looks at the old limit',
+        'the node still has the old values',
+        (
+            '        values = {name: self.get_parameter(name).value for name in '
+            "('speed', 'limit')}\n"
+            '        values.update({p.name: p.value for p in parameters if p.name '
+            "in values})\n        if 0.0 <= values['speed'] <= values['limit']:\n",
+            '        values = {p.name: p.value for p in parameters}\n'
+            "        limit = self.get_parameter('limit').value\n"
+            "        if 0.0 <= values.get('speed', 0.0) <= limit:\n",
+        ),
+    ),
+    wrong(
+        'looks at the speed alone',
+        'Some values are refused, and this one is not.',
+        (
+            '        values = {name: self.get_parameter(name).value for name in '
+            "('speed', 'limit')}\n"
+            '        values.update({p.name: p.value for p in parameters if p.name '
+            "in values})\n        if 0.0 <= values['speed'] <= values['limit']:\n",
+            '        values = {p.name: p.value for p in parameters}\n'
+            "        limit = values.get('limit', self.get_parameter('limit').value)\n"
+            "        if 0.0 <= values.get('speed', 0.0) <= limit:\n",
+        ),
+    ),
+    wrong(
+        'a fixed limit',
+        'Some values are refused, and this one is not.',
+        ("<= values['limit']:", '<= 0.22:'),
+    ),
+    wrong(
+        'the limit itself is refused',
+        'These values are allowed',
+        ("<= values['limit']:", "< values['limit']:"),
+    ),
+    wrong(
+        'standing still is refused',
+        'These values are allowed',
+        ("if 0.0 <= values['speed']", "if 0.0 < values['speed']"),
+    ),
+    wrong(
+        'no reason',
+        'The caller learns that the value was refused, but not why.',
+        (", reason='speed must be from 0.0 to limit'", ''),
+    ),
+    wrong(
+        'refuses with nothing',
+        'has not given back a SetParametersResult.',
+        (
+            "        return SetParametersResult(successful=False, reason='speed "
+            "must be from 0.0 to limit')\n",
+            '',
+        ),
+    ),
+    wrong(
+        'drives backwards',
+        'Some values are refused, and this one is not.',
+        ('if 0.0 <= values', 'if values'),
+    ),
+    wrong(
+        'reads the speed once',
+        'The parameter has changed, and what the node does has not',
+        (
+            '        self.add_on_set_parameters_callback(self.on_set)\n',
+            '        self.add_on_set_parameters_callback(self.on_set)\n'
+            "        self.speed = self.get_parameter('speed').value\n",
+        ),
+        ("msg.linear.x = self.get_parameter('speed').value", 'msg.linear.x = self.speed'),
+    ),
+    wrong(
+        'no limit declared',
+        'A node has the parameters that it declares',
+        ("        self.declare('limit', 0.1, 'Greatest speed, in m/s')\n", ''),
+        ('        self.add_on_set_parameters_callback(self.on_set)\n', ''),
+    ),
+    wrong(
+        'keeps a value that it refuses',
+        'after it has refused',
+        (
+            '        values.update(',
+            '        self.speed = {p.name: p.value for p in '
+            "parameters}.get('speed', 0.0)\n        values.update(",
+        ),
+        ("msg.linear.x = self.get_parameter('speed').value", 'msg.linear.x = self.speed'),
+        (
+            '        self.add_on_set_parameters_callback(self.on_set)\n',
+            '        self.add_on_set_parameters_callback(self.on_set)\n'
+            '        self.speed = 0.05\n',
+        ),
+    ),
+    wrong(
+        'no description',
+        'a descriptor without a description',
+        ('ParameterDescriptor(description=description)', 'ParameterDescriptor()'),
+    ),
+    wrong(
+        'refuses by an error',
+        'ValueError',
+        (
+            "        return SetParametersResult(successful=False, reason='speed "
+            "must be from 0.0 to limit')\n",
+            "        raise ValueError('speed must be from 0.0 to limit')\n",
+        ),
+        outcome=ERROR,
+    ),
+    wrong(
+        'no callback, in a process of its own',
+        'the node uses it',
+        ('        self.add_on_set_parameters_callback(self.on_set)\n', ''),
+        run='process',
+    ),
+    wrong('wrong type', 'Use the same type on both sides', outcome=ERROR),
+    right(
+        'keeps the speed in an attribute',
+        (
+            '        self.add_on_set_parameters_callback(self.on_set)\n',
+            '        self.add_on_set_parameters_callback(self.on_set)\n'
+            '        self.add_post_set_parameters_callback(self.on_change)\n'
+            '        self.speed = 0.05\n',
+        ),
+        (
+            '    def on_timer',
+            '    def on_change(self, parameters):\n'
+            "        self.speed = self.get_parameter('speed').value\n\n    def on_timer",
+        ),
+        ("msg.linear.x = self.get_parameter('speed').value", 'msg.linear.x = self.speed'),
+    ),
+    right(
+        'asks what is forbidden, and for nan',
+        (
+            "        if 0.0 <= values['speed'] <= values['limit']:\n",
+            "        speed, limit = values['speed'], values['limit']\n"
+            '        bad = math.isnan(speed) or math.isnan(limit)\n'
+            '        if not (bad or speed < 0.0 or speed > limit):\n',
+        ),
+        ('from geometry', 'import math\n\nfrom geometry'),
+    ),
+    right(
+        'a range for the lower end, besides',
+        (
+            '        self.declare_parameter(name, value, '
+            'ParameterDescriptor(description=description))\n',
+            '        positive = FloatingPointRange(from_value=0.0, to_value=1000.0)\n'
+            '        descriptor = ParameterDescriptor(description=description, '
+            'floating_point_range=[positive])\n'
+            '        self.declare_parameter(name, value, descriptor)\n',
+        ),
+        (
+            'import ParameterDescriptor, SetParametersResult\n',
+            'import FloatingPointRange, ParameterDescriptor, SetParametersResult\n',
+        ),
+    ),
+    right(
+        'with values from its command line',
+        ('lab.spin(Pilot())', "lab.spin(Pilot(cli_args=['--ros-args', '-p', 'limit:=0.22']))"),
+    ),
+]

@@ -1,0 +1,25 @@
+import time
+
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import String
+
+
+class Mouth(Node):
+    def __init__(self):
+        super().__init__('mouth')
+        self.publisher = self.create_publisher(String, 'speech', 10)
+        self.create_subscription(String, 'thought', self.on_thought, 10)
+
+    def on_thought(self, msg):
+        self.publisher.publish(String(data=msg.data.upper()))
+
+
+def main():
+    rclpy.init()
+    mouth = Mouth()
+    time.sleep(60)
+    mouth.destroy_node()
+
+
+main()

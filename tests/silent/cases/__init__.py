@@ -1,0 +1,1 @@
+"""Faults and their innocent neighbours, as cells: what makes each, and what looks similar."""

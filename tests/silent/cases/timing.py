@@ -1,0 +1,57 @@
+"""Time, see `labkit.silent.timing`."""
+
+_SIM = "parameter_overrides=[Parameter('use_sim_time', value=True)]"
+_CLOCK = (
+    f"n = node('sleepy', {_SIM}); p = loud('clock', '/clock', Clock)\n"
+    'def at(sec):\n'
+    '    c = Clock(); c.clock.sec = sec; p.publish(c)\n'
+    '    lab.wait_until(lambda: n.get_clock().now().nanoseconds == sec * 10**9, timeout_sec=20)\n'
+    '    look()\n'
+)
+_ODOMETRY = "m = stamped(Odometry); m.child_frame_id = 'base_link'; m.header.stamp.sec {change}\n"
+_TWO = (
+    "n = deaf('listener', 'odom', Odometry, {options}); loud('clock', '/clock', Clock)\n"
+    "say(stamped(Odometry), 'odom')"
+)
+_LONG = (
+    "n = node('sleeper'); m = node('other'); {more}\n"
+    'def tick(): time.sleep({seconds})\n'
+    'n.create_timer(0.01, tick)\n'
+    'e = runtime.entry_of(n)\nlab.wait_until(lambda: e.took or {seconds} < 1 and e.counts)'
+)
+
+CASES = {
+    'time.no-clock': (
+        f"node('sleepy', {_SIM}).create_timer(0.1, heard)",
+        f"node('sleepy', {_SIM}).create_timer(0.1, heard); loud('clock', '/clock', Clock)",
+    ),
+    'time.two-clocks': (_TWO.format(options=_SIM), _TWO.format(options='')),
+    'time.jumped-back': (f'{_CLOCK}at(100); at(5)', f'{_CLOCK}at(5); at(100)'),
+    'time.future': (
+        _ODOMETRY.format(change='+= 60') + 'say(m)',
+        _ODOMETRY.format(change='-= 60') + 'say(m)',
+    ),
+    'time.other-clock': (
+        _ODOMETRY.format(change='= 12345') + 'say(m)',
+        _ODOMETRY.format(change='-= 3600') + 'say(m)',
+    ),
+    'time.period-zero': (
+        "node('busy').create_timer(0.0, heard)",
+        "n = node('once'); n.create_timer(0.0, heard).cancel()",
+    ),
+    'time.milliseconds': (
+        "node('slow').create_timer(500, heard)",
+        "node('slow').create_timer(0.5, heard)",
+    ),
+    'time.rate': ("node('slow').create_timer(30, heard)", "node('slow').create_timer(3, heard)"),
+    'time.long-callback': (
+        _LONG.format(seconds=1.1, more='m.create_timer(0.5, heard)'),
+        _LONG.format(seconds=0.01, more='m.create_timer(0.5, heard)'),
+    ),
+    'time.stuck-callback': (
+        "free = threading.Event(); n = node('stuck'); begun = threading.Event()\n"
+        'def tick(): begun.set(); free.wait()\n'
+        'n.create_timer(0.01, tick); begun.wait(); time.sleep(2.1)',
+        "free.set(); n = node('quick'); n.create_timer(0.01, heard)",
+    ),
+}

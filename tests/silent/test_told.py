@@ -1,0 +1,206 @@
+"""The classics: each is told under the cell that made it, once, and is gone when it is mended."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from labkit.silent.parameters import UNDECLARED
+from tests.conftest import Kernel
+
+PRELUDE = """
+import time
+import labkit as lab
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from std_msgs.msg import String
+lab.start()
+
+class Cruiser(Node):
+    def __init__(self, **more):
+        super().__init__('cruiser', **more)
+        self.declare_parameter('speed', 1.0)
+
+class Talker(Node):
+    def __init__(self, **more):
+        super().__init__('talker', **more)
+        self.publisher = self.create_publisher(String, 'chatter', 10)
+
+class Sleeper(Node):
+    def __init__(self):
+        super().__init__('sleeper')
+        self.create_timer(1.0, self.slow)
+        self.create_timer(0.5, self.quick)
+
+    def slow(self):
+        time.sleep(1.5)
+
+    def quick(self):
+        pass
+"""
+CLASSICS = {
+    'params-file': (
+        "open('p.yaml', 'w').write('cruizer: {ros__parameters: {speed: 0.5}}')\n"
+        "c = lab.spin(Cruiser(cli_args=['--ros-args', '--params-file', 'p.yaml']))",
+        'p.yaml has parameters for /cruizer, but the node is called /cruiser: it takes none',
+    ),
+    'override': (
+        "c = lab.spin(Cruiser(parameter_overrides=[Parameter('sped', value=0.5)]))",
+        "/cruiser is given the parameter 'sped', which it never declares: it declares speed.\n"
+        "  → Did you mean 'speed'?",
+    ),
+    'remap': (
+        "c = lab.spin(Talker(cli_args=['--ros-args', '-r', '/chater:=/other']))",
+        'The rule /chater:=/other matches no name of /talker, which has /chatter. The nearest is '
+        '/chatter.',
+    ),
+    'clock': (
+        "c = lab.spin(Talker(parameter_overrides=[Parameter('use_sim_time', value=True)]))",
+        '/talker uses simulated time (use_sim_time) and waits for /clock, which nobody publishes',
+    ),
+    'sleep': (
+        'c = lab.spin(Sleeper())',
+        's; meanwhile nothing else runs.',
+    ),
+    'namespace': (
+        "d = lab.spin(Talker(namespace='robot1')); c = lab.spin(Node('listener'))\n"
+        "c.create_subscription(String, '/chatter', print, 10);",
+        '/listener waits on /chatter, where nobody publishes; /robot1/chatter has a publisher of '
+        'that type, /robot1/talker, which nobody hears.',
+    ),
+}
+
+
+@pytest.fixture
+def notebook(start_kernel: Callable[..., Kernel]) -> Kernel:
+    kernel = start_kernel()
+    assert not kernel.run(PRELUDE).error
+    return kernel
+
+
+def test_each_is_told_under_its_cell_and_gone_when_it_is_mended(notebook: Kernel) -> None:
+    for name, (code, sentence) in CLASSICS.items():
+        made = notebook.run(code)
+        assert not made.error, made.traceback
+        shown = notebook.wait_for_output(made.msg_id, sentence)
+        assert shown.count('⚠') == 1, (name, shown)
+        assert not notebook.run('lab.remove(c)').error
+        notebook.wait_until_gone(made.msg_id, sentence)
+        notebook.run('lab.stop()\nlab.start()')
+
+
+def test_a_rate_that_nobody_spins_is_told_while_it_hangs(notebook: Kernel) -> None:
+    cell = notebook.start("n = Node('sleepy')\nn.create_rate(10).sleep()")
+    said = 'sleep() of a rate waits for /sleepy, which nobody spins: for ever.'
+    notebook.wait_for_output(cell, said)
+    notebook.interrupt()
+    notebook.finish(cell)
+    notebook.wait_until_gone(cell, said)
+
+
+def test_it_is_told_wherever_one_looks(notebook: Kernel) -> None:
+    notebook.run('t = Twist(); t.angular.z = 90.0')
+    notebook.run("p = lab.spin(Node('driver')).create_publisher(Twist, 'cmd_vel', 10)")
+    notebook.run('p.publish(t)')
+    said = 'angular.z is 90, 14.3 turns a second'
+    driver = 'from labkit.background.runtime import runtime\nruntime.nodes()[0].node'
+    for code in (driver, 'print(lab.graph(live=False))', 'print(lab.doctor())'):
+        assert said in ' '.join(notebook.run(code).text.split()), code
+    assert said in notebook.run('%ros2 doctor').text
+    # In the picture, the node and its topic have a sign.
+    signs = "lab.graph(live=False)._repr_mimebundle_()['image/svg+xml'].count('class=\"sign\"')"
+    assert notebook.run(f'print({signs})').text.strip() == '2'
+    view = "from labkit.views.monitor import _faults\nprint(*_faults('/cmd_vel'))"
+    notebook.run('from labkit.silent.watch import watch\nlab.wait_until(lambda: watch.seen)')
+    assert said in notebook.run(view).text
+    notebook.run('lab.stop()')
+    assert 'All is well' in notebook.run('print(lab.doctor())').text
+
+
+def test_the_doctor_hides_no_fault_behind_another(notebook: Kernel) -> None:
+    made = notebook.run("""
+from rclpy.qos import qos_profile_sensor_data
+sonar = lab.spin(Node('sonar')).create_publisher(String, 'range', qos_profile_sensor_data)
+lab.spin(Node('display')).create_subscription(String, 'range', print, 10)
+t = Twist(); t.angular.z = 90.0
+p = lab.spin(Node('driver')).create_publisher(Twist, 'cmd_vel', 10)
+p.publish(t)
+""")
+    assert not made.error, made.traceback
+    said = ' '.join(notebook.run('print(lab.doctor())').text.split())
+    assert said.count('/display does not hear /sonar') == 1, said
+    assert 'angular.z is 90, 14.3 turns a second' in said
+
+
+# More messages at once than a queue holds, all of which have come and gone.
+BURST = [
+    """
+from labkit.background.runtime import runtime
+
+heard = []
+ear = lab.spin(Node('ear'))
+ear.create_subscription(String, 'burst', heard.append, 2)
+mouth = ear.create_publisher(String, 'burst', 10)
+""",
+    """
+with runtime.executor.between_callbacks():
+    for number in range(9):
+        mouth.publish(String(data=str(number)))
+lab.wait_until(lambda: len(heard) == 2)
+""",
+]
+
+
+def test_it_is_the_last_output_of_a_cell_where_outputs_are_compared(
+    start_kernel: Callable[..., Kernel],
+) -> None:
+    kernel = start_kernel(LABKIT_HEADLESS='1')
+    assert not kernel.run(PRELUDE).error
+    code, sentence = CLASSICS['override']
+    assert kernel.run(f"print('before')\n{code}\nprint('behind')").text == (
+        f'before\nbehind\n⚠ {sentence} {UNDECLARED.todo}\n'
+    )
+    assert not kernel.run('lab.graph(live=False);').text  # once
+    assert not kernel.run('lab.remove(c)').text
+    assert sentence in kernel.run(code).text
+    # What is mended in the same cell is not shown, and no thread looks.
+    assert not kernel.run(f'{code}\nlab.remove(c)').text
+    # Nor is a full queue: a busy machine fills one.
+    for cell in BURST:
+        ran = kernel.run(cell)
+        assert not ran.error, ran.traceback
+        assert not ran.text
+    threads = kernel.run('import threading\nprint(*(t.name for t in threading.enumerate()))').text
+    assert 'labkit watch' not in threads
+
+
+def test_a_node_whose_name_comes_after_its_publisher_is_seen(
+    start_kernel: Callable[..., Kernel],
+) -> None:
+    kernel = start_kernel(ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST')
+    prelude = Path(__file__).parent / 'cases' / 'prelude.py'
+    assert not kernel.run(prelude.read_text(encoding='utf-8')).error
+    kernel.run("robot, told = deaf('robot', 'cmd_vel', TwistStamped), []")
+    kernel.run("""
+def look_until(stop):
+    while not stop.is_set():
+        watch.look()
+
+def drive(name):
+    stop = threading.Event()
+    thread = threading.Thread(target=look_until, args=[stop])
+    thread.start()
+    ORIGINALS['create_publisher'](other_process(name), Twist, 'cmd_vel', 10)
+    ends = lambda: runtime.helper.get_publishers_info_by_topic('/cmd_vel')
+    lab.wait_until(lambda: name in [end.node_name for end in ends()], timeout_sec=20)
+    stop.set()
+    thread.join()
+    told.append(any(f'/{name}' in fault.nodes for fault in watch.look()))
+""")
+    made = kernel.run("for number in range(4):\n    drive(f'driver_{number}')")
+    assert not made.error, made.traceback
+    assert kernel.run('print(*told)').text == 'True True True True\n'

@@ -1,0 +1,30 @@
+"""The bar under a cell that takes longer than a moment."""
+
+from __future__ import annotations
+
+from typing import Any
+
+BAR = """
+import labkit as lab
+from labkit import progress_bar
+progress_bar.SHOWN_AFTER_SEC = progress_bar.EVERY_SEC = 0.0
+bar = progress_bar.ProgressBar('Checking')
+bar.show(0.25, '<b> 7 s')
+"""
+
+
+def test_a_learner_sees_how_far_it_is(kernel: Any) -> None:
+    (shown,) = kernel.run(BAR).outputs
+    assert shown['data']['text/plain'] == 'Checking: <b> 7 s'
+    assert 'Checking: &lt;b&gt; 7 s' in shown['data']['text/html']
+    assert '<progress max="1" value="0.25"' in shown['data']['text/html']
+
+
+def test_what_is_done_at_once_needs_no_bar(kernel: Any) -> None:
+    kernel.run('from labkit.progress_bar import ProgressBar')
+    assert kernel.run("ProgressBar('Checking').show(0.5, '')").outputs == []
+
+
+def test_nobody_who_compares_outputs_sees_it(start_kernel: Any) -> None:
+    kernel = start_kernel(LABKIT_HEADLESS='1')
+    assert kernel.run(BAR).outputs == []
