@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from labkit import __version__
-from labkit.course.run_tests import SHARDS, run_tests
+from labkit.course.run_tests import run_tests
 from labkit.errors import LabError, SetupError
 
 __all__ = ['main']
@@ -73,7 +73,9 @@ def _run(words: list[str]) -> int:
             prepare=options.prepare,
         )
     if options.command == 'test':
-        return run_tests(others, fast=options.fast, shard=options.shard, coverage=options.coverage)
+        return run_tests(
+            others, everything=options.all, fast=options.fast, coverage=options.coverage
+        )
     if options.command == 'reset':
         from labkit.course.learner_folder import reset
 
@@ -181,14 +183,19 @@ def _parser() -> argparse.ArgumentParser:
     hub.add_argument('--prepare', action='store_true', help='install what is needed, and end')
     test = add(
         'test',
-        'Run every lesson and every test',
-        'With the number of a lesson, such as `04`, what is about that lesson. Other options, and '
+        'Run every cell of every lesson, and the tests that are not slow',
+        'What fails is tried once more at the end, alone, and that is told. With the number of '
+        'a lesson, such as `04`, what is about that lesson. Other options, and '
         'paths, are for pytest, which then runs alone: `-k odds`, `tests/sim`.',
     )
     test.add_argument(
         '--fast', action='store_true', help='only what takes seconds: style, types, layers, format'
     )
-    test.add_argument('--shard', choices=SHARDS, help='one part of the notebooks and tests')
+    test.add_argument(
+        '--all',
+        action='store_true',
+        help='slow tests and quarantined ones too; then what is quick on each other Python here',
+    )
     test.add_argument(
         '--coverage', action='store_true', help='show which lines and branches of labkit ran'
     )

@@ -145,6 +145,10 @@ def test_order_of_the_test_command() -> None:
         'notebooks and tests',
     ]
     assert run_tests._steps(fast=True) == steps[:-1]
+    everything = run_tests._steps(['--junitxml=report.xml'], everything=True)
+    assert everything[:-1] == steps[:-1]
+    gate, whole = set(steps[-1][1]), set(everything[-1][1])
+    assert gate - whole == set(run_tests._GATE) and whole - gate == {'--junitxml=report.xml'}
     fast = [path for path in steps[-2][1] if path.startswith('tests/')]
     assert fast and all((ROOT / path).is_file() for path in fast)
     assert all(f'--ignore={path}' in steps[-1][1] for path in fast)
@@ -155,8 +159,9 @@ def test_arguments_for_pytest() -> None:
     assert command[-4:] == ['notebooks', 'tests', '-k', 'odds']
     ((_, command),) = run_tests._steps(['tests/test_layers.py::test_x', '-x'])
     assert 'notebooks' not in command
-    ((_, command),) = run_tests._steps(['-x'], shard='lessons')
+    ((_, command),) = run_tests._steps(['notebooks', '-x'])
     assert {'notebooks', '-x'} < set(command) and 'tests' not in command
+    assert 'not slow' not in ' '.join(command)
 
 
 def test_what_is_run_for_a_lesson() -> None:
@@ -185,7 +190,9 @@ def test_what_is_measured() -> None:
     assert [name for name, command in everything if 'run' in command] == ['notebooks and tests']
 
 
-@pytest.mark.parametrize('words', [['--fast', '-k', 'odds'], ['--fast', '--coverage']])
+@pytest.mark.parametrize(
+    'words', [['--fast', '-k', 'odds'], ['--fast', '--all'], ['--fast', '--coverage']]
+)
 def test_options_that_do_not_go_together(
     words: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -211,6 +218,80 @@ def test_run_without_a_test_is_a_failure(course: Course) -> None:
     done = course.run('test', '-k', 'nothing_has_this_name', '-n', '1')
     assert done.returncode == 5, done.stdout + done.stderr
     assert 'tests failed (exit code 5)' in done.stderr
+
+
+# Fails at its first run, and where a file says so at each.
+FLAKY = """
+from pathlib import Path
+import pytest
+TRIED = Path('tried')
+def test_flaky():
+    if not TRIED.exists():
+        TRIED.touch()
+        raise OSError('the port is taken')
+def test_whole():
+    assert not Path('broken').exists()
+@pytest.mark.parametrize('number', range(13))
+def test_many(number):
+    assert not Path('many').exists()
+@pytest.mark.slow('it waits for an hour')
+def test_slow():
+    assert 'slow' == 'run'
+"""
+
+
+def test_what_passes_only_at_the_second_try_is_told(course: Course) -> None:
+    course.make_complete()
+    shutil.copy(ROOT / 'pyproject.toml', course.folder)
+    (course.folder / 'tests' / 'test_it.py').write_text(FLAKY)
+    gate = ['tests', '-n', '2', *run_tests._GATE]
+    done = course.run('test', *gate)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert '== a second try, alone: 1 of what failed' in done.stdout
+    assert done.stdout.endswith(
+        'labkit test: all passed, 1 of them only at the second try:\n'
+        '  tests/test_it.py::test_flaky\n'
+        '      OSError: the port is taken\n'
+    )
+    assert course.run('test', *gate).stdout.endswith('\nlabkit test: all passed.\n')
+    # What fails twice has failed, and so has what somebody names.
+    (course.folder / 'broken').touch()
+    done = course.run('test', *gate)
+    assert (done.returncode, done.stdout.count('a second try')) == (1, 1)
+    (course.folder / 'tried').unlink()
+    assert course.run('test', 'tests/test_it.py::test_flaky', '-n', '2').returncode == 1
+    # Many failures are no flakes.
+    (course.folder / 'many').touch()
+    done = course.run('test', *gate)
+    assert (done.returncode, done.stdout.count('a second try')) == (1, 0)
+    # Without the gate's choice what is slow runs, too.
+    assert "'slow' == 'run'" in course.run('test', 'tests', '-n', '2', '-k', 'slow').stdout
+
+
+def test_quarantine_decides_nothing(course: Course) -> None:
+    course.make_complete()
+    shutil.copy(ROOT / 'pyproject.toml', course.folder)
+    (course.folder / 'tests' / 'test_it.py').write_text(FLAKY)
+    (course.folder / 'broken').touch()
+    (course.folder / 'tests' / 'quarantine.txt').write_text(
+        'tests/test_it.py::test_whole | 2026-11-27 | it fails | a file\n'
+    )
+    done = course.run('test', 'tests', '-n', '2', '-k', 'whole or many')
+    assert done.returncode == 0, done.stdout + done.stderr
+    told = 'in quarantine, decides nothing: tests/test_it.py::test_whole: '
+    assert f'{told}failed (since 2026-11-27)' in done.stdout
+    done = course.run('test', 'tests', '-n', '2', *run_tests._GATE, '-k', 'whole or many')
+    assert f'{told}not run (since 2026-11-27)' in done.stdout
+
+
+def test_marker_without_a_word_on_why_is_refused(course: Course) -> None:
+    course.make_complete()
+    shutil.copy(ROOT / 'pyproject.toml', course.folder)
+    text = 'import pytest\n@pytest.mark.slow\ndef test_it():\n    pass\n'
+    (course.folder / 'tests' / 'test_it.py').write_text(text)
+    done = course.run('test', 'tests', '-n', '0')
+    assert done.returncode != 0
+    assert 'say why' in done.stdout + done.stderr
 
 
 def test_first_failure_ends_the_test_command_and_leaves_no_junk(course: Course) -> None:

@@ -12,12 +12,19 @@ import re
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 from typing import NamedTuple
 
 from labkit.errors import SetupError
 from labkit.files import is_inside
 
-__all__ = ['Interpreter', 'check_platform', 'clean_environment', 'find_interpreter']
+__all__ = [
+    'Interpreter',
+    'check_platform',
+    'clean_environment',
+    'find_interpreter',
+    'interpreters',
+]
 
 # The Python versions that the wheels of ROS 2 Jazzy are built for, the most common one first.
 VERSIONS = ((3, 12), (3, 13), (3, 11), (3, 10))
@@ -107,6 +114,20 @@ def find_interpreter() -> Interpreter:
         todo='Install one, for example with `sudo apt install python3.12 python3.12-venv`, '
         '`sudo dnf install python3.12`, or `uv python install 3.12`, and repeat the command.',
     )
+
+
+def interpreters() -> list[Interpreter]:
+    """Return a Python of each version of the course that is on PATH, or is one of pyenv's."""
+    found = []
+    pyenv = Path(os.environ.get('PYENV_ROOT', Path.home() / '.pyenv')) / 'versions'
+    for version in VERSIONS:
+        name = 'python{}.{}'.format(*version)
+        # What pyenv has on PATH for a version that is not selected refuses to run.
+        paths = [shutil.which(name), *sorted(pyenv.glob(f'*/bin/{name}'))]
+        probed = (_probe(str(path)) for path in paths if path)
+        usable = (one for one in probed if one and one.usable and one.version == version)
+        found += [one for one in [next(usable, None)] if one]
+    return found
 
 
 def _base_executable() -> str:
