@@ -35,6 +35,7 @@ ROWS = {
 }
 
 
+@pytest.mark.slow('each benchmark')
 @pytest.mark.parametrize('name', ROWS)
 def test_tables_have_figures(lab_env: dict[str, str], name: str) -> None:
     command = [sys.executable, str(BENCHMARKS), '--quick', name]

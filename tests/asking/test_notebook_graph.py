@@ -54,6 +54,7 @@ def variables(monkeypatch: pytest.MonkeyPatch):
     claim.close()
 
 
+@pytest.mark.slow('each command in a terminal')
 def test_a_terminal_is_told_what_it_would_find(start_kernel, lab_env, variables):
     kernel = start_kernel(**variables)
     kernel.run(NODES)

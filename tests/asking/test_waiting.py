@@ -211,6 +211,7 @@ TIMEOUTS = {
 }
 
 
+@pytest.mark.slow('it waits in vain, several times')
 def test_a_timeout_names_the_likeliest_cause(lab):
     wrong = []
     for name, (code, expected) in TIMEOUTS.items():

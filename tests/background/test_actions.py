@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 NODES = """
 import labkit as lab
 from rclpy.action import ActionClient, ActionServer, CancelResponse
@@ -155,6 +157,7 @@ counter, waiter = lab.spin(Counter()), lab.spin(Waiter())
     assert 'Sending a goal with send_goal() inside a callback would wait for ever' in shown
 
 
+@pytest.mark.slow('a server that never comes')
 def test_a_server_that_is_not_there_is_not_waited_for_when_nobody_is_there(start_kernel):
     kernel = start_kernel(LABKIT_HEADLESS='1')
     kernel.run(NODES)

@@ -115,6 +115,7 @@ def test_variable_wins_over_a_domain_of_its_own(
     claim.close()
 
 
+@pytest.mark.slow('two kernels and other programs')
 def test_two_notebooks_do_not_hear_each_other_until_they_mean_to(
     start_kernel: Callable[..., object],
 ) -> None:

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.slow('each way to end, in each state')
+
 # Activities of the background thread at the end of the program.
 FAST = 'callbacks run fast'
 BUSY = {

@@ -92,6 +92,7 @@ def test_a_notebook_of_very_many_processes_does_not_reach_the_next_but_one() -> 
         assert not mine & everybodys
 
 
+@pytest.mark.slow('several kernels, one after another')
 @pytest.mark.usefixtures('namespace')
 def test_four_hundred_notebooks_of_two_users_have_domains_of_their_own(
     lab_env: dict[str, str],
@@ -163,6 +164,7 @@ def run_there(command: list[str]) -> str:
     return f'print(subprocess.run({command!r}, capture_output=True, text=True).stdout)'
 
 
+@pytest.mark.slow('several kernels, one after another')
 def test_who_joins_from_between_is_found_by_everybody(start_kernel: Start, between: int) -> None:
     shared = domains.claim_domain(shared=True)
     ada = start_kernel(**LOCALHOST, ROS_DOMAIN_ID=str(between))

@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from tests.views.bags import make_drive
 
 PLAY = """
@@ -65,6 +67,7 @@ print(len(clocks) > 50, clocks == sorted(clocks))
 """
 
 
+@pytest.mark.slow('it is held up for seconds')
 def test_time_does_not_go_back_when_the_player_was_held_up(kernel: Any, tmp_path: Path) -> None:
     path = make_drive(tmp_path / 'drive', seconds=4.0)
     result = kernel.run(CLOCK.format(path=str(path)))

@@ -12,6 +12,8 @@ from tests.browser.page import VIEWPORT, Notebook
 from tests.browser.test_views import CONTRAST
 from tests.views.bags import make_drive, make_foreign
 
+pytestmark = pytest.mark.slow('a page in the browser')
+
 
 class Stage:
     """A notebook that shows a bag of a drive, and one with a foreign type."""

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import pytest
 from playwright.sync_api import Dialog, expect
 
 from tests.browser.page import Notebook
+
+pytestmark = pytest.mark.slow('a page in the browser')
 
 # From another process, by way of the shared domain, byte by byte: no client checks what it sends.
 STRANGER = r"""

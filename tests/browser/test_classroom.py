@@ -15,6 +15,8 @@ from labkit.exercises.class_sheet import FILE_NAME
 from tests.browser.accessibility import violations
 from tests.browser.page import Notebook
 
+pytestmark = pytest.mark.slow('a page in the browser')
+
 WHY = 'Two copies of the node run at once, and their messages mix on the topic.'
 HTML = '<img src=x onerror="window.hacked = 1">'
 CELLS = {

@@ -7,6 +7,8 @@ from playwright.sync_api import Locator, expect
 
 from tests.browser.page import Notebook
 
+pytestmark = pytest.mark.slow('a page in the browser')
+
 CELLS = {
     'setup': """
 import labkit as lab

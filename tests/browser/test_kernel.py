@@ -6,6 +6,8 @@ import pytest
 
 from tests.browser.samples import LISTENER, SETUP, TALKER
 
+pytestmark = pytest.mark.slow('a page in the browser')
+
 # Cells that block: each prints "inside" when it does.
 BLOCKING = {
     'wait_until': "lab.wait_until(lambda: print('inside'), timeout_sec=None)",

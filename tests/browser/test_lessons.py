@@ -11,6 +11,8 @@ from tests.browser.accessibility import violations
 from tests.browser.jupyter import ROOT, JupyterLab
 from tests.browser.page import Notebook, open_notebook
 
+pytestmark = pytest.mark.slow('a page in the browser')
+
 LESSONS = sorted(path.stem for path in (ROOT / 'notebooks').glob('*.ipynb'))
 # Mostly a lesson waits for what its nodes do, so several run while one is looked at.
 AT_ONCE = 3

@@ -6,6 +6,8 @@ import pytest
 
 from labkit.views.widget import page_files
 
+pytestmark = pytest.mark.slow('a page in the browser')
+
 # What is written on a canvas: the text, its left and right edge in the canvas, and its size.
 SPY = """
 const written = [];

@@ -35,6 +35,7 @@ def test_first_lesson_opens_ready_to_run(tmp_path, browser):
         assert len(re.findall('token=', jupyter.log)) == 1
 
 
+@pytest.mark.slow('a page in the browser')
 def test_a_kernel_gets_ready_while_its_page_is_loaded(jupyter, browser):
     code = """
 import sys
@@ -61,6 +62,7 @@ print(all(name in sys.modules for name in loaded), left)
     assert paths.count('usual.ipynb') == 1
 
 
+@pytest.mark.slow('a page in the browser')
 def test_a_page_asks_for_the_formats_of_export_and_not_for_a_build(jupyter, browser):
     jupyter.write_notebook('formats', {'nothing': ''})
     page, asked = browser.new_page(), []
@@ -74,6 +76,7 @@ def test_a_page_asks_for_the_formats_of_export_and_not_for_a_build(jupyter, brow
     assert set(jupyter.request('api/nbconvert')) == set(base.get_export_names())
 
 
+@pytest.mark.slow('a page in the browser')
 def test_the_first_page_finds_its_notebook_in_the_workspace(tmp_path, browser):
     workspace, tab = 'lab/api/workspaces/default', f'notebook:{FIRST}'
     with JupyterLab(tmp_path / 'fresh') as jupyter:
@@ -117,6 +120,7 @@ LocalProvisioner.launch_kernel = start_slowly
 """
 
 
+@pytest.mark.slow('a page in the browser')
 def test_it_ends_while_a_second_kernel_starts(tmp_path):
     (tmp_path / 'jupyter_server_config.py').write_text(SLOW_START)
     with JupyterLab(tmp_path / 'short', {'JUPYTER_CONFIG_PATH': str(tmp_path)}) as jupyter:
@@ -155,6 +159,7 @@ def _look_at_first_lesson(notebook: Notebook) -> None:
     expect(page.locator('.Toastify__toast')).to_have_count(0)
 
 
+@pytest.mark.slow('a page in the browser')
 def test_page_with_all_lessons_leads_to_each_exercise(jupyter, browser):
     page = browser.new_page()
     page.goto(jupyter.address(f'lab/tree/{HOME}'))

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import re
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.browser.samples import LISTENER, SETUP, TALKER
+
+pytestmark = pytest.mark.slow('a page in the browser')
 
 NODES = """
 from labkit.background.runtime import runtime

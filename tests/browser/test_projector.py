@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+pytestmark = pytest.mark.slow('a page in the browser')
+
 CELLS = {
     'setup': """
 import matplotlib.pyplot as plt

@@ -9,6 +9,8 @@ from playwright.sync_api import Locator, expect
 
 from tests.browser.page import Notebook
 
+pytestmark = pytest.mark.slow('a page in the browser')
+
 
 @pytest.fixture
 def open_quiz(open_cells):

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import re
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.browser.robot_stage import STANDS
+
+pytestmark = pytest.mark.slow('a page in the browser')
 
 # What is drawn, by the colours of the pixels: what is but a few of them is not the ground.
 COLOURS = """canvas => {

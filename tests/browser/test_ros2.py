@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.browser.page import Notebook
+
+pytestmark = pytest.mark.slow('a page in the browser')
 
 SETUP = 'import labkit as lab'
 TALKER = """

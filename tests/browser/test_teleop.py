@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.browser.page import open_notebook
+
+pytestmark = pytest.mark.slow('a page in the browser')
 
 
 def test_keys_drive_the_robot_and_leave_the_notebook_alone(stage):

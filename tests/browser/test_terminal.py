@@ -5,10 +5,13 @@ from __future__ import annotations
 import json
 import time
 
+import pytest
 import websocket
 
 from labkit.setup.environment import PYTHON
 from tests.conftest import TIMEOUT_SEC
+
+pytestmark = pytest.mark.slow('a page in the browser')
 
 
 def test_terminal_finds_the_commands_of_the_environment(jupyter, tmp_path):

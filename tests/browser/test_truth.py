@@ -10,6 +10,8 @@ from playwright.sync_api import ConsoleMessage, Locator, Page, TimeoutError, exp
 
 from tests.browser.page import VIEWPORT, Notebook
 
+pytestmark = pytest.mark.slow('a page in the browser')
+
 CELLS = {
     'setup': """
 import labkit as lab

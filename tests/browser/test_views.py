@@ -10,6 +10,8 @@ from playwright.sync_api import Locator, expect
 
 from tests.browser.page import Notebook, open_notebook
 
+pytestmark = pytest.mark.slow('a page in the browser')
+
 CELLS = {
     'setup': """
 import labkit as lab

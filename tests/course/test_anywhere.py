@@ -174,6 +174,7 @@ def servers() -> Iterator[list[Server]]:
         server.close()
 
 
+@pytest.mark.slow('an environment like that of Binder')
 def test_binder_opens_the_first_lesson(place: Place, servers: list[Server]) -> None:
     port = free_port()
     command = ['./.binder/start', 'python3', '-c', BINDERHUB, '--ip=127.0.0.1', f'--port={port}']
@@ -198,6 +199,7 @@ def test_binder_opens_the_first_lesson(place: Place, servers: list[Server]) -> N
     assert lesson.run('!which ros2').strip() == f'{environment}/bin/ros2'
 
 
+@pytest.mark.slow('an environment like that of Binder')
 def test_codespace_opens_the_first_lesson(place: Place, servers: list[Server]) -> None:
     settings, port = devcontainer(), free_port()
     assert place.run(['sh', '-c', settings['onCreateCommand']]) == ''  # all is there

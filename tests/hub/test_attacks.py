@@ -119,6 +119,7 @@ def address_of(hub: Hub, name: str) -> str:
     return hub.machine.run(sys.executable, '-c', code).stdout.strip()
 
 
+@pytest.mark.slow('a hub, with servers and kernels')
 def test_each_server_has_an_address_and_answers_nobody_but_the_hub(
     hub: Hub, notebooks: dict[str, Notebook]
 ) -> None:
@@ -140,6 +141,7 @@ def test_nobody_looks_into_the_memory_of_others(hub: Hub, notebooks: dict[str, N
     assert hub.machine.run('find', '/dev/shm', '-name', 'fastrtps_*').stdout == ''
 
 
+@pytest.mark.slow('a hub, with servers and kernels')
 def test_a_learner_has_temporary_files_of_their_own(machine: Machine, tmp_path: Path) -> None:
     code = (
         'import os; from labkit.hub.spawner import _take_places\n'
@@ -154,6 +156,7 @@ def test_a_learner_has_temporary_files_of_their_own(machine: Machine, tmp_path: 
     assert found.stdout == ''
 
 
+@pytest.mark.slow('a hub, with servers and kernels')
 def test_a_neighbours_certificate_opens_no_place_of_another(
     hub: Hub, notebooks: dict[str, Notebook], machine: Machine
 ) -> None:
@@ -182,6 +185,7 @@ def test_a_neighbours_certificate_opens_no_place_of_another(
     assert come_in(hub, 'anna').ask('/user/anna/api/status').status == 200
 
 
+@pytest.mark.slow('a hub, with servers and kernels')
 def test_nothing_in_a_home_sets_up_the_server(hub: Hub) -> None:
     anna = come_in(hub, 'anna')
     shell = anna.open_notebook('02_talker_listener.ipynb')
@@ -198,6 +202,7 @@ def test_nothing_in_a_home_sets_up_the_server(hub: Hub) -> None:
     assert hub.machine.run('sh', '-c', code).returncode == 0
 
 
+@pytest.mark.slow('a hub, with servers and kernels')
 def test_an_address_with_a_token_lets_nobody_in(hub: Hub, notebooks: dict[str, Notebook]) -> None:
     anna = come_in(hub, 'anna')
     stranger = Person(hub, 'ben')
@@ -206,6 +211,7 @@ def test_an_address_with_a_token_lets_nobody_in(hub: Hub, notebooks: dict[str, N
         assert answer.status == 403 or '/hub/login' in answer.address, (path, answer)
 
 
+@pytest.mark.slow('a hub, with servers and kernels')
 def test_who_deletes_all_lessons_gets_them_back_by_one_command(hub: Hub) -> None:
     anna = come_in(hub, 'anna')
     name = '02_talker_listener.ipynb'
@@ -226,6 +232,7 @@ def test_who_deletes_all_lessons_gets_them_back_by_one_command(hub: Hub) -> None
     )
 
 
+@pytest.mark.slow('a hub, with servers and kernels')
 def test_a_new_password_ends_what_was_begun_with_a_stolen_one(
     hub: Hub, notebooks: dict[str, Notebook]
 ) -> None:
@@ -261,6 +268,7 @@ def test_a_new_password_ends_what_was_begun_with_a_stolen_one(
     assert (code, said) == (2, "labkit: 'zoe' is not in robots.txt.\n")
 
 
+@pytest.mark.slow('a hub, with servers and kernels')
 def test_nobody_takes_the_place_of_a_hub_that_is_down(
     hub: Hub, notebooks: dict[str, Notebook]
 ) -> None:

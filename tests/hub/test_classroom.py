@@ -10,6 +10,8 @@ from hub.person import Notebook, Person, at_once
 
 from labkit.exercises.class_sheet import FILE_NAME
 
+pytestmark = pytest.mark.slow('a hub, with servers and kernels')
+
 NAMES = ('anna', 'ben', 'maria')
 TRY = (
     'from labkit.exercises.progress_store import progress_store\n'

@@ -117,6 +117,7 @@ def test_learners_get_their_own_folder_and_teachers_the_whole(containers: Contai
     assert {key: value for key, value in binds.items() if value['bind'] != HOME} == whole | own
 
 
+@pytest.mark.slow('a hub, with servers and kernels')
 def test_a_class_in_containers_joins_and_its_teacher_sees_it(containers: Containers) -> None:
     anna, ben, maria = CLASS
     for member in (anna, ben, maria):

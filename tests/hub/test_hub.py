@@ -17,6 +17,8 @@ from hub.person import Notebook, Person, at_once
 
 from labkit.exercises.lesson import load
 
+pytestmark = pytest.mark.slow('a hub, with servers and kernels')
+
 ROOT = Path(__file__).resolve().parents[2]
 LESSON = ROOT / 'notebooks' / '02_talker_listener.ipynb'
 CLASS = ('anna', 'ben', 'carl', 'dora', 'emil')

@@ -18,6 +18,8 @@ from traitlets.config import PyFileConfigLoader
 from labkit.hub.login import ClassAuthenticator
 from labkit.hub.passwords import FIRST_PASSWORDS, HASHES, make_passwords
 
+pytestmark = pytest.mark.slow('a hub, with servers and kernels')
+
 CONFIG = ROOT / 'labkit' / 'hub' / 'jupyterhub_config.py'
 
 

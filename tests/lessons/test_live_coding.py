@@ -21,7 +21,7 @@ from labkit.exercises import Lesson, Outcome
 LESSONS = [lesson for lesson in lessons() if lesson.name != 'demo']
 
 # The first test waits for its turn among the others.
-pytestmark = pytest.mark.timeout(1200)
+pytestmark = [pytest.mark.timeout(1200), pytest.mark.slow('whole lessons, with solutions')]
 
 
 @pytest.fixture(scope='module')

@@ -9,6 +9,8 @@ from collections.abc import Sequence
 import pytest
 from network.hosts import Network
 
+pytestmark = pytest.mark.slow('two and more hosts')
+
 # It does what is written to it, line by line, and says so.
 LEARNER = """
 import sys

@@ -37,15 +37,21 @@ INTRUDER = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET', 'ROS_STATIC_PEERS': '10.7
 # Long enough for hosts that find each other to do so; a busy machine may need most of it.
 HEARD_SEC, SILENT_SEC = 60, 8
 
+SLOW = pytest.mark.slow('two hosts')
+
 
 @pytest.mark.parametrize(
     ('speaker', 'hearer', 'heard'),
     [
-        pytest.param({}, {}, False, id='default'),
+        pytest.param({}, {}, False, id='default', marks=SLOW),
         pytest.param({}, INTRUDER, False, id='somebody listens'),
-        pytest.param(INTRUDER, {}, False, id='somebody falsifies'),
+        pytest.param(INTRUDER, {}, False, id='somebody falsifies', marks=SLOW),
         pytest.param(
-            {'ROS_AUTOMATIC_DISCOVERY_RANGE': ''}, INTRUDER, False, id='an empty variable'
+            {'ROS_AUTOMATIC_DISCOVERY_RANGE': ''},
+            INTRUDER,
+            False,
+            id='an empty variable',
+            marks=SLOW,
         ),
         pytest.param(
             {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET'},
@@ -58,12 +64,14 @@ HEARD_SEC, SILENT_SEC = 60, 8
             {'ROS_STATIC_PEERS': '10.77.0.1'},
             True,
             id='static peers',
+            marks=SLOW,
         ),
         pytest.param(
             {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET', 'ROS_DOMAIN_ID': '5'},
             {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET', 'ROS_DOMAIN_ID': '6'},
             False,
             id='other domain',
+            marks=SLOW,
         ),
     ],
 )
@@ -86,6 +94,7 @@ def test_two_hosts(
         assert 'Nobody publishes on /chatter' in said
 
 
+@SLOW
 def test_two_processes_of_one_host_hear_each_other_by_default(
     network: Network,
 ) -> None:

@@ -150,6 +150,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path / 'ws'
 
 
+@pytest.mark.slow('it builds types with a compiler')
 @pytest.mark.timeout(1800)
 def test_types_of_ones_own_are_types_like_all_others(folder, tmp_path, lab_env):
     import subprocess

@@ -59,12 +59,14 @@ def test_made_once_then_completed_then_updated(course: Course) -> None:
     assert course.python(f'labkit.setup.environment.make_environment({files})').stdout == ''
 
 
+@pytest.mark.slow('it makes environments')
 def test_failed_install_leaves_nothing(course: Course) -> None:
     course.require('./missing-1.0-py3-none-any.whl')
     assert 'missing-1.0' in sentence(course.make())
     assert not course.venv.exists()
 
 
+@pytest.mark.slow('it makes environments')
 def test_failed_update_leaves_what_was_there(course: Course) -> None:
     assert course.make().returncode == 0
     before = (course.venv / 'labkit.json').read_text()
@@ -118,6 +120,7 @@ def test_two_at_once(course: Course, gate: Gate) -> None:
     assert course.installed() == {'slow-1.0'}
 
 
+@pytest.mark.slow('it makes environments')
 @pytest.mark.parametrize(
     ('damage', 'reason'),
     [
@@ -195,6 +198,7 @@ def change(path: Path, old: str, new: str) -> None:
     path.write_text(text.replace(old, new))
 
 
+@pytest.mark.slow('it makes environments')
 def test_new_command_of_the_same_version_arrives(installed: Course) -> None:
     commands = "ros2 = 'labkit.ros2:main'"
     change(installed.folder / 'pyproject.toml', commands, f"{commands}\nros3 = 'labkit:main'")
@@ -204,6 +208,7 @@ def test_new_command_of_the_same_version_arrives(installed: Course) -> None:
     assert installed.make().stdout == ''
 
 
+@pytest.mark.slow('it makes environments')
 def test_new_defaults_of_jupyterlab_of_the_same_version_arrive(installed: Course) -> None:
     name = 'etc/jupyter/labconfig/default_setting_overrides.json'
     (installed.folder / 'labkit' / 'data' / name).write_text('{"new": true}')
@@ -326,6 +331,7 @@ def test_small_disk(course: Course) -> None:
     assert 'needs 1.2 GB of disk space, but only 0.0 GB are free' in sentence(done)
 
 
+@pytest.mark.slow('it makes environments')
 @pytest.mark.parametrize('path', ['', BARE_PATH], ids=['uv', 'pip'])
 def test_disk_that_gets_full(course: Course, path: str) -> None:
     big = Path(course.folder, course.wheel('big', size=60_000_000))
@@ -370,6 +376,7 @@ for at in ca-certificates.crt $(openssl x509 -hash -noout -in "$0"/proxy.pem.crt
 done"""
 
 
+@pytest.mark.slow('it makes environments')
 @pytest.mark.parametrize('path', ['', BARE_PATH], ids=['uv', 'pip'])
 @pytest.mark.usefixtures('proxy')
 def test_what_the_system_trusts_is_trusted(course: Course, path: str) -> None:
@@ -379,6 +386,7 @@ def test_what_the_system_trusts_is_trusted(course: Course, path: str) -> None:
     assert course.installed() == {'alpha-1.0'}
 
 
+@pytest.mark.slow('it makes environments')
 @pytest.mark.parametrize('path', ['', BARE_PATH], ids=['uv', 'pip'])
 @pytest.mark.usefixtures('proxy')
 def test_a_certificate_that_is_not_trusted_is_named(course: Course, path: str) -> None:

@@ -43,6 +43,7 @@ def test_terminal_gets_one_line_that_changes(monkeypatch: pytest.MonkeyPatch) ->
     assert '[###############...............] Installing   2 of 4 packages' in shown
 
 
+@pytest.mark.slow('it installs')
 def test_installed_with_pip_where_there_is_no_uv(course: Course) -> None:
     done = course.make(PATH=BARE_PATH)
     assert done.returncode == 0, done.stderr
@@ -65,6 +66,7 @@ def without_uv(course: Course) -> Course:
     return course
 
 
+@pytest.mark.slow('it installs')
 @pytest.mark.parametrize('works', [True, False], ids=['works', 'fails'])
 def test_uv_is_fetched_first_and_pip_helps_where_it_fails(without_uv: Course, works: bool) -> None:
     course = without_uv
@@ -84,6 +86,7 @@ def test_uv_is_fetched_first_and_pip_helps_where_it_fails(without_uv: Course, wo
     assert course.make().stdout == ''
 
 
+@pytest.mark.slow('it installs')
 def test_uv_takes_packages_from_where_pip_does(without_uv: Course) -> None:
     course = without_uv
     course.env['PATH'] = f'{course.folder / "uv"}:{BARE_PATH}'
@@ -125,6 +128,7 @@ def test_which_pip_is_asked_where_packages_come_from(
     assert installer._sources(other, tmp_path, {})['UV_DEFAULT_INDEX'] == asked
 
 
+@pytest.mark.slow('it installs')
 @pytest.mark.parametrize('installer', ['uv', 'pip'])
 def test_a_package_that_is_not_the_tested_one_is_refused(
     without_uv: Course, installer: str
@@ -140,6 +144,7 @@ def test_a_package_that_is_not_the_tested_one_is_refused(
     assert 'alpha-1.0' in course.installed()
 
 
+@pytest.mark.slow('it installs')
 @pytest.mark.parametrize('installer', ['uv', 'pip'])
 def test_a_lock_beside_another_file_is_used_as_well(without_uv: Course, installer: str) -> None:
     course = without_uv
