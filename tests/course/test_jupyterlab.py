@@ -94,6 +94,7 @@ def test_terminal_has_the_address_alone_on_a_line_and_no_log(ready: Course) -> N
     assert '[I ' not in output and 'token=' not in output
 
 
+@pytest.mark.slow('it starts JupyterLab twice')
 def test_page_with_all_lessons_opens_once_a_learner_has_begun(ready: Course) -> None:
     for room in ('exercises', 'ros2'):
         shutil.copytree(ROOT / 'labkit' / room, ready.folder / 'labkit' / room)

@@ -157,6 +157,7 @@ def test_every_difference_is_found_and_shown(folder: Path, nbval: Run):
     assert '-(the cell has never been recorded)\n' in section(output, 'never-run')
 
 
+@pytest.mark.slow('it runs lessons in a pytest of its own')
 def test_each_lesson_tells_what_went_wrong_in_it(folder: Path, nbval: Run):
     write(folder / '01_one.ipynb', {'long': 'for i in range(100):\n    print("line", i)'})
     record(folder=folder)
@@ -192,6 +193,7 @@ def test_a_cell_that_hangs_is_ended(folder: Path, nbval: Run):
     assert 'after 1 seconds' in section(output, 'long')
 
 
+@pytest.mark.slow('it runs lessons in a pytest of its own')
 def test_two_workers_can_share_the_lessons(folder: Path, nbval: Run):
     cells = {'first': 'x = [1]', 'second': 'x.append(2)', 'third': 'x'}
     for name in ('01_one', '02_two'):
@@ -202,6 +204,7 @@ def test_two_workers_can_share_the_lessons(folder: Path, nbval: Run):
     assert output.count('PASSED') == 6
 
 
+@pytest.mark.slow('it runs lessons in a pytest of its own')
 def test_one_cell_can_be_run_alone(folder: Path, nbval: Run):
     write(folder / '01_one.ipynb', {'first': 'x = [1]', 'second': 'x.append(2)', 'third': 'x'})
     record(folder=folder)

@@ -10,6 +10,8 @@ import pytest
 from labkit.course import site
 from labkit.errors import LabError
 
+pytestmark = pytest.mark.slow('it builds the site')
+
 ROOT = Path(__file__).parents[2]
 LESSONS = sorted((ROOT / 'notebooks').glob('*.ipynb'))
 

@@ -337,6 +337,7 @@ def test_other_type_on_a_recorded_topic_harms_nobody(lab: ModuleType) -> None:
     assert '/news' in asked._recorder.watches()
 
 
+@pytest.mark.slow('a check as long as a check may be')
 def test_slow_topic_is_judged_within_the_limit(lab: ModuleType) -> None:
     class Slow(Counter):
         def __init__(self, period: float) -> None:

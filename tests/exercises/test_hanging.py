@@ -56,6 +56,7 @@ def crowded(cpu: int) -> Iterator[None]:
             other.communicate()
 
 
+@pytest.mark.slow('it is held up for seconds')
 @pytest.mark.skipif(sys.platform != 'linux', reason='only Linux tells it')
 def test_a_thread_that_waits_for_its_turn_has_not_had_the_time() -> None:
     cpu = min(os.sched_getaffinity(0))
@@ -157,6 +158,7 @@ class Worker(Node):
         self.publisher.publish(Int16())
 
 
+@pytest.mark.slow('it is held up for seconds')
 @pytest.mark.skipif(sys.platform != 'linux', reason='only there a thread can be held up so')
 def test_a_callback_that_gets_no_turn_for_long_is_waited_for(lab: ModuleType) -> None:
     node = lab.spin(Worker())

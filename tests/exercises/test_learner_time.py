@@ -192,6 +192,7 @@ def test_a_thread_that_stops_is_seen_to_stop(lab: ModuleType) -> None:
     assert 15 < times(life)[-1] < 20.1
 
 
+@pytest.mark.slow('a loop of seconds')
 def test_a_loop_that_asks_for_the_time_again_and_again_is_no_flood(lab: ModuleType) -> None:
     def polls(publisher: Any, ended: threading.Event) -> None:
         due = time.monotonic()

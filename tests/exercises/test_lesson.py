@@ -87,6 +87,7 @@ def test_solution_is_shown_without_the_import_that_the_notebook_has(tmp_path: Pa
     assert solution.changed(('1', '2')).code == 'import x\n\nx = 2\n'
 
 
+@pytest.mark.slow('jedi reads all of labkit')
 @pytest.mark.parametrize(
     ('expression', 'names'),
     [

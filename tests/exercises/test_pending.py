@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
+
 from labkit.exercises.lesson import load
 
 SETUP = """
@@ -49,6 +51,7 @@ def test_the_answer_takes_the_place_of_the_waiting(kernel: Any) -> None:
     assert kernel.run('checked._handle.display_id != ""').text == 'True\n'
 
 
+@pytest.mark.slow('checks in real time')
 def test_checks_in_a_row_judge_one_after_the_other(kernel: Any) -> None:
     kernel.run(SETUP)
     kernel.run(TASK.format(value=1))

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from labkit.background.domains import claim_domain
 
 NODE = Path(__file__).resolve().with_name('counter_node.py')
@@ -72,6 +74,7 @@ def test_script_that_was_just_started_is_waited_for(start_kernel: Callable[..., 
     assert 'PASS: ' in found.text  # a bar may stand before it
 
 
+@pytest.mark.slow('another process, in real time')
 def test_node_that_is_in_the_graph_before_its_publisher_is_waited_for(
     start_kernel: Callable[..., Any],
 ) -> None:
@@ -98,6 +101,7 @@ def judge(probe):
 """
 
 
+@pytest.mark.slow('another process, in real time')
 def test_node_that_takes_long_to_answer_counts_as_spun(start_kernel: Callable[..., Any]) -> None:
     claim = claim_domain()
     kernel = start_kernel(

@@ -158,6 +158,7 @@ say(clocks=runtime.helper.count_publishers('/clock'), step=numbers[-1] - numbers
     assert said == {'clocks': 0, 'step': 4}
 
 
+@pytest.mark.slow('another process, in real time')
 def test_node_that_is_not_spun_is_left_in_real_time(drive: Callable[..., Any]) -> None:
     said = drive(NOT_SPUN, 'life = see()\nsay(remote=list(life.remote), count=len(life.samples))')
     assert said['remote'] == []
@@ -195,6 +196,7 @@ say(remote=list(life.remote), ticks=len(ticks), clock=dead.get_clock().now().nan
     assert said == {'remote': [], 'ticks': 0, 'clock': 0}
 
 
+@pytest.mark.slow('another process, in real time')
 def test_the_next_check_begins_where_the_last_one_has_ended(drive: Callable[..., Any]) -> None:
     said = drive(
         CLOCKED,
@@ -206,6 +208,7 @@ say(gone=last[1] - last[0])
     assert 25 <= said['gone'] <= 60
 
 
+@pytest.mark.slow('another process, in real time')
 def test_a_node_that_needs_more_time_than_it_is_told_is_seen_in_real_time(
     drive: Callable[..., Any],
 ) -> None:
@@ -222,6 +225,7 @@ say(remote=list(life.remote), lost=list(life.lost), real=list(life.real), long=l
     assert said == {'remote': [], 'lost': [], 'real': ['/ones'], 'long': False}
 
 
+@pytest.mark.slow('another process, in real time')
 def test_node_that_does_not_answer_any_more_is_not_asked_at_each_step(
     drive: Callable[..., Any],
 ) -> None:
@@ -241,6 +245,7 @@ with Probe('ones', Scope(publishes=TOPICS)) as probe:
     assert said == {'followed': ['/ones'], 'names': [], 'slow': True}
 
 
+@pytest.mark.slow('another process, in real time')
 def test_node_that_was_given_up_is_waited_for_until_it_has_caught_up(
     drive: Callable[..., Any],
 ) -> None:
@@ -264,6 +269,7 @@ with Probe('ones', Scope(publishes=TOPICS)) as probe:
     assert said == {'names': [], 'answered': True}
 
 
+@pytest.mark.slow('another process, in real time')
 def test_node_that_answers_late_has_its_own_time_afterwards(drive: Callable[..., Any]) -> None:
     said = drive(
         SLOW,
@@ -277,6 +283,7 @@ say(remote=list(life.remote))
     assert said == {'remote': []}
 
 
+@pytest.mark.slow('another process, in real time')
 def test_stop_button_while_time_is_given_back_waits_for_that(drive: Callable[..., Any]) -> None:
     said = drive(
         SPUN,

@@ -94,6 +94,7 @@ def test_any_other_service_shows_none() -> None:
     assert attempt(serves=SERVES)('/ring_bell', 'std_srvs/srv/Trigger') == frozenset()
 
 
+@pytest.mark.slow('another process, in real time')
 def test_service_of_another_process_may_come_after_its_node(
     start_kernel: Callable[..., Any],
 ) -> None:

@@ -83,6 +83,7 @@ def test_stop_while_a_callback_hangs_leaves_nothing_behind(lab: ModuleType) -> N
     assert len(lab.listen('/odds', Int16, count=5, timeout_sec=30)) == 5
 
 
+@pytest.mark.slow('it stops a check many times')
 def test_stop_at_any_moment_of_a_check_leaves_nothing_behind(lab: ModuleType) -> None:
     node = lab.spin(Slow())
     node.is_slow.clear()

@@ -111,6 +111,7 @@ def test_a_node_that_has_ended_itself_is_named(kernel: Any) -> None:
     )
 
 
+@pytest.mark.slow('another process is killed')
 def test_a_node_of_which_the_graph_has_lost_the_name_is_told_so(
     lab: ModuleType, lesson: Lesson
 ) -> None:
