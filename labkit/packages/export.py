@@ -14,6 +14,7 @@ from pathlib import Path
 from labkit.errors import LabError, first_few, quoted
 from labkit.files import read_limited
 from labkit.packages.cells import Definition, Notebook
+from labkit.packages.fresh import lacking_imports
 from labkit.packages.gather import Gathered, gather
 from labkit.packages.skeleton import Part, Skeleton, check_name, license_text, own_email, own_name
 
@@ -119,7 +120,7 @@ def export(
     Each class becomes a module with a `main()` and an entry in setup.py, and gets a test.
     Everything it uses from the notebook (imports, constants, functions, base classes) is included.
     The package needs neither labkit nor the notebook: `colcon build` builds it on any machine with
-    ROS 2.
+    ROS 2. Each module is first loaded in a Python of its own, where no node starts.
 
     Args:
         node_classes: One or more subclasses of `rclpy.node.Node` that need no arguments.
@@ -136,11 +137,12 @@ def export(
         A summary of the package.
 
     Raises:
-        LabError: A class uses something that can't be included, or the folder exists.
+        LabError: A class uses something that can't be included, its module does not load in a
+            Python without the notebook, or the folder exists.
     """
     check_name(package)
     modules = _modules(node_classes)
-    sources = {name: _module_text(cls, package) for name, cls in modules.items()}
+    sources = {name: _source(cls, package, name) for name, cls in modules.items()}
     dependencies, unnamed = _dependencies(sources.values())
     maintainer = maintainer_name or own_name()
     names = ' and '.join(cls.__name__ for cls in node_classes)
@@ -249,8 +251,16 @@ def _refuse_arguments(cls: type) -> None:
         )
 
 
-def _module_text(cls: type, package: str) -> str:
-    gathered = gather(cls, Notebook.of(cls))
+def _source(cls: type, package: str, module: str) -> str:
+    """Return the source of the module of a class, which loads in a fresh Python."""
+    notebook = Notebook.of(cls)
+    gathered = gather(cls, notebook)
+    text = _module_text(cls, package, gathered)
+    gathered.imports |= lacking_imports(f'{package}.{module}', text, gathered, notebook)
+    return _module_text(cls, package, gathered)
+
+
+def _module_text(cls: type, package: str, gathered: Gathered) -> str:
     summary = (inspect.cleandoc(cls.__doc__ or '').partition('\n')[0]) or (
         f'The node {cls.__name__} of the package {package}.'
     )

@@ -11,7 +11,7 @@ import builtins
 import inspect
 import symtable
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
@@ -35,12 +35,16 @@ class Gathered:
     """The content of a module.
 
     Attributes:
+        name: Name of the class.
         imports: Statements such as `'import math'`.
+        submodules: Modules that are reached as attributes of their packages.
         definitions: The other statements, in executable order.
         annotations: Whether annotations are not evaluated, see `from __future__`.
     """
 
+    name: str
     imports: set[str] = field(default_factory=set)
+    submodules: set[str] = field(default_factory=set)
     definitions: list[Definition] = field(default_factory=list)
     annotations: bool = False
 
@@ -66,7 +70,9 @@ def gather(node_class: type, notebook: Notebook) -> Gathered:
         )
     collector.take(definition)
     return Gathered(
+        name,
         collector.imports,
+        collector.submodules,
         _in_order(collector),
         notebook.has_annotations_as_text,
     )
@@ -81,6 +87,7 @@ class _Collector:
 
     Attributes:
         imports: The required import statements.
+        submodules: Modules that the statements reach as attributes of their packages.
         taken: The included statements, by position, each with the names it uses: all, and those it
             needs when it is executed.
     """
@@ -89,6 +96,7 @@ class _Collector:
         self.name = name
         self.notebook = notebook
         self.imports: set[str] = set()
+        self.submodules: set[str] = set()
         self.taken: dict[Position, tuple[Definition, set[str], set[str]]] = {}
         self._known: set[str] = set()
 
@@ -108,6 +116,8 @@ class _Collector:
                 self._refuse('labkit', definition, _LABKIT, f'Write {self.name} without it.')
         for name in sorted(used - _MODULE_NAMES):
             self._follow(name, definition)
+        modules = {name: self.notebook.namespace.get(name) for name in used}
+        self.submodules |= set(_submodules(definition.node, modules))
 
     def _follow(self, name: str, user: Definition) -> None:
         if name in self._known:
@@ -248,6 +258,26 @@ def _free_names(source: str) -> set[str]:
         # `global count` binds a name of the module, which need not be read.
         used |= {each.get_name() for each in table.get_symbols() if each.is_declared_global()}
     return used - made
+
+
+def _submodules(node: ast.stmt, values: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the modules that a statement reaches as attributes, as `rclpy.node.Node` does."""
+
+    def value(expression: ast.AST) -> Any:
+        if isinstance(expression, ast.Name):
+            return values.get(expression.id)
+        if isinstance(expression, ast.Attribute) and inspect.ismodule(
+            outer := value(expression.value)
+        ):
+            return vars(outer).get(expression.attr)
+        return None
+
+    for each in ast.walk(node):
+        inner = value(each)
+        if isinstance(each, ast.Attribute) and inspect.ismodule(inner):
+            package = value(each.value)
+            if inner.__name__ == f'{package.__name__}.{each.attr}':
+                yield inner.__name__
 
 
 def _eager_names(node: ast.stmt) -> set[str]:

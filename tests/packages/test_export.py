@@ -161,6 +161,64 @@ def test_what_can_not_come_along_is_named(notebook, kernel):
     assert not (kernel.folder / 'src').exists()
 
 
+def test_what_only_happens_to_be_loaded_is_imported(source):
+    """Here, `import rclpy` is enough: something else in the kernel has loaded `rclpy.node`."""
+    text = source(
+        """\
+        import importlib
+
+        import numpy as np
+        import rclpy, geometry_msgs, example_interfaces
+        import rclpy.node
+        from geometry_msgs.msg import Point
+        """,
+        """\
+        class Talker(rclpy.node.Node):
+            def __init__(self):
+                super().__init__('talker')
+                self.place = geometry_msgs.msg.Point(x=np.linalg.norm([3.0, 4.0]))
+                self.types = example_interfaces.msg
+                self.found = importlib.util.find_spec('talk')
+        """,
+    )
+    assert text.partition('\n\nclass')[0] == dedent("""\
+        \"""The node Talker of the package talk.\"""
+
+        import importlib
+        import importlib.util
+
+        import example_interfaces
+        import example_interfaces.msg
+        import geometry_msgs
+        import geometry_msgs.msg
+        import numpy as np
+        import rclpy
+        from rclpy.executors import ExternalShutdownException
+        import rclpy.node
+        """)
+
+
+def test_what_does_not_load_without_the_notebook_is_named(notebook, kernel):
+    """Nothing is written, nothing started, and nothing that is printed is shown."""
+    (kernel.folder / 'helpers.py').write_text('WORD = "hello"\n')
+    (kernel.folder / 'word.txt').write_text('hello')
+    helped = 'from helpers import WORD\n' + TALKER.replace("'chatter'", 'WORD')
+    said = notebook(helped, EXPORT.format('Talker')).error
+    assert said.startswith(
+        'LabError: Talker can not become a package: its module does not load in a fresh Python.\n'
+        'Cell In[2], line 1: from helpers import WORD\n'
+        "ModuleNotFoundError: No module named 'helpers'\n"
+        'Here, it is loaded from '
+    )
+    assert f'{kernel.folder.name}/helpers.py, where no program looks.' in said
+    kept = "# What it says.\nWORD = [\n    print('hi'),\n    open('word.txt').read(),\n][1]\n"
+    result = notebook(kept + TALKER.replace("'chatter'", 'WORD'), EXPORT.format('Talker'))
+    assert "\nCell In[4], line 4: open('word.txt').read(),\nFileNotFoundError: " in result.error
+    assert 'neither the other cells nor the folder of this notebook' in result.error
+    assert 'hi' not in result.text
+    assert not (kernel.folder / 'src').exists()
+
+
 def test_a_folder_that_is_there(notebook, kernel):
     plain = EXPORT.replace(', overwrite=True', '').format('Talker')
     notebook(TALKER, plain)
