@@ -12,6 +12,7 @@ from labkit.launching.actions import DeclareLaunchArgument
 from labkit.launching.markup import from_xml, from_yaml
 from labkit.launching.model import Action, LaunchDescription, LaunchError, Place, at, too_deep
 from labkit.rosgraph.packages import prefix_of
+from labkit.rosgraph.workspaces import why_not_in
 
 __all__ = ['arguments', 'find', 'launch_files', 'load', 'tree']
 
@@ -74,10 +75,12 @@ def find(package: str, name: str) -> str:
     near = nearest(name, [path.name for path in launch_files(package)])
     known = ', '.join(path.name for path in launch_files(package) if _is_launch_file(path))
     todo = f'It has: {known}.' if known else 'A line of data_files in its setup.py installs them.'
+    todo = f'Did you mean {near!r}?' if near else todo
+    state = why_not_in(package, prefix_of(package))
     raise LabError(
         f"file '{name}' was not found in the share directory of package '{package}' which is at "
         f"'{share}'",
-        todo=f'Did you mean {near!r}?' if near else todo,
+        todo=f'{state}\n{todo}' if state else todo,
     )
 
 

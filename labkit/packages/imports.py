@@ -164,9 +164,12 @@ def _why_missing(name: str) -> _NotInWheels | None:
         what, where = _UNAVAILABLE[name]
         return _NotInWheels(f'{name} is not installed here. It is {what}.', todo=where)
     if _OF_TYPES.fullmatch(name):
+        from labkit.rosgraph.workspaces import why_missing
+
         return _NotInWheels(
             f'{name} is not installed here. By its name, it is a package of types.',
-            todo='If it is your own, build its workspace with lab.build(), as in lesson 12. Those '
+            todo=why_missing(name)
+            or 'If it is your own, build its workspace with lab.build(), as in lesson 12. Those '
             'of others come with an installed ROS 2, not with wheels: '
             f'apt install ros-jazzy-{name.replace("_", "-")}',
         )

@@ -20,12 +20,20 @@ from pathlib import Path
 
 from labkit.errors import LabError
 from labkit.progress_bar import ProgressBar
+from labkit.rosgraph.workspaces import (
+    any_failed_build,
+    build_result,
+    setup_fails,
+    source_of,
+)
 from labkit.setup.compiler import check_compiler, fix_exported_paths
 
 __all__ = ['build', 'colcon', 'load_libraries', 'source']
 
 # Most lines of a failed build to show.
 MOST_LINES = 12
+# Those of an error of syntax.
+SETUP_LINES = 4
 # Sourced package -> fingerprint of its files.
 _sourced: dict[str, str] = {}
 _libraries: dict[str, ctypes.CDLL] = {}
@@ -87,7 +95,8 @@ def source(workspace: str | os.PathLike[str]) -> list[str]:
     }
     if not found:
         raise LabError(
-            f'Nothing was built in {install.parent}.', todo='Build it: lab.build(workspace)'
+            f'Nothing was built in {install.parent}.',
+            todo=any_failed_build(install.parent) or 'Build it: lab.build(workspace)',
         )
     for name, prefix in found.items():
         now = _fingerprint(prefix)
@@ -200,8 +209,10 @@ def colcon(
         process.stdout.close()
         bar.close()
     if code:
+        failed = [name for name in packages if build_result(folder, name) not in ('', '0')]
+        reasons = [*_said_by_setup(folder, failed)] or [*_reasons(said)]
         raise LabError(
-            f'colcon build of {", ".join(packages)} has failed:\n' + '\n'.join(_reasons(said)),
+            f'colcon build of {", ".join(failed or packages)} has failed:\n' + '\n'.join(reasons),
             todo='Mend what it says, and build again.',
         )
 
@@ -219,6 +230,23 @@ def _variables() -> dict[str, str]:
     # An old-style `setup.py` or empy template warns, which does not concern learners.
     variables['PYTHONWARNINGS'] = 'ignore'
     return variables
+
+
+def _said_by_setup(folder: Path, packages: list[str]) -> Iterator[str]:
+    """Yield the last words of each setup.py that does not run: colcon leaves them out."""
+    for name in packages:
+        source = source_of(folder, name)
+        if source is not None and setup_fails(folder, name):
+            done = subprocess.run(
+                [sys.executable, 'setup.py', '--name'],
+                cwd=source,
+                env=_variables(),
+                stdin=subprocess.DEVNULL,
+                capture_output=True,
+                text=True,
+                errors='replace',
+            )
+            yield from [f'{source / "setup.py"}:', *done.stderr.splitlines()[-SETUP_LINES:]]
 
 
 def _reasons(said: list[str]) -> Iterator[str]:

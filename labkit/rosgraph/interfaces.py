@@ -17,6 +17,7 @@ from ament_index_python import get_resource, get_resources, has_resource
 
 from labkit.errors import LabError, nearest, quoted
 from labkit.rosgraph.refusals import Refusal, Refused
+from labkit.rosgraph.workspaces import why_missing
 
 __all__ = [
     'KINDS',
@@ -109,9 +110,8 @@ def check_package(package: str) -> None:
     """Raise a LabError unless a package is installed."""
     if not listed_in(package) and (not _is_word(package) or not has_resource('packages', package)):
         near = nearest(package, get_resources('packages'))
-        raise LabError(
-            f"Unknown package '{package}'", todo=f'Did you mean {near!r}?' if near else ''
-        )
+        todo = why_missing(package) or (f'Did you mean {near!r}?' if near else '')
+        raise LabError(f"Unknown package '{package}'", todo=todo)
 
 
 def check_exists(name: str, kind: str = '') -> str:
@@ -143,6 +143,8 @@ def check_exists(name: str, kind: str = '') -> str:
         todo = f'Such a name has three parts: std_msgs/{kind or "msg"}/String'
     else:
         todo = f'Did you mean {near!r}?' if near else 'ros2 interface list shows all of them.'
+    if not listed_in(parts[0]):
+        todo = why_missing(parts[0]) or todo
     raise Refused(
         f'The passed {what} is invalid: {quoted(name)} is not known.',
         todo=todo,

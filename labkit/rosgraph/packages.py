@@ -11,6 +11,7 @@ from ament_index_python import get_packages_with_prefixes
 
 from labkit.errors import LabError, nearest, quoted
 from labkit.rosgraph import interfaces
+from labkit.rosgraph.workspaces import why_missing, why_not_in
 
 __all__ = [
     'DEMO',
@@ -82,12 +83,8 @@ def prefix_of(package: str) -> Path:
             f"Package '{package}' not found",
             todo=f'It has no files here. labkit runs its {" and ".join(_OWN[package])}.',
         )
-    if Path('install', package, 'share', package).is_dir():
-        raise LabError(
-            f"Package '{package}' not found",
-            todo='It is built in this folder, but this terminal does not know it yet: '
-            'source install/setup.bash',
-        )
+    if todo := why_missing(package):
+        raise LabError(f"Package '{package}' not found", todo=todo)
     if package in _INSTEAD:
         raise LabError(f"Package '{package}' not found", todo=_INSTEAD[package])
     near = nearest(package, [*packages, *_OWN])
@@ -139,4 +136,6 @@ def executable(package: str, name: str) -> Executable:
         todo = f'{package} has: {", ".join(names)}.'
     else:
         todo = f'{package} has none.'
+    state = why_not_in(package, prefix_of(package)) if package in package_names() else ''
+    todo = f'{state}\n{todo}' if state else todo
     raise LabError(f'No executable found: {package} has no {quoted(name)}.', todo=todo)

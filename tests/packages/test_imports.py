@@ -22,6 +22,13 @@ def test_a_package_of_types_is_told_by_its_name(kernel):
     result = kernel.run('from my_interfaces.msg import Num')
     assert 'my_interfaces is not installed here. By its name, it is a package of' in result.error
     assert 'lab.build()' in result.error and 'ros-jazzy-my-interfaces' in result.error
+    (kernel.folder / 'ws/build/my_interfaces').mkdir(parents=True)
+    (kernel.folder / 'ws/build/.built_by').write_text('colcon\n')
+    (kernel.folder / 'ws/build/my_interfaces/colcon_build.rc').write_text('1\n')
+    result = kernel.run('from my_interfaces.msg import Num')
+    assert "my_interfaces has failed. Build it again, and read what it says: lab.build('ws')" in (
+        result.error.replace('\n', ' ')
+    )
     inside = kernel.run('import std_msgs.my_msgs')
     assert inside.error == "ModuleNotFoundError: No module named 'std_msgs.my_msgs'"
 

@@ -47,7 +47,12 @@ BESIDE_SRC = Mistake(
 OTHER_NAME = Mistake('package/other-name', 'The name is close, and it is another one.', _CREATE)
 NOT_BUILT = Mistake(
     'package/not-built',
-    'colcon build has not been run since, or it has failed.',
+    'colcon build has not been run since.',
+    'Run !colcon build in the workspace.',
+)
+FAILED_BUILD = Mistake(
+    'package/failed-build',
+    'Its last build has failed.',
     'Run !colcon build in the workspace, and read what it says under stderr.',
 )
 OLD_BUILD = Mistake(
@@ -262,6 +267,8 @@ class Built(Clause[Work]):
 
     def judge(self, work: Work) -> str:
         """Raise if it is not there, or not built."""
+        from labkit.rosgraph.workspaces import build_result
+
         if not (work.source / 'package.xml').is_file():
             _refuse_misplaced(work)
             # Classes that wait in cells are no traces here: the lesson itself has some.
@@ -269,10 +276,11 @@ class Built(Clause[Work]):
         wanted = f'the package {self.package}, built'
         share = work.folder / 'install' / self.package / 'share' / self.package
         if not (share / 'package.xml').is_file():
+            result = build_result(work.folder, self.package)
             raise Fail(
                 wanted,
-                f'no install/{self.package}',
-                NOT_BUILT,
+                f'no package in install/{self.package}',
+                NOT_BUILT if result in ('', '0') else FAILED_BUILD,
             )
         changed = max(_written(path) for path in work.source.rglob('*') if _is_source(path))
         if _ended(work.build / 'colcon_build.rc') < changed:

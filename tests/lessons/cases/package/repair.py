@@ -14,7 +14,7 @@ ANSWERS = [
     ),
     wrong(
         'as it was, built',
-        'colcon build has not been run since, or it has failed',
+        'Its last build has failed.',
         (
             'text = text.replace("talker:main\'", "talker:main\',")\n'
             "text = text.replace('listener:mian', 'listener:main')\n",
@@ -28,7 +28,7 @@ ANSWERS = [
     ),
     wrong(
         'the name alone',
-        'colcon build has not been run since, or it has failed',
+        'Its last build has failed.',
         ('text = text.replace("talker:main\'", "talker:main\',")\n', ''),
     ),
     wrong(
@@ -74,7 +74,7 @@ ANSWERS = [
     ),
     wrong(
         'changed after the build',
-        'colcon build has not been run since, or it has failed',
+        'Its last build has failed.',
         (
             'setup.write_text(text)\n!colcon build --packages-select broken_lab\n',
             '!colcon build --packages-select broken_lab\nsetup.write_text(text)\n',
