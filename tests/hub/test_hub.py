@@ -23,6 +23,8 @@ ROOT = Path(__file__).resolve().parents[2]
 LESSON = ROOT / 'notebooks' / '02_talker_listener.ipynb'
 CLASS = ('anna', 'ben', 'carl', 'dora', 'emil')
 TEACHER = 'maria'
+CELLS = [cell for cell in nbformat.read(LESSON, 4).cells if cell.cell_type == 'code']
+EXERCISE = load('talker_listener').four_a_second
 # Cells whose words do not depend on how quick the machine is.
 SAME_FOR_ALL = ('talker-run', 'listener-run', 'two-mistakes', 'not-spun', 'too-early')
 # What one learner may have in this test, so that the machine of the test has enough for all.
@@ -44,17 +46,29 @@ def hub(machine: Machine, tmp_path_factory: pytest.TempPathFactory) -> Hub:
 
 
 class Class:
-    """All learners, each with a server, a token and the lesson open."""
+    """All learners, each with a server, a token and the lesson, which all work through at once.
+
+    Attributes:
+        people: The learners.
+        notebooks: Name -> the notebook with the lesson.
+        shown: Name -> id of each cell -> what it has shown.
+    """
 
     def __init__(self, hub: Hub) -> None:
         self.people = [Person(hub, name) for name in CLASS]
         self.notebooks: dict[str, Notebook] = at_once(self.people, self._come_in)
+        self.shown: dict[str, dict[str, str]] = at_once(self.people, self._work)
 
     def _come_in(self, person: Person) -> Notebook:
         assert '/hub/login' not in person.log_in().address
         person.get_token()
         person.start_server()
         return person.open_notebook(LESSON.name)
+
+    def _work(self, person: Person) -> dict[str, str]:
+        solved = {EXERCISE.starter_id: EXERCISE.answer.code}
+        notebook = self.notebooks[person.name]
+        return {cell.id: notebook.run(solved.get(cell.id, cell.source)) for cell in CELLS}
 
     def all_run(self, code: str) -> dict[str, str]:
         """Let everybody run a cell; return what each sees."""
@@ -78,33 +92,32 @@ def evaluated(notebook: Notebook, expression: str) -> Any:
 
 
 def test_five_work_through_a_lesson_at_once(learners: Class) -> None:
-    cells = [cell for cell in nbformat.read(LESSON, 4).cells if cell.cell_type == 'code']
-    exercise = load('talker_listener').four_a_second
-    solved = {exercise.starter_id: exercise.answer.code}
-
-    def work(person: Person) -> dict[str, str]:
-        notebook = learners.notebooks[person.name]
-        return {cell.id: notebook.run(solved.get(cell.id, cell.source)) for cell in cells}
-
-    for name, shown in at_once(learners.people, work).items():
-        for cell in cells:
+    for name, shown in learners.shown.items():
+        for cell in CELLS:
             assert 'raised ' not in shown[cell.id], (name, cell.id, shown[cell.id])
             # What the lesson's stored outputs say in words, everybody reads.
             words = [output.text for output in cell.outputs if output.output_type == 'stream']
             lines = ''.join(words).splitlines() if cell.id in SAME_FOR_ALL else []
             assert set(lines) <= set(shown[cell.id].splitlines()), (name, cell.id)
-        assert 'PASS: four_a_second' in shown[exercise.check_id], (name, shown)
+        assert 'PASS: four_a_second' in shown[EXERCISE.check_id], (name, shown)
 
 
-def test_nobody_sees_the_nodes_of_others(learners: Class) -> None:
+@pytest.fixture
+def own_nodes(learners: Class) -> None:
+    """Let each notebook have its own domain, and in it one node, `mine`, with one topic."""
     at_once(
         learners.people,
         lambda person: learners.notebooks[person.name].run(
-            'lab.stop(); from rclpy.node import Node; '
+            'import os; lab.stop(); os.environ.pop("ROS_DOMAIN_ID", None); '
+            'from rclpy.node import Node; '
             f'mine = lab.spin(Node("of_{person.name}")); '
             f'mine.create_publisher(String, "said_by_{person.name}", 10)'
         ),
     )
+
+
+@pytest.mark.usefixtures('own_nodes')
+def test_nobody_sees_the_nodes_of_others(learners: Class) -> None:
     nodes, topics = learners.all_run('%ros2 node list'), learners.all_run('%ros2 topic list')
     for name in CLASS:
         assert nodes[name].split() == [f'/of_{name}']
@@ -117,6 +130,7 @@ def pages(learners: Class) -> list[Notebook]:
     return list(learners.notebooks.values())
 
 
+@pytest.mark.usefixtures('own_nodes')
 def test_nobody_hears_others_by_the_number_of_their_domain(learners: Class) -> None:
     anna, ben = learners.notebooks['anna'], learners.notebooks['ben']
     domain = evaluated(ben, 'mine.context.get_domain_id()')
@@ -126,7 +140,6 @@ def test_nobody_hears_others_by_the_number_of_their_domain(learners: Class) -> N
     assert '/of_ben' in ben.run('!ros2 node list --no-daemon').split()
     assert anna.run('%ros2 node list').split() == ['/of_anna']
     assert ben.run('%ros2 node list').split() == ['/of_ben']
-    anna.run('lab.stop(); lab.start(); mine = lab.spin(Node("of_anna"))')
 
 
 # --- What is whose -------------------------------------------------------------------------------
@@ -267,6 +280,7 @@ def test_who_loops_fills_memory_or_forks_does_not_stop_others(
 # --- The hub goes away ---------------------------------------------------------------------------
 
 
+@pytest.mark.usefixtures('own_nodes')
 @pytest.mark.parametrize('signal', ['TERM', 'KILL'])
 def test_a_restart_of_the_hub_loses_nothing(learners: Class, hub: Hub, signal: str) -> None:
     people = [person for person in learners.people if person.name != 'emil']
