@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from labkit.errors import LabError
+from labkit.sim.command_timeout import COMMAND_TIMEOUT, as_limit
 from labkit.sim.kinematics import (
     BURGER,
     STANDING,
@@ -21,11 +22,8 @@ from labkit.sim.kinematics import (
 )
 from labkit.sim.world import Contact, Post, World, playground
 
-__all__ = ['COMMAND_TIMEOUT', 'Simulator']
+__all__ = ['Simulator']
 
-# Time for which a command is valid, s. Source: ROBOTIS-GIT/turtlebot3_simulations,
-# turtlebot3_fake_node/src/turtlebot3_fake_node.cpp, cmd_vel_timeout_.
-COMMAND_TIMEOUT = 1.0
 # A command beyond this is an error, m/s or rad/s. Degrees instead of radians are below it, and
 # clipped to the limits as on the real robot.
 MAX_SENSIBLE = 1000.0
@@ -44,7 +42,8 @@ class Simulator:
         world: The surroundings; `playground()` if None. Robots in the same world see each other.
         start: Initial pose.
         robot: Its dimensions.
-        command_timeout: Time without a command after which it stops, s.
+        command_timeout: Time without a command after which it stops, s. With None it keeps its
+            last velocity.
         drift: Odometry error: difference of the wheels' radii relative to their mean.
         noise: Standard deviation of a measured range, m.
         seed: Seed of the noise.
@@ -57,6 +56,7 @@ class Simulator:
         twist: True velocity.
         acceleration: Its rate of change. Stopping at a wall does not count.
         target: The last command, clipped to the limits.
+        timed_out: Whether it stands, or brakes, because its command timeout has passed.
         odometry: Pose estimated from the wheels.
         wheels: Angles of the left and the right wheel by their encoders, rad.
         collisions: Contacts it has driven into since it was placed, with their times.
@@ -71,20 +71,19 @@ class Simulator:
         *,
         start: Pose | tuple[float, float, float] = Pose(),  # noqa: B008 - it can't be changed
         robot: Robot = BURGER,
-        command_timeout: float = COMMAND_TIMEOUT,
+        command_timeout: float | None = COMMAND_TIMEOUT,
         drift: float = 0.0,
         noise: float = 0.0,
         seed: int = 0,
         scan_nothing: float = math.inf,
         name: str = 'turtlebot',
     ) -> None:
-        _check('command_timeout', command_timeout, command_timeout > 0, 'more than 0 s')
         _check('drift', drift, abs(drift) < 1, 'a share such as 0.01')
         _check('noise', noise, 0 <= noise < math.inf, 'a distance in metres, 0 or more')
         _check('scan_nothing', scan_nothing, scan_nothing in (math.inf, 0.0), 'inf or 0.0')
         self.world = world if world is not None else playground()
         self.robot = robot
-        self.command_timeout = command_timeout
+        self.command_timeout = as_limit(command_timeout)
         self.drift = drift
         self.noise = noise
         self.scan_nothing = scan_nothing
@@ -127,6 +126,7 @@ class Simulator:
         self.twist = self.target = self.acceleration = STANDING
         self.wheels = (0.0, 0.0)
         self.collisions: list[Contact] = []
+        self.timed_out = False
         self._command_left = math.inf
         # The command with which it pushes against a fixed thing, in vain.
         self._blocked_command: Twist2 | None = None
@@ -159,6 +159,7 @@ class Simulator:
         sensible = abs(v) <= MAX_SENSIBLE and abs(w) <= MAX_SENSIBLE
         self.target = self.robot.limits.clip(Twist2(v, w)) if sensible else STANDING
         self._command_left = self.command_timeout
+        self.timed_out = False
         return sensible
 
     def step(self, dt: float) -> None:
@@ -264,6 +265,8 @@ class Simulator:
         self.time += time
         self._command_left -= time
         if self._command_left <= 0:
+            # One that was told to stop, or stands at a wall, has not been stopped by this.
+            self.timed_out = STANDING not in (self.target, self.twist)
             self.target = STANDING
             self._command_left = math.inf
 

@@ -23,16 +23,18 @@ from rclpy.clock import ROSClock
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.qos import qos_profile_sensor_data
+from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from rclpy.timer import Timer
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import BatteryState, CameraInfo, Image, Imu, JointState, LaserScan
+from std_msgs.msg import Float64
 
 from labkit.background.runtime import runtime
 from labkit.errors import LabError
 from labkit.rosgraph.endpoints import publishers
 from labkit.rosgraph.interfaces import type_name
 from labkit.sim.camera import PI_CAMERA
+from labkit.sim.command_timeout import COMMAND_TIMEOUT, TIMED_OUT_TOPIC, timed_out_words
 from labkit.sim.kinematics import Pose, Twist2
 from labkit.sim.messages import (
     battery_message,
@@ -45,7 +47,7 @@ from labkit.sim.messages import (
     time_message,
 )
 from labkit.sim.pace import Beat, Stopwatch
-from labkit.sim.simulator import COMMAND_TIMEOUT, Simulator
+from labkit.sim.simulator import Simulator
 from labkit.sim.world import Contact, Wall, World
 
 __all__ = ['ODOM_RATE', 'Turtlebot']
@@ -94,7 +96,10 @@ class Turtlebot(Node):
         yaw: Start heading, rad.
         speed: Simulated seconds per second.
         lockstep: Simulated seconds per command; None if time passes by itself.
-        command_timeout: Time without a command after which it stops, s.
+        command_timeout: Time without a command after which it stops, s. With None it keeps its
+            last velocity until the next command, or a wall, as a real TurtleBot3 does on ROS 2
+            (read in turtlebot3_node, branch jazzy, and the firmware, ROBOTIS-GIT/OpenCR, branch
+            master). In lock-step there is none.
         drift: Odometry error: difference of the wheels' radii relative to their mean.
         noise: Standard deviation of a measured range, m. The real sensor has about 0.01.
         seed: Seed of the noise.
@@ -125,7 +130,7 @@ class Turtlebot(Node):
         yaw: float = 0.0,
         speed: float = 1.0,
         lockstep: float | None = None,
-        command_timeout: float = COMMAND_TIMEOUT,
+        command_timeout: float | None = COMMAND_TIMEOUT,
         drift: float = 0.0,
         noise: float = 0.0,
         seed: int = 0,
@@ -139,7 +144,7 @@ class Turtlebot(Node):
             world,
             start=Pose(x, y, yaw),
             # In lock-step a command is valid for its step, however long that is.
-            command_timeout=command_timeout if lockstep is None else math.inf,
+            command_timeout=command_timeout if lockstep is None else None,
             drift=drift,
             noise=noise,
             seed=seed,
@@ -198,6 +203,10 @@ class Turtlebot(Node):
         self._battery = self.create_publisher(BatteryState, 'battery_state', QUEUE_DEPTH)
         self._image = self.create_publisher(Image, 'camera/image_raw', PICTURES)
         self._camera_info = self.create_publisher(CameraInfo, 'camera/camera_info', PICTURES)
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)  # type: ignore[no-untyped-call]
+        self._timed_out = self.create_publisher(Float64, TIMED_OUT_TOPIC, latched)
+        self._said_timed_out: bool | None = None
+        self._say_timed_out()
         self._commands = self.create_subscription(
             command_type, 'cmd_vel', self._on_command, QUEUE_DEPTH
         )
@@ -230,6 +239,21 @@ class Turtlebot(Node):
     def collisions(self) -> list[Contact]:
         """Contacts the robot has driven into since it was placed."""
         return list(self.simulator.collisions)
+
+    @property
+    def timed_out(self) -> bool:
+        """Whether it stands, or brakes, because no command came for its command timeout."""
+        return self.simulator.timed_out
+
+    def _labkit_state(self) -> tuple[str, str]:
+        """Return how long it obeys a command, and why it stands: see `state_of`."""
+        limit = self.simulator.command_timeout
+        always = f'stops {limit:g} s after the last command'
+        if self._lockstep is not None:
+            always = ''
+        elif limit == math.inf:
+            always = 'keeps its last velocity'
+        return always, f'stands: {timed_out_words(limit)}' * self.timed_out
 
     def place(self, x: float = 0.0, y: float = 0.0, yaw: float = 0.0) -> None:
         """Move the robot to a pose, at rest, and `restart` its timers. Its odometry agrees.
@@ -382,6 +406,7 @@ class Turtlebot(Node):
     def _publish_all(self) -> None:
         if self._clock_publisher is not None:
             self._clock_publisher.publish(Clock(clock=self._stamp()))
+        self._say_timed_out()
         self._publish_odometry()
         stamp = self._stamp()
         # These rarely have subscribers; making them would be a waste.
@@ -396,6 +421,12 @@ class Turtlebot(Node):
             self._warn_of_other_commands()
         if self._camera_beat.is_due(self.simulator.time):
             self._publish_picture()
+
+    def _say_timed_out(self) -> None:
+        if self.timed_out != self._said_timed_out:
+            self._said_timed_out = self.timed_out
+            limit = self.simulator.command_timeout if self.timed_out else 0.0
+            self._timed_out.publish(Float64(data=limit))
 
     def _publish_odometry(self) -> None:
         self._odom.publish(odometry_message(self.simulator, self._stamp(), self._prefix))

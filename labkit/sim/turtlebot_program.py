@@ -1,7 +1,9 @@
 """The robot as a program of its own: `ros2 run labkit turtlebot`, or a node of a launch file.
 
 Robots that run so stand in one world: each says where it is on a hidden topic, and is a post in
-the worlds of the others. The parameters `x`, `y` and `yaw` are its start.
+the worlds of the others. The parameters `x`, `y` and `yaw` are its start, m and rad;
+`command_timeout` is the time without a command after which it stops, s, or 0 if it keeps its last
+velocity.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ from rclpy.event_handler import SubscriptionEventCallbacks
 
 from labkit.errors import LabError
 from labkit.programs.program import spin_until_interrupted
+from labkit.sim.command_timeout import COMMAND_TIMEOUT, as_limit
 from labkit.sim.turtlebot import QUEUE_DEPTH, Turtlebot
 from labkit.sim.world import Post
 
@@ -34,6 +37,10 @@ class TurtlebotProgram(Turtlebot):
         self._name = self.get_fully_qualified_name()
         self.simulator.close()
         self.simulator.name = self._name
+        # A parameter can't be None.
+        self.simulator.command_timeout = as_limit(
+            self._number('command_timeout', COMMAND_TIMEOUT) or None
+        )
         self.place(self._number('x'), self._number('y'), self._number('yaw'))
         self._place = self.create_publisher(PointStamped, PLACES, QUEUE_DEPTH)
         self.create_subscription(
@@ -44,10 +51,10 @@ class TurtlebotProgram(Turtlebot):
             event_callbacks=SubscriptionEventCallbacks(matched=self._on_matched),
         )
 
-    def _number(self, name: str) -> float:
+    def _number(self, name: str, default: float = 0.0) -> float:
         # Of any type, since a launch file may say 1 as well as 1.0.
         anything = ParameterDescriptor(dynamic_typing=True)
-        value = self.declare_parameter(name, 0.0, anything).value
+        value = self.declare_parameter(name, default, anything).value
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise LabError(f'The parameter {name} is a number, but it is {value!r}.')
         return float(value)

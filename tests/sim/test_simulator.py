@@ -140,6 +140,37 @@ def test_it_stops_when_commands_stop_coming() -> None:
     assert robot.twist == Twist2()
     assert robot.pose.x == pytest.approx(0.2 * 0.5)
     assert robot.time == pytest.approx(3600 * 24.0)
+    assert robot.timed_out
+    robot.command(0, 0)
+    assert not robot.timed_out
+
+
+def test_without_a_timeout_it_keeps_its_last_velocity() -> None:
+    robot = Simulator(open_field(), command_timeout=None)
+    robot.command(0.2, 0)
+    robot.step(3600.0)
+    assert robot.twist == Twist2(0.2, 0)
+    robot.command(0, 0)
+    robot.step(3600.0)
+    assert robot.twist == Twist2()
+    assert not robot.timed_out
+
+
+def test_only_what_its_timeout_has_stopped_is_called_so() -> None:
+    told = Simulator(open_field())
+    run(told, [(0.2, 0.0, 1.0), (0.0, 0.0, 1.0)], 1)
+    told.step(10)
+    at_a_wall = Simulator(World([Wall(0.2, -1, 0.2, 1)]))
+    at_a_wall.command(0.2, 0)
+    at_a_wall.step(10)
+    new = Simulator()
+    new.step(10)
+    assert [robot.timed_out for robot in (told, at_a_wall, new)] == [False] * 3
+    new.command(0.1, 0)
+    new.step(10)
+    assert new.timed_out
+    new.place(Pose())
+    assert not new.timed_out
 
 
 def test_commands_that_keep_coming_keep_it_moving() -> None:

@@ -12,6 +12,7 @@ from geometry_msgs.msg import Twist, TwistStamped
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import BatteryState, Imu, LaserScan
+from std_msgs.msg import Float64
 
 from labkit.errors import LabError
 from labkit.sim.kinematics import BURGER, Pose, yaw_from_quaternion
@@ -63,6 +64,20 @@ def test_messages_hold_what_the_real_robot_would_say(stage: Stage) -> None:
     assert list(scan.ranges) == pytest.approx(robot.simulator.scan())
     stamps = [message.header.stamp.sec for message in (odometry, joints, scan)]
     assert all(stamp > 1e9 for stamp in stamps), 'real time, as the system clock has it'
+
+
+def test_that_its_timeout_has_stopped_it_is_said_to_those_who_come_later(stage: Stage) -> None:
+    robot = stage.robot(namespace='robot1', command_timeout=0.25, speed=10)
+    stage.driver('robot1').commands.publish(twist(0.2))
+    stage.until(lambda: robot.timed_out and robot.twist.v == 0)
+    heard: list[Float64] = []
+    listener = stage.add(Node('listener'))
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    listener.create_subscription(Float64, '/robot1/_command_timed_out', heard.append, latched)
+    stage.until(lambda: heard)
+    robot.place()
+    stage.until(lambda: len(heard) == 2)
+    assert [message.data for message in heard] == [0.25, 0.0]
 
 
 def test_the_imu_feels_the_drive(stage: Stage) -> None:

@@ -1,11 +1,15 @@
 """Robots as programs of their own: `ros2 run labkit turtlebot`, and nodes of a launch file."""
 
 from collections.abc import Iterator
+from math import inf
 from pathlib import Path
 
 import pytest
+import rclpy
 
 from labkit.background.domains import claim_domain
+from labkit.errors import LabError
+from labkit.sim.turtlebot_program import TurtlebotProgram
 
 TWO = """\
 <launch>
@@ -81,6 +85,28 @@ def test_one_robot_by_ros2_run(kernel):
     assert 'as node /robot1/turtlebot. lab.processes() lists' in said and 'installed' not in said
     text = kernel.run('print(lab.arena())').text
     assert text.startswith('robot1 at x = 0.00 m, y = -1.00 m')
+
+
+@pytest.mark.parametrize(
+    ('said', 'limit'), [((), 1.0), (('command_timeout:=2',), 2.0), (('command_timeout:=0',), inf)]
+)
+def test_its_command_timeout_is_a_parameter(said, limit):
+    rclpy.init(args=['--ros-args', *(word for one in said for word in ('-p', one))])
+    try:
+        robot = TurtlebotProgram()
+        assert robot.simulator.command_timeout == limit
+        robot.destroy_node()
+    finally:
+        rclpy.shutdown()
+
+
+def test_a_command_timeout_without_sense_is_told():
+    rclpy.init(args=['--ros-args', '-p', 'command_timeout:=-1'])
+    try:
+        with pytest.raises(LabError, match=r'command_timeout must be .* but it is -1'):
+            TurtlebotProgram()
+    finally:
+        rclpy.shutdown()
 
 
 @pytest.mark.parametrize(
