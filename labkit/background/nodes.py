@@ -22,6 +22,7 @@ from rclpy.validate_full_topic_name import validate_full_topic_name
 from rclpy.validate_namespace import validate_namespace
 from rclpy.validate_node_name import validate_node_name
 
+from labkit import settings
 from labkit.background import compat
 from labkit.background.console import Cell
 from labkit.errors import LabError, quoted
@@ -40,6 +41,7 @@ __all__ = [
     'helper_node',
     'made',
     'node_exists',
+    'state_of',
 ]
 
 
@@ -101,6 +103,17 @@ def full_name(node: Node) -> str:
         return node.get_fully_qualified_name()
     except (InvalidHandle, AttributeError):
         return ''
+
+
+def state_of(node: Node) -> tuple[str, str]:
+    """Return what a node of labkit's own does, always and now, as predicates; '' for nothing.
+
+    It is no fault, so it is told only where somebody looks at the node. Where outputs are compared
+    nothing is said of now: it depends on the time.
+    """
+    said: Callable[[], tuple[str, str]] | None = getattr(node, '_labkit_state', None)
+    always, now = said() if said is not None else ('', '')
+    return always, '' if settings.audience().same_each_time else now
 
 
 def callback_name(what: Any) -> str:

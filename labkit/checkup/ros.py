@@ -204,7 +204,17 @@ def nodes() -> str:
     entries = [entry for entry in runtime.nodes() if not is_hidden(entry.name)]
     found = [*_unspun(runtime), *_left_behind(entries), *_doubles(runtime, entries)]
     _raise_for_faults('parameters', 'remap', 'life', besides=found)
-    return first_few([entry.name for entry in entries]) if entries else 'none'
+    if not entries:
+        return 'none'
+    return '. '.join([first_few([entry.name for entry in entries]), *_states(entries)])
+
+
+def _states(entries: list[NodeEntry]) -> list[str]:
+    from labkit.background.nodes import state_of
+
+    # A state is no fault, yet it may be why somebody has asked.
+    states = ((entry.name, state_of(entry.node)[1]) for entry in entries)
+    return [f'{name} {now}' for name, now in states if now]
 
 
 def _unspun(runtime: Runtime) -> list[tuple[str, str]]:

@@ -23,6 +23,7 @@ from labkit.views.arena_robot import MappedRobot
 from labkit.views.feed import Feed, subscribed
 from labkit.views.live import helper, live_views
 from labkit.views.live_page import LivePage, Update
+from labkit.views.timed_out import TimedOut
 
 if TYPE_CHECKING:
     from nav_msgs.msg import Odometry
@@ -175,9 +176,11 @@ class Arena(LivePage):
         # Best effort matches every publisher.
         qos = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)  # type: ignore[no-untyped-call]
         odom, scan = (_full_name(topic, name) for topic in self._topics)
+        robot.timed_out = TimedOut(odom, helper())
         robot.feeds = [
             Feed(odom, helper(), on_odometry, msg_type=Odometry, qos_profile=qos),
             Feed(scan, helper(), on_scan, msg_type=LaserScan, qos_profile=qos),
+            robot.timed_out,
         ]
         # In this order they have their colours.
         self._robots = dict(sorted({**self._robots, name: robot}.items()))

@@ -59,6 +59,7 @@ class Scene:
         nearest: Distance and direction of the nearest obstacle; None if there is none.
         goals: Points to mark.
         bump: Point where an obstacle has stopped the robot; None if none has.
+        why: Why it stands, if it says so.
         frame: Name of the frame; '' for the frame of the odometry.
         name: Name of the robot, '' for the only one.
     """
@@ -71,6 +72,7 @@ class Scene:
     nearest: tuple[float, float] | None = None
     goals: Sequence[Point] = ()
     bump: Point | None = None
+    why: str = ''
     frame: str = ''
     name: str = ''
 
@@ -83,7 +85,7 @@ class Scene:
         text = f'{self.name or "Robot"} at x = {x} m, y = {y} m, heading {degrees}°. '
         v, w = self.twist
         if abs(v) < STILL and abs(w) < STILL:
-            text += 'It stands.'
+            text += f'It stands: {self.why}.' if self.why else 'It stands.'
             if self.bump is not None:
                 ahead, left = self.bump[0] - self.pose.x, self.bump[1] - self.pose.y
                 angle = math.atan2(left, ahead) - self.pose.yaw

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from sensor_msgs.msg import LaserScan
 
     from labkit.views.feed import Feed
+    from labkit.views.timed_out import TimedOut
 
 __all__ = ['MappedRobot']
 
@@ -47,7 +48,8 @@ class MappedRobot:
     Attributes:
         scene: The robot and its surroundings.
         trail: Where it was, oldest first.
-        feeds: Its odometry and its scan.
+        feeds: Its odometry, its scan, and whether its command timeout has stopped it.
+        timed_out: The last of them.
         others: The other robots on the map.
         frame: The frame of its odometry, '' before the first message.
     """
@@ -58,6 +60,7 @@ class MappedRobot:
         self.scene = Scene(name=name, goals=[(x, y) for x, y, *_ in goals])
         self.trail: deque[tuple[float, float]] = deque(maxlen=TRAIL_LENGTH)
         self.feeds: list[Feed] = []
+        self.timed_out: TimedOut | None = None
         self.others: list[MappedRobot] = []
         # Topics with a message since the subscription began.
         self._heard: set[str] = set()
@@ -83,7 +86,10 @@ class MappedRobot:
     @property
     def is_heard(self) -> bool:
         """Whether each of its topics has told something, or has no publisher."""
-        return all(feed.topic in self._heard or not feed.publishers for feed in self.feeds)
+        told = self.timed_out is None or self.timed_out.is_heard
+        return told and all(
+            feed.topic in self._heard or not feed.publishers for feed in self.feeds[:2]
+        )
 
     def forget_heard(self) -> None:
         """Wait anew for a message of each topic."""
@@ -163,6 +169,7 @@ class MappedRobot:
             self.scene.reach = float(message.range_max)
             self.scene.nearest = nearest_of(message)
         self.scene.trail = list(self.trail)
+        self.scene.why = self.timed_out.words if self.timed_out is not None else ''
         return self.scene
 
     def _places_of_others(self) -> list[tuple[float, float]]:

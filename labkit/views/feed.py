@@ -50,6 +50,7 @@ class Feed:
         msg_type: Class of the messages; None for the publishers' type.
         qos_profile: QoS profile of the subscription; None for one that matches all publishers.
         raw: Whether `callback` gets serialized messages.
+        optional: Whether it is nothing to subscribe to, or to speak of, if nobody publishes.
 
     Attributes:
         topic: Full name of the topic.
@@ -71,13 +72,14 @@ class Feed:
         msg_type: type | None = None,
         qos_profile: QoSProfile | int | None = None,
         raw: bool = False,
+        optional: bool = False,
     ) -> None:
         self.topic = full_topic_name(topic, node)
         self.msg_type = self._wanted = msg_type
         self.publishers: tuple[Endpoint, ...] = ()
         self.count = 0
         self.heard_at = 0.0
-        self._profile_wanted, self._raw = qos_profile, raw
+        self._profile_wanted, self._raw, self._optional = qos_profile, raw, optional
         self._callback = callback
         self._node: Node | None = None
         self._listener: Listener | None = None
@@ -118,7 +120,9 @@ class Feed:
 
     @property
     def is_connected(self) -> bool:
-        """Whether there is a subscription and a publisher."""
+        """Whether there is a subscription and a publisher, or need be none."""
+        if self._optional and not self.publishers:
+            return True
         return self._listener is not None and bool(self.publishers)
 
     def refresh(self) -> None:
@@ -159,6 +163,8 @@ class Feed:
     def _type_to_use(self) -> type | None:
         """Return the class to subscribe to, None if it is too early."""
         types = sorted({end.msg_type for end in self.publishers})
+        if self._optional and not types:
+            return None
         if self._wanted is not None:
             # Within one process, a publisher of another type would make subscribing fail.
             return self._wanted if not types or type_name(self._wanted) in types else None
@@ -200,7 +206,7 @@ class Feed:
     def silence(self) -> str:
         """Return why nothing arrives and what to do, '' if all is well."""
         since = time.monotonic() - max(self.heard_at, self._changed_at)
-        if self._node is None or not node_exists(self._node):
+        if self._optional or self._node is None or not node_exists(self._node):
             return ''
         if self._problem:
             return self._problem

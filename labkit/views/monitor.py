@@ -19,6 +19,7 @@ from labkit.views.feed import Feed, checked_type, subscribed
 from labkit.views.live import helper
 from labkit.views.live_page import LivePage, Update
 from labkit.views.message_tree import as_text, rows
+from labkit.views.timed_out import TimedOut
 
 if TYPE_CHECKING:
     from enum import Enum
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
     from rclpy.qos import QoSProfile
 
 __all__ = ['Monitor', 'monitor']
+
+# Topics at which one looks when a robot stands.
+_OF_ROBOTS = ('cmd_vel', 'odom')
 
 
 class Monitor(LivePage):
@@ -56,7 +60,8 @@ class Monitor(LivePage):
         self.topic = self._feed.topic
         self._last_message: tuple[type | None, bytes] | None = None
         self._wanted = count
-        super().__init__([self._feed])
+        self._timed_out = _timed_out_beside(self.topic)
+        super().__init__([self._feed, *self._timed_out])
         self._text = '' if self._watched else self._wait_for_text()
 
     @property
@@ -74,12 +79,13 @@ class Monitor(LivePage):
         """Return the last message as text, and the count."""
         feed = self._feed
         if self._last_message is None:
-            return f'{self.topic}: no message has come.'
+            return '\n'.join([f'{self.topic}: no message has come.', *_standing(self._timed_out)])
         return '\n'.join(
             [
                 f'{self.topic} [{type_name(feed.msg_type)}]',
                 f'message {feed.count}:',
                 as_text(rows(_message(*self._last_message))),
+                *_standing(self._timed_out),
             ]
         )
 
@@ -100,9 +106,16 @@ class Monitor(LivePage):
         """Wait for messages; return the last one as text that is the same each time."""
         messages: list[bytes] = []
         feed = self._new_feed(self.topic, messages.append)
-        with subscribed([feed], lambda: len(messages) >= self._wanted):
+        timed_out = _timed_out_beside(self.topic)
+
+        def enough() -> bool:
+            return len(messages) >= self._wanted and all(one.is_heard for one in timed_out)
+
+        with subscribed([feed, *timed_out], enough):
+            standing = _standing(timed_out)
             if not messages:
-                return f'{self.topic}: no message came. {feed.silence()}'.strip()
+                why = ' '.join([feed.silence(), *standing])
+                return f'{self.topic}: no message came. {why}'.strip()
             ends = ', '.join(
                 f'{name} ({", ".join(qos)})' for name, *qos in _publisher_rows(feed.publishers)
             )
@@ -111,7 +124,7 @@ class Monitor(LivePage):
             if self._wanted > 1:
                 lines += [f'message {min(len(messages), self._wanted)} of {self._wanted}:']
             message = _message(feed.msg_type, messages[: self._wanted][-1])
-            return '\n'.join([*lines, as_text(rows(message, no_time=True))])
+            return '\n'.join([*lines, as_text(rows(message, no_time=True)), *standing])
 
     def _update(self, everything: bool) -> Update:
         now, feed = time.monotonic(), self._feed
@@ -120,7 +133,9 @@ class Monitor(LivePage):
             'topic': self.topic,
             'type': type_name(feed.msg_type) if feed.msg_type else '',
             'rate': '' if rate is None else f'{rate:.3g}' if rate < 99.5 else f'{rate:.0f}',
-            'note': ' '.join(filter(None, [feed.silence(), *_faults(self.topic)])),
+            'note': ' '.join(
+                filter(None, [feed.silence(), *_standing(self._timed_out), *_faults(self.topic)])
+            ),
             'publishers': _publisher_rows(feed.publishers),
             'count': feed.count,
         }
@@ -160,6 +175,15 @@ def monitor(
             positive whole number.
     """
     return Monitor(topic, msg_type=msg_type, qos_profile=qos_profile, count=count)
+
+
+def _timed_out_beside(topic: str) -> list[TimedOut]:
+    is_of_robot = topic.rpartition('/')[2] in _OF_ROBOTS
+    return [TimedOut(topic, helper())] if is_of_robot else []
+
+
+def _standing(feeds: list[TimedOut]) -> list[str]:
+    return [f'The robot stands: {feed.words}.' for feed in feeds if feed.words]
 
 
 def _faults(topic: str) -> list[str]:

@@ -32,7 +32,7 @@ def register() -> None:
 
 def node_card(node: Node) -> Card:
     """Return a node as a card: `ros2 node info` in short."""
-    from labkit.background.nodes import full_name
+    from labkit.background.nodes import full_name, state_of
     from labkit.background.runtime import runtime
     from labkit.rosgraph.listings import ends_of_node
     from labkit.silent.watch import about
@@ -53,6 +53,8 @@ def node_card(node: Node) -> Card:
     told = [fault for fault in about(name) if fault.kind.id != 'life.unspun']
     rows += [('⚠', f'{fault}\n→ {fault.advice}') for fault in told]
     text = 'It runs in the background.' if spun else 'It is not spun: `lab.spin(node)` runs it.'
+    always, now = state_of(node)
+    text += f' It {now or always}.' if now or always else ''
     return Card('info', 'NODE', name, text=text, rows=rows)
 
 

@@ -155,6 +155,19 @@ def run_as_cell(kernel, cell_id: str, code: str) -> None:
     assert not kernel.finish(message['header']['msg_id']).error
 
 
+def test_a_robot_that_its_timeout_has_stopped_is_no_fault_and_told(kernel) -> None:
+    kernel.run(SETUP)
+    kernel.run('robot = lab.spin(lab.Turtlebot(command_timeout=0.2))')
+    assert 'stands' not in kernel.run('print(lab.doctor())').text
+    kernel.run(
+        '%ros2 topic pub --once /cmd_vel geometry_msgs/msg/Twist "{linear: {x: 0.2}}"\n'
+        'lab.wait_until(lambda: robot.timed_out)'
+    )
+    lines = ' '.join(kernel.run('print(lab.doctor())').text.split())
+    assert '/turtlebot. /turtlebot stands: no command for 0.2 s; its time limit' in lines
+    assert look(kernel).exit_code == 0
+
+
 def test_nodes_that_nobody_spins(kernel) -> None:
     kernel.run(SETUP)
     kernel.run('lab.start()\nfor _ in range(2):\n    node = Node("idle")\nhidden = Node("_mine")')

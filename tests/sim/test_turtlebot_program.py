@@ -85,6 +85,12 @@ def test_one_robot_by_ros2_run(kernel):
     assert 'as node /robot1/turtlebot. lab.processes() lists' in said and 'installed' not in said
     text = kernel.run('print(lab.arena())').text
     assert text.startswith('robot1 at x = 0.00 m, y = -1.00 m')
+    # Why it stands is known from another process, too.
+    kernel.run(
+        'view = lab.arena()\ndisplay(view)\n'
+        '%ros2 topic pub --once /robot1/cmd_vel geometry_msgs/msg/Twist "{linear: {x: 0.1}}"'
+    )
+    wait_for_text(kernel, 'It stands: no command for 1 s; its time limit for commands has stopped')
 
 
 @pytest.mark.parametrize(
