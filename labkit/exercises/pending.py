@@ -12,7 +12,7 @@ import threading
 from collections.abc import Callable, Generator
 from typing import Any, ClassVar
 
-from labkit.errors import cell_name
+from labkit.errors import LabError, cell_name
 from labkit.exercises.verdict import Verdict
 from labkit.views.card import Card
 
@@ -42,6 +42,9 @@ def _is_of_cell(task: asyncio.Task[Any]) -> bool:
 
 class Pending:
     """A verdict that is about to come. In a notebook it shows itself as soon as it is there.
+
+    Until then it is neither true nor false, and says so. Waiting would not help: the task that is
+    judged would stand still meanwhile.
 
     Args:
         name: Name of the exercise.
@@ -81,7 +84,16 @@ class Pending:
         return Card('quiet', 'CHECKING', self._name, text=WORDS)
 
     def __repr__(self) -> str:
-        return repr(self._verdict or self._card())
+        return repr(self._card() if self._verdict is None else self._verdict)
+
+    def __bool__(self) -> bool:
+        if self._verdict is None:
+            raise LabError(
+                f'The check of {self._name} has no verdict yet: a task of this notebook stands '
+                'still while a cell runs.',
+                todo=f'Wait for it: verdict = await lesson.{self._name}.check()',
+            )
+        return self._verdict.passed
 
     def _ipython_display_(self) -> None:
         from IPython.display import display

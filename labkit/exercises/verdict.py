@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import enum
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 
 from labkit.exercises.mistakes import Mistake
@@ -44,6 +44,8 @@ _TONES = {
 @dataclass(frozen=True, repr=False)
 class Verdict:
     """The answer of a check, for people: text in a terminal, a card in a notebook.
+
+    It is true if the check has passed, so that `assert lesson.ones.check()` is a test.
 
     Attributes:
         outcome: PASS, FAIL, NOT ATTEMPTED or ERROR.
@@ -81,6 +83,14 @@ class Verdict:
     def passed(self) -> bool:
         """Tell whether the outcome is PASS."""
         return self.outcome is Outcome.PASS
+
+    def __bool__(self) -> bool:
+        return self.passed
+
+    def __await__(self) -> Generator[None, None, Verdict]:
+        """Let `await` stand before any check: it may be `Pending`, and nobody knows before."""
+        yield from ()
+        return self
 
     def with_note(self, note: str) -> Verdict:
         """Return the same verdict with a note."""

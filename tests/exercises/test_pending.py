@@ -38,6 +38,19 @@ def test_a_task_of_the_notebook_is_judged_once_the_cell_has_ended(kernel: Any) -
     assert 'Another number is put into the message.' in kernel.run('await _').text
 
 
+def test_a_check_that_goes_on_is_neither_true_nor_false(kernel: Any) -> None:
+    kernel.run(SETUP)
+    kernel.run(TASK.format(value=2))
+    assert (
+        'LabError: The check of ones has no verdict yet'
+        in kernel.run('checked = lesson.ones.check()\nassert checked').error
+    )
+    told = kernel.run('verdict = await checked\nassert verdict, verdict')
+    assert told.error.startswith('AssertionError: FAIL: ones')
+    assert 'FAIL: ones' in kernel.run('print(checked)').text
+    assert kernel.run('print(bool(checked), bool(verdict))').text == 'False False\n'
+
+
 def test_a_check_without_a_task_answers_at_once(kernel: Any) -> None:
     kernel.run(SETUP)
     assert 'FAIL: ones' in kernel.run('lesson.ones.check()').text

@@ -1,15 +1,19 @@
 from __future__ import annotations
 
+import asyncio
 import re
 from html.parser import HTMLParser
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from labkit.exercises import Outcome
+from labkit.exercises.lesson import load
 from labkit.exercises.verdict import Verdict
 from labkit.views.card import Card
 
+TEACHING = Path(__file__).parents[2] / 'docs' / 'teaching.md'
 EVIL = '<script>alert("x")</script><img src=x onerror=alert(1)>'
 FULL = Verdict(
     Outcome.FAIL,
@@ -60,6 +64,28 @@ def test_outcome_is_a_word_in_both_forms(outcome: Outcome) -> None:
     assert repr(verdict) == f'{outcome.value}: x'
     assert outcome.value in Page(verdict._repr_html_()).text
     assert 'role="status"' in verdict._repr_html_()
+
+
+@pytest.mark.parametrize('outcome', Outcome)
+def test_a_verdict_is_true_if_it_has_passed(outcome: Outcome) -> None:
+    assert bool(Verdict(outcome, 'x')) is (outcome is Outcome.PASS)
+
+
+def test_any_verdict_can_be_awaited() -> None:
+    async def wait() -> Verdict:
+        return await FULL
+
+    assert asyncio.run(wait()) is FULL
+
+
+def test_the_cell_for_teachers_passes_for_an_answer_alone(kernel: Any) -> None:
+    page = TEACHING.read_text(encoding='utf-8')
+    (cell,) = re.findall(r'^```python\n(### BEGIN HIDDEN TESTS\n.*?)^```', page, re.M | re.S)
+    kernel.run("import labkit as lab\nlesson = lab.lesson('talker_listener')")
+    refused = 'AssertionError: NOT ATTEMPTED: every_two_seconds'
+    assert kernel.run(cell).error.startswith(refused)
+    kernel.run(load('talker_listener').every_two_seconds.answer.code)
+    assert kernel.run(cell).error == ''
 
 
 def test_colours_are_those_of_the_theme_with_a_fallback() -> None:
