@@ -202,7 +202,10 @@ def _parser() -> argparse.ArgumentParser:
     add('doctor', 'Say what is wrong with this machine or environment, and what to do')
     record = add('record', 'Run lessons and store their outputs in notebooks/')
     record.add_argument(
-        'lessons', nargs='*', metavar='NN', help='numbers or names; all if none is given'
+        'lessons',
+        nargs='*',
+        metavar='NN',
+        help='numbers or names, or files in other folders; all of notebooks/ if none is given',
     )
     lesson = add(
         'lesson',

@@ -33,15 +33,18 @@ def lesson_paths(names: Sequence[str] = (), *, folder: Path = LESSONS_DIR) -> li
     """Return the notebooks of the lessons with these names, in order; all if none are given.
 
     Args:
-        names: `'02'`, `'02_talker_listener'` or the file's name.
+        names: `'02'`, `'02_talker_listener'` or the file's name. The path of a notebook in another
+            folder is itself.
         folder: Folder of the lessons.
 
     Raises:
         LabError: There is no such lesson.
     """
     paths = {path.stem: path for path in sorted(folder.glob('[0-9][0-9]_*.ipynb'))}
+    copies = [path for path in map(Path, names) if _is_elsewhere(path, folder)]
+    names = [name for name in names if Path(name) not in copies]
     chosen: set[str] = set()
-    for name in names or paths:
+    for name in names or (() if copies else paths):
         stem = Path(name).name.removesuffix('.ipynb')
         found = {other for other in paths if stem in (other, other[:2])}
         if not found:
@@ -50,7 +53,12 @@ def lesson_paths(names: Sequence[str] = (), *, folder: Path = LESSONS_DIR) -> li
                 todo=f'The lessons are: {", ".join(paths) or "none"}.',
             )
         chosen |= found
-    return [path for stem, path in paths.items() if stem in chosen]
+    return [*(path for stem, path in paths.items() if stem in chosen), *copies]
+
+
+def _is_elsewhere(path: Path, folder: Path) -> bool:
+    here = path.suffix == '.ipynb' and path.is_file()
+    return here and path.resolve().parent != folder.resolve()
 
 
 def record(names: Sequence[str] = (), *, folder: Path = LESSONS_DIR) -> int:

@@ -25,7 +25,6 @@ def lessons(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (folder / START).write_text(notebook('1 + 1'))
     (folder / TALKER).write_text(notebook('2 + 2'))
     (folder / 'images' / 'graph.svg').write_text('<svg/>')
-    (folder / 'conftest.py').write_text('for the tests')
     (folder / '.ipynb_checkpoints').mkdir()
     (folder / '.ipynb_checkpoints' / START).write_text('left by JupyterLab')
     monkeypatch.setattr(learner_folder, 'LESSONS', folder)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
+import os
 import re
-import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -12,12 +13,15 @@ from xml.etree import ElementTree
 
 import nbformat
 import pytest
+from flit_core.buildapi import prepare_metadata_for_build_editable
 from nbformat import NotebookNode
-from nbformat.v4 import new_code_cell, new_notebook, new_output
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 
+from labkit.course.pytest_plugin import uses_labkit
 from labkit.course.record import record
 
-CONFTEST = Path(__file__).resolve().parents[2] / 'notebooks' / 'conftest.py'
+ROOT = Path(__file__).resolve().parents[2]
+PLUGIN = 'labkit.course.pytest_plugin'
 Run = Callable[..., tuple[dict[str, str], str]]
 
 
@@ -25,12 +29,27 @@ Run = Callable[..., tuple[dict[str, str], str]]
 def folder(tmp_path: Path) -> Path:
     path = tmp_path / 'course' / 'notebooks'
     path.mkdir(parents=True)
-    shutil.copy(CONFTEST, path)
     return path
 
 
+@pytest.fixture(scope='session')
+def metadata(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make what an installer writes about labkit: other checkouts share this environment."""
+    folder = tmp_path_factory.mktemp('metadata')
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(ROOT)
+        prepare_metadata_for_build_editable(str(folder))
+    return folder
+
+
 @pytest.fixture
-def nbval(folder: Path, lab_env: dict[str, str]) -> Run:
+def installed(metadata: Path, lab_env: dict[str, str]) -> dict[str, str]:
+    """Give the variables with which a process finds labkit as an installed package."""
+    return {**lab_env, 'PYTHONPATH': os.pathsep.join([str(metadata), lab_env['PYTHONPATH']])}
+
+
+@pytest.fixture
+def nbval(folder: Path, installed: dict[str, str]) -> Run:
     """Give a function that runs nbval, and returns what came of each test, and all it printed."""
 
     def run(*arguments: str) -> tuple[dict[str, str], str]:
@@ -40,11 +59,12 @@ def nbval(folder: Path, lab_env: dict[str, str]) -> Run:
         done = subprocess.run(
             [*command, *(arguments or ['notebooks'])],
             cwd=folder.parent,
-            env=lab_env,
+            env=installed,
             capture_output=True,
             text=True,
             timeout=300,
         )
+        assert report.exists(), done.stderr
         cases = ElementTree.parse(report).iter('testcase')
         outcomes = {
             case.get('name', ''): (case[0].tag if len(case) else 'passed') for case in cases
@@ -56,6 +76,7 @@ def nbval(folder: Path, lab_env: dict[str, str]) -> Run:
 
 def write(path: Path, cells: dict[str, str], tags: dict[str, str] | None = None) -> None:
     notebook = new_notebook(cells=[new_code_cell(text, id=name) for name, text in cells.items()])
+    notebook.metadata.labkit = {}
     for cell in notebook.cells:
         if tags and cell.id in tags:
             cell.metadata.tags = [tags[cell.id]]
@@ -145,7 +166,7 @@ def test_every_difference_is_found_and_shown(folder: Path, nbval: Run):
     assert "Lesson 01_one, cell 'text': it does not show what is stored" in told
     assert '    print("hello")\n    print("world")\n' in told
     assert '-  hallo\n+  hello\n   world\n' in told
-    assert 'python3 -m labkit record 01_one' in told
+    assert f'python3 -m labkit record {folder / "01_one.ipynb"}' in told
     assert '-  hello··\n+  hello\n' in section(output, 'space')
     assert '+[stdout] (without a line break at the end)\n' in section(output, 'line-break')
     assert '-  harmless\n+  careful\n' in section(output, 'errors')
@@ -212,3 +233,69 @@ def test_one_cell_can_be_run_alone(folder: Path, nbval: Run):
     outcomes, output = nbval('notebooks/01_one.ipynb::third', 'notebooks/02_two.ipynb::late')
     assert outcomes == {'third': 'passed', 'late': 'failure'}, output
     assert "cell 'late': cell 'early', which runs before it: it raised NameError" in output
+
+
+@pytest.mark.parametrize(
+    ('cell', 'is_ours'),
+    [
+        ('import labkit as lab', True),
+        ('    from labkit import spin', True),
+        ('import os, labkit', True),
+        ('print("import labkit")', False),
+        ('import labkit_like', False),
+    ],
+)
+def test_what_is_in_a_notebook_says_whose_it_is(tmp_path: Path, cell: str, is_ours: bool):
+    path = tmp_path / 'any.ipynb'
+    cells = [new_markdown_cell('import labkit'), new_code_cell(f'x = 1\n{cell}')]
+    nbformat.write(new_notebook(cells=cells), path)
+    assert uses_labkit(path) is is_ours
+
+
+@pytest.mark.parametrize('text', ['', '[]', '{"metadata": {}, "cells": [1]}', '\xff'])
+def test_a_file_that_is_no_notebook_is_left_to_nbval(tmp_path: Path, text: str):
+    path = tmp_path / 'any.ipynb'
+    path.write_text(text, encoding='latin-1')
+    assert not uses_labkit(path)
+
+
+def test_other_notebooks_are_compared_by_nbval(folder: Path, nbval: Run):
+    write(folder / '01_ours.ipynb', {'first': 'import labkit\n1'})
+    record(folder=folder)
+    path = folder / 'theirs.ipynb'
+    nbformat.write(new_notebook(cells=[new_code_cell('1', id='one')]), path)
+    outcomes, output = nbval()
+    # nbval counts cells, and does not mind that this one was never recorded.
+    assert outcomes == {'first': 'passed', 'Cell 0': 'passed'}, output
+
+
+def test_the_plugin_may_be_asked_for_again(folder: Path, nbval: Run):
+    write(folder / '01_one.ipynb', {'first': '1', 'second': '2'})
+    record(folder=folder)
+    (folder.parent / 'conftest.py').write_text(f'pytest_plugins = [{PLUGIN!r}]')
+    outcomes, output = nbval('-p', PLUGIN, 'notebooks')
+    assert outcomes == {'first': 'passed', 'second': 'passed'}, output
+    assert output.count('PASSED') == 2
+
+
+def test_tests_of_others_notice_nothing(tmp_path: Path, installed: dict[str, str]):
+    (tmp_path / 'test_mine.py').write_text("""
+import json, os, sys
+
+def test_mine():
+    with open('seen.json', 'w') as file:
+        json.dump([sorted(sys.modules), sys.path, dict(os.environ)], file)
+    import labkit
+    assert os.environ['ROS_PYTHON_CHECK_FIELDS'] == '1'
+""")
+    seen = []
+    for options in ([], ['-p', f'no:{PLUGIN}']):
+        command = [sys.executable, '-m', 'pytest', '-v', '-p', 'no:cacheprovider', *options]
+        done = subprocess.run(
+            command, cwd=tmp_path, env=installed, capture_output=True, text=True, timeout=60
+        )
+        assert done.returncode == 0, done.stdout + done.stderr
+        seen.append(json.loads((tmp_path / 'seen.json').read_text()))
+    # Nothing of labkit is loaded, nothing for it, and the variables are those of before.
+    assert seen[0] == seen[1]
+    assert 'rclpy' not in seen[0][0]

@@ -238,6 +238,10 @@ def test_lessons_are_chosen_by_number_or_name(folder: Path):
     assert chosen() == ['00_start', '02_talk', '10_bags']
     assert chosen('10', '02') == ['02_talk', '10_bags']
     assert chosen('02_talk', 'notebooks/02_talk.ipynb') == ['02_talk']
+    copy = folder.parent / '02_talk.ipynb'
+    write(copy, {'a': '1'})
+    assert lesson_paths([str(copy)], folder=folder) == [copy]
+    assert lesson_paths([str(copy), '00'], folder=folder) == [folder / '00_start.ipynb', copy]
     with pytest.raises(LabError, match=r"'1'[^$]*The lessons are: 00_start, 02_talk, 10_bags"):
         chosen('1')
 

@@ -1,4 +1,4 @@
-"""What `pytest --nbval` needs to run the lessons.
+"""The cells of a notebook of labkit as tests, for `pytest --nbval`.
 
 nbval finds the notebooks, reads the tags of their cells and makes a test of each code cell. A cell
 is run by labkit, in the same way as by `python3 -m labkit record`, and what it shows is compared
@@ -11,6 +11,7 @@ from __future__ import annotations
 import difflib
 import json
 import re
+import shlex
 from collections.abc import Iterator
 
 import pytest
@@ -18,21 +19,14 @@ from nbformat import NotebookNode
 from nbval.plugin import IPyNbCell, IPyNbFile
 
 from labkit.course.lesson_run import CELL_TIMEOUT_SEC, LessonError, LessonRun, normalised
+from labkit.course.record import LESSONS_DIR
+
+__all__ = ['LessonFile']
 
 PICTURES = ('image/png', 'image/jpeg')
 
 
-@pytest.hookimpl(wrapper=True)
-def pytest_collect_file(parent: pytest.Collector) -> Iterator[None]:
-    """Put a `LessonFile` in the place of each file that nbval has found."""
-    found = yield
-    return [
-        LessonFile.from_parent(parent, path=file.path) if isinstance(file, IPyNbFile) else file
-        for file in found
-    ]
-
-
-class LessonFile(IPyNbFile):
+class LessonFile(IPyNbFile):  # type: ignore[misc]
     """A lesson: its cells are tests, and share one kernel."""
 
     run: LessonRun | None = None
@@ -65,7 +59,7 @@ class OutputsDifferError(Exception):
     """What a cell shows is not what is stored; the text is the difference."""
 
 
-class LessonCell(IPyNbCell):
+class LessonCell(IPyNbCell):  # type: ignore[misc]
     """A code cell: it must run, and show what is stored."""
 
     def runtest(self) -> None:
@@ -95,7 +89,9 @@ class LessonCell(IPyNbCell):
         error, lesson = excinfo.value, self.path.stem
         if isinstance(error, OutputsDifferError):
             what, details = 'it does not show what is stored', str(error)
-            todo = f'If the new output is right: python3 -m labkit record {lesson}'
+            published = self.path.resolve().parent == LESSONS_DIR
+            name = lesson if published else shlex.quote(str(self.path))
+            todo = f'If the new output is right: python3 -m labkit record {name}'
         elif isinstance(error, LessonError):
             earlier = error.cell_id not in ('', self.name)
             before = f'cell {error.cell_id!r}, which runs before it: ' if earlier else ''
