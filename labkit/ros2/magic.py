@@ -1,4 +1,4 @@
-"""`%ros2 ...` in a notebook, with Tab completion."""
+"""`%ros2 ...` and `%%ros2` in a notebook, on one line or several, with Tab completion."""
 
 from __future__ import annotations
 
@@ -8,6 +8,9 @@ from typing import Any
 
 __all__ = ['register']
 
+# A command, where a statement begins. What it becomes is what IPython makes of a line of its own.
+_COMMAND = re.compile(r'([ \t]*)(?:(%ros2)[ \t]+|!(?=ros2[ \t]))(?=\S)')
+
 
 def register() -> None:
     """Register `%ros2` with the running IPython, if there is one. Must stay light and fast."""
@@ -15,7 +18,9 @@ def register() -> None:
     shell = ipython.get_ipython() if ipython is not None else None
     if shell is None:
         return
-    shell.register_magic_function(_ros2, 'line', 'ros2')
+    shell.register_magic_function(_ros2, 'line_cell', 'ros2')
+    if _join_lines not in shell.input_transformers_cleanup:
+        shell.input_transformers_cleanup.append(_join_lines)
     matchers = shell.Completer.custom_matchers
     if _complete in matchers or _complete_word in matchers:
         return
@@ -28,10 +33,14 @@ def register() -> None:
         matchers.append(_complete)
 
 
-def _ros2(line: str) -> None:
-    """Run a `ros2` command: `%ros2 topic list`; `%ros2 -h` shows all of them."""
+def _ros2(line: str, cell: str = '') -> None:
+    """Run a `ros2` command: `%ros2 topic list`; `%ros2 -h` shows all of them.
+
+    After `%%ros2`, at the beginning of a cell, all of the cell is one command.
+    """
     from labkit.ros2.shell import run_line
 
+    line = f'{line}\n{cell}'.rstrip('\n')
     several = _is_one_of_several()
     if several:
         # As in a terminal: otherwise nobody could tell which output belongs to which command.
@@ -56,6 +65,51 @@ def _is_one_of_several() -> bool:
 
 # Braces and dollar signs belong to YAML; IPython would expand them as Python variables.
 _ros2._ipython_magic_no_var_expand = True  # type: ignore[attr-defined]
+
+
+def _join_lines(lines: list[str]) -> list[str]:
+    """Make one line of a command whose quotation mark closes on a later line.
+
+    IPython calls it with each cell, before it looks for magics and before Python looks at the
+    indentation, which in YAML follows other rules. The number of lines stays.
+    """
+    if not any(map(_COMMAND.match, lines)) or lines[0].startswith('%%'):
+        return lines
+    done: list[str] = []
+    rest = list(lines)
+    while rest:
+        start, count = _COMMAND.match(rest[0]), 1
+        if start:
+            count = _count_lines([rest[0][start.end() :], *rest[1:]])
+        if start and count > 1 and _is_statement(done, start[1]):
+            text = ''.join(rest[:count])[start.end() :].rstrip('\n')
+            call = f"run_line_magic('ros2', {text!r})" if start[2] else f'system({text!r})'
+            done += [f'{start[1]}get_ipython().{call}\n', *['\n'] * (count - 1)]
+        else:
+            count = 1
+            done.append(rest[0])
+        del rest[:count]
+    return done
+
+
+def _count_lines(lines: list[str]) -> int:
+    """Return how many lines a command takes: all, if a quotation mark never closes."""
+    from labkit.ros2.shell import is_complete
+
+    ends = (n for n in range(1, len(lines)) if is_complete(''.join(lines[:n])))
+    return next(ends, len(lines))
+
+
+def _is_statement(before: list[str], indent: str) -> bool:
+    """Return whether a statement may begin after these lines: not inside a string or brackets."""
+    from IPython.core.inputtransformer2 import TransformerManager
+
+    probe = f'{indent}%ros2\n'
+    manager: Any = TransformerManager()  # type: ignore[no-untyped-call]
+    try:
+        return bool(manager.do_token_transforms([*before, probe])[-1] != probe)
+    except SyntaxError:
+        return False  # Python says what is wrong with it
 
 
 def _complete(context: Any) -> dict[str, Any]:
@@ -85,7 +139,7 @@ def _complete_word(text: str) -> list[str]:
 def _possible(text: str) -> tuple[str, list[str]]:
     """Return the word before the cursor and its completions; nothing on other lines."""
     magic, space, line = text.lstrip().partition(' ')
-    if magic != '%ros2' or not space:
+    if magic not in ('%ros2', '%%ros2') or not space:
         return '', []
     from labkit.ros2.completion import complete_line
 

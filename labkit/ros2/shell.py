@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import io
 import shlex
 import sys
 from argparse import Namespace
@@ -15,7 +16,7 @@ from labkit.errors import LabError, nearest, quoted
 from labkit.ros2.parser import Command, Done, Usage, Verb, table
 from labkit.rosgraph.refusals import Refusal, Refused
 
-__all__ = ['COMMANDS', 'Ran', 'command', 'execute', 'history', 'run_line', 'split']
+__all__ = ['COMMANDS', 'Ran', 'command', 'execute', 'history', 'is_complete', 'run_line', 'split']
 
 # Command -> the module that has it as `COMMAND`.
 COMMANDS = {
@@ -104,25 +105,44 @@ def run_line(line: str) -> int:
     return execute(words)
 
 
+def is_complete(text: str) -> bool:
+    """Return whether a terminal would run this, and not ask for another line."""
+    try:
+        split(text)
+    except Usage as error:
+        return error.reason is not Refusal.QUOTE_NOT_CLOSED
+    return not text.endswith('\\\n')
+
+
 def split(line: str) -> list[str]:
     """Split a line into words as a terminal does; drop comments.
+
+    In quotation marks it may go on over several lines, and after a backslash at a line's end.
 
     Raises:
         Usage: A quotation mark is missing, or the line needs a terminal.
     """
-    lexer = shlex.shlex(line, posix=True, punctuation_chars=True)
+    line = line.replace('\\\n', '')
+    text = io.StringIO(line)
+    lexer = shlex.shlex(text, posix=True, punctuation_chars=True)
     lexer.whitespace_split = True
     lexer.commenters = ''
     words = []
     try:
         for word in lexer:
             if word.startswith('#') and not _is_quoted(line, word):
-                break
+                at = text.tell() - 1  # of what has ended the word
+                if '\n' not in line[at:]:
+                    break
+                if line[at] != '\n':
+                    text.readline()
+                continue
             words += [word]
     except ValueError as error:
         raise Usage(
             f'The line can not be read: {error}.',
-            todo='A quotation mark " or \' is missing.',
+            todo='A quotation mark " or \' is missing'
+            + (': all of the lines after it were taken for its text.' if '\n' in line else '.'),
             reason=Refusal.QUOTE_NOT_CLOSED,
         ) from error
     sent = words[:-1] if _ends_in_background(line, words) else words
