@@ -1,7 +1,8 @@
 """Show errors of a callback that executes a goal, as for any other callback.
 
 rclpy logs one line, prints the traceback with its own frames, and aborts the goal. Here only the
-learner's lines are shown, once per run of the cell; the goal is still aborted.
+learner's lines are shown, once per run of the cell; the goal is still aborted. What ends a program
+leaves the callback, as it does with rclpy.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from labkit.background import compat
+from labkit.background.foreground import ENDS
 
 if TYPE_CHECKING:
     from labkit.background.console import Console
@@ -34,8 +36,8 @@ def guarded(callback: Callable[..., Any], server: Any, console: Console) -> Call
         async def execute_async(handle: Any) -> Any:
             try:
                 return await callback(handle)
-            except GeneratorExit:
-                raise  # the node has ended meanwhile
+            except (GeneratorExit, *ENDS):
+                raise  # the node has ended meanwhile, or is to end
             except BaseException as error:
                 return aborted(handle, error)
 
@@ -45,6 +47,8 @@ def guarded(callback: Callable[..., Any], server: Any, console: Console) -> Call
     def execute(handle: Any) -> Any:
         try:
             return callback(handle)
+        except ENDS:
+            raise
         except BaseException as error:
             return aborted(handle, error)
 

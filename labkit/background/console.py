@@ -99,6 +99,8 @@ class Console:
         self.errors: list[CallbackError] = []
         # Called at the end of a cell with its exception, while prints still belong to the cell.
         self.after_cell: Callable[[Cell, BaseException | None], None] = lambda cell, error: None
+        # Called with an exception that nobody has caught; returns how it has ended a spin.
+        self.last_words: Callable[[BaseException], str] = lambda error: ''
         # Called for each line of a log with its logger and its text, in the thread that logs.
         self.on_log: Callable[[str, str], None] = lambda name, message: None
         # Nodes started by one execution share its Cell, and so its limit of lines.
@@ -123,7 +125,7 @@ class Console:
         _shell().events.register('pre_run_cell', self._end_cell)
         _shell().events.register('post_run_cell', self._finish_cell)
         self._is_running = True  # ROS is started by a cell
-        tracebacks.install(_shell())
+        tracebacks.install(_shell(), lambda error: self.last_words(error))
 
     def close(self) -> None:
         """Restore the streams and the ROS logs."""
@@ -317,8 +319,9 @@ class Console:
 
     def _finish_cell(self, result: Any = None) -> None:
         self._is_running = False
-        if self._running is not None:
-            self.after_cell(self._running, getattr(result, 'error_in_exec', None))
+        error = getattr(result, 'error_in_exec', None)
+        if self._running is not None or error is not None:
+            self.after_cell(self.current_cell(), error)
 
 
 def _shortened(line: str) -> str:

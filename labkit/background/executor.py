@@ -34,6 +34,7 @@ from labkit import settings
 from labkit.background import compat
 from labkit.background.conditions import Conditions
 from labkit.background.console import Console
+from labkit.background.foreground import ENDS
 from labkit.background.nodes import NodeEntry, callback_name
 from labkit.background.pending_tasks import PendingTasks, Work
 from labkit.background.wait import POLL_SEC
@@ -54,10 +55,19 @@ class BackgroundExecutor(Executor):
     Nodes have their turns in the order they were added, and messages come before timers: what a
     timer has published is received before its next tick, however slow the machine is. So the
     output of a cell is the same each time.
+
+    Args:
+        console: Shows what callbacks print and raise.
+        end_program: Ends a node whose callback, of that name, has raised what ends a program.
     """
 
-    def __init__(self, console: Console) -> None:
+    def __init__(
+        self,
+        console: Console,
+        end_program: Callable[[NodeEntry, str, BaseException], None],
+    ) -> None:
         super().__init__()
+        self._end_program = end_program
         self._console = console
         self._entries: dict[Node, NodeEntry] = {}
         self._round_begun = threading.Condition()
@@ -342,10 +352,24 @@ class BackgroundExecutor(Executor):
                 and entry.node in self._entries
                 and not _was_destroyed(entry.node, what, error)
             ):
-                self._console.show_error(entry.name, callback_name(what), error)
-            if entry.budget is not None and entry.budget <= 0:
+                self._hand_over(entry, callback_name(what), error)
+            spun = self._entries.get(entry.node)
+            if spun is not None and spun.budget is not None and spun.budget <= 0:
                 self.remove_node(entry.node)
             self._conditions.look()
+
+    def _hand_over(self, entry: NodeEntry, callback: str, error: BaseException) -> None:
+        """Pass on what a callback has raised, to a foreground spin if its node has one."""
+        # A coroutine may have begun in an earlier spin, and with another entry.
+        spun = self._entries[entry.node]
+        ends = isinstance(error, ENDS)
+        if any(spin.take(error, callback) for spin in reversed(tuple(spun.spins))):
+            if ends or not (spun.lasts or len(spun.spins) > 1):
+                self.remove_node(entry.node)
+        elif ends:
+            self._end_program(entry, callback, error)
+        else:
+            self._console.show_error(entry.name, callback, error)
 
     def _entry_to_run(self, work: Ready | Work) -> NodeEntry | None:
         """Return the node of a callback, None if the callback is not to run now."""
@@ -353,8 +377,7 @@ class BackgroundExecutor(Executor):
             if self._pending_tasks.is_over(work):
                 return None
             # After `rclpy.spin_once()`, it is resumed when its node is spun again.
-            paused = work.entity is not None and work.entry.node not in self._entries
-            return None if paused else work.entry
+            return work.entry if work.entry.node in self._entries else None
         entry = self._entries.get(work.node)
         if entry is not None and self._pending_tasks and not self.can_execute(work.entity):
             # Its group is busy. It stays ready, except a guard condition, which the wait resets.

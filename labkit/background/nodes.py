@@ -9,7 +9,7 @@ import traceback
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary, WeakSet
 
 from rclpy.action.client import ActionClient
@@ -26,6 +26,9 @@ from labkit import settings
 from labkit.background import compat
 from labkit.background.console import Cell
 from labkit.errors import LabError, quoted
+
+if TYPE_CHECKING:
+    from labkit.background.foreground import Spin
 
 __all__ = [
     'NodeEntry',
@@ -61,6 +64,8 @@ class NodeEntry:
         counts: Number of callbacks run for each timer, subscription and so on.
         budget: Number of callbacks left before the node leaves the executor, None for no limit.
         took: Seconds that callbacks took the last time, by name, once one of them has taken long.
+        spins: The foreground spins of it, the last one of which gets what its callbacks raise.
+        lasts: Whether it stays when these have ended.
     """
 
     node: Node
@@ -69,6 +74,8 @@ class NodeEntry:
     counts: dict[Any, int] = field(default_factory=dict)
     budget: int | None = None
     took: dict[str, float] = field(default_factory=dict)
+    spins: list[Spin] = field(default_factory=list)
+    lasts: bool = True
 
     @property
     def callbacks(self) -> int:

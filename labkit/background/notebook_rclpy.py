@@ -35,10 +35,10 @@ from labkit.background import compat
 from labkit.background.action_callbacks import guarded
 from labkit.background.arguments import check_callback, check_response, check_sent, check_type
 from labkit.background.domains import number_for_ros
+from labkit.background.foreground import ENDS, Spin
 from labkit.background.nodes import Origin, existing_nodes, full_name, made
 from labkit.background.pending_tasks import answered_by
 from labkit.background.program import Arguments, Program, renamed
-from labkit.background.tracebacks import caller_expects_interrupt
 from labkit.errors import LabError, LabTimeout, first_few
 from labkit.rosgraph.matching import other_type_here
 from labkit.rosgraph.names import full_node_name, full_topic_name, is_hidden
@@ -84,6 +84,7 @@ REPLACED: tuple[tuple[Any, str, str], ...] = (
     (rclpy.action.server.ActionServer, '__init__', 'make_action_server'),
     (rclpy.action.server.ActionServer, 'register_execute_callback', 'execute_with'),
     (rclpy.executors.Executor, 'spin', 'spin_executor'),
+    (rclpy.executors.Executor, 'wait_for_ready_callbacks', 'wait_for_ready_callbacks'),
     (rclpy.timer.Rate, 'sleep', 'sleep'),
     (rclpy.node.Node, '__init__', 'make_node'),
     (rclpy.node.Node, 'destroy_node', 'destroy_node'),
@@ -260,30 +261,26 @@ class _NotebookSafe:
             )
 
     def spin(self, node: Node, executor: Executor | None = None) -> None:
-        """Spin a node until it is destroyed, ROS is shut down or the stop button is pressed.
+        """Spin a node until it is destroyed or ROS is shut down.
 
-        A node started by `lab.spin` then goes on running in the background; any other one stops.
+        The stop button and what a callback raises come out of it. A node started by `lab.spin`
+        then goes on running in the background; any other one stops.
         """
+        spin = Spin('rclpy.spin()', [node])
         if executor is not None:
-            executor.add_node(node)
-            try:
+            with self._lent(spin, executor):
                 self.spin_executor(executor)
-            finally:
-                executor.remove_node(node)
             return
-        try:
-            with self._spun('rclpy.spin()', node) as entry:
-                self._background.wait(lambda: not entry.alive, None)
-        except KeyboardInterrupt:
-            if caller_expects_interrupt():
-                raise
-            # The stop button: what comes after spin is done, too, as if Ctrl-C had been caught.
+        with self._spun(spin) as entry:
+            self._background.wait(lambda: spin.is_over or not entry.alive, None)
 
     def spin_once(
         self, node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None
     ) -> None:
+        spin = Spin('rclpy.spin_once()', [node])
         if executor is not None:
-            ORIGINALS['spin_once'](node, executor=executor, timeout_sec=timeout_sec)
+            with self._lent(spin, executor):
+                executor.spin_once(timeout_sec)
             return
         if timeout_sec is not None and 0 <= timeout_sec < SLICE_SEC / 5:
             # "Don't wait" still means: run what is ready. The background needs a moment for it.
@@ -291,8 +288,8 @@ class _NotebookSafe:
         # Before it is spun: a new entry has run none, and may have run its one by the next line.
         known = self._background.entry_of(node)
         before = known.callbacks if known is not None else 0
-        with self._spun('rclpy.spin_once()', node, budget=1) as entry:
-            self._background.wait(lambda: entry.callbacks > before, timeout_sec)
+        with self._spun(spin, budget=1) as entry:
+            self._background.wait(lambda: spin.is_over or entry.callbacks > before, timeout_sec)
 
     def spin_until_future_complete(
         self,
@@ -301,15 +298,18 @@ class _NotebookSafe:
         executor: Executor | None = None,
         timeout_sec: float | None = None,
     ) -> None:
+        spin = Spin('rclpy.spin_until_future_complete()', [node])
         if executor is not None:
-            ORIGINALS['spin_until_future_complete'](node, future, executor, timeout_sec)
+            with self._lent(spin, executor):
+                executor.spin_until_future_complete(future, timeout_sec)
             return
-        with self._spun('rclpy.spin_until_future_complete()', node):
-            self._background.wait(lambda: _is_over(future), timeout_sec)
+        with self._spun(spin):
+            self._background.wait(lambda: spin.is_over or _is_over(future), timeout_sec)
 
     def spin_executor(self, executor: Executor) -> None:
         """Spin the learner's own executor so that the stop button is heard."""
-        self._background.refuse_in_callback('Executor.spin()')
+        spin = Spin('executor.spin()', executor.get_nodes())
+        self._background.refuse_in_callback(spin.what)
         self._background.foreign_threads.add(threading.current_thread())
         program = self._running_program()
         try:
@@ -319,11 +319,26 @@ class _NotebookSafe:
                 executor.spin_once(timeout_sec=SLICE_SEC)
         except rclpy.executors.ExternalShutdownException:
             pass
-        except KeyboardInterrupt:
-            if caller_expects_interrupt():
-                raise
         finally:
             self._background.foreign_threads.discard(threading.current_thread())
+
+    def wait_for_ready_callbacks(self, executor: Any, *args: Any, **kwargs: Any) -> Any:
+        """Wait for work of the learner's own executor, so that the stop button is heard."""
+        wait = ORIGINALS['wait_for_ready_callbacks']
+        first, *rest = args or (kwargs.pop('timeout_sec', None),)
+        given = getattr(first, 'timeout', first)
+        if given is None or given < 0:
+            given = float('inf')
+        if given <= SLICE_SEC or not _in_cell():
+            return wait(executor, first, *rest, **kwargs)
+        end = time.monotonic() + given
+        while True:
+            try:
+                # The same each time: what is left of a wait with other arguments is dropped.
+                return wait(executor, SLICE_SEC, *rest, **kwargs)
+            except rclpy.executors.TimeoutException:
+                if time.monotonic() >= end:
+                    raise
 
     def call(self, client: Any, *args: Any, **kwargs: Any) -> Any:
         self._background.refuse_in_callback(f'Calling the service {client.srv_name!r} with call()')
@@ -525,18 +540,48 @@ class _NotebookSafe:
         return ''
 
     @contextmanager
-    def _spun(self, what: str, node: Node, *, budget: int | None = None) -> Iterator[NodeEntry]:
-        """Spin a node in the background for a `with` block, even if the stop button ends it."""
-        self._background.refuse_in_callback(what)
-        entry = known = self._background.entry_of(node)
+    def _spun(self, spin: Spin, *, budget: int | None = None) -> Iterator[NodeEntry]:
+        """Spin a node in the background for a `with` block, and raise what a callback raises."""
+        self._background.refuse_in_callback(spin.what)
+        (node,) = spin.nodes
+        with stop_button.held():
+            entry = self._background.entry_of(node)
+            try:
+                if entry is None:
+                    entry = self._background.add(node, budget=budget, spin=spin)
+                else:
+                    entry.spins.append(spin)
+                yield entry
+            finally:
+                spin.close()
+                if entry is not None:
+                    self._end_spin(spin, entry)
+            if spin.error is not None:
+                raise spin.error
+
+    def _end_spin(self, spin: Spin, entry: NodeEntry) -> None:
+        entry.spins.remove(spin)
+        spin.lasts = entry.lasts and self._background.entry_of(entry.node) is entry
+        if not (entry.lasts or entry.spins):
+            self._background.release(entry)
+        if isinstance(spin.error, ENDS) and not _in_cell():
+            # Python does not tell that a thread ends in this way, and no cell does.
+            self._background.end_program(entry, spin.callback, spin.error)
+
+    @contextmanager
+    def _lent(self, spin: Spin, executor: Executor) -> Iterator[None]:
+        """Give a node to the learner's own executor for a `with` block."""
+        (node,) = spin.nodes
+        known = self._background.entry_of(node)
+        added = executor.add_node(node)
         try:
-            if entry is None:
-                entry = self._background.add(node, budget=budget)
-            yield entry
+            yield
         finally:
-            borrowed = entry or self._background.entry_of(node)
-            if known is None and borrowed is not None:
-                self._background.release(borrowed)
+            if added:
+                executor.remove_node(node)
+            if known is not None and known.alive:
+                self._background.executor.add_entry(known)
+                spin.lasts = True
 
 
 def _make(what: str, *args: Any, **kwargs: Any) -> Any:
@@ -586,6 +631,10 @@ def _is_another_thing(method: Any, own: Any) -> bool:
     names = [p.name for p in taken if p.kind is p.POSITIONAL_OR_KEYWORD]
     differ = any(name != p.name for name, p in zip(names[1:], least[1:], strict=False))
     return differ and own.__name__ not in inspect.unwrap(method).__code__.co_names
+
+
+def _in_cell() -> bool:
+    return threading.current_thread() is threading.main_thread()
 
 
 def _is_over(future: Any) -> bool:

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from rclpy.node import Node
 
+from labkit import stop_button
 from labkit.background.console import Cell, Console
 from labkit.background.executor import BackgroundExecutor
 from labkit.background.nodes import (
@@ -21,6 +23,9 @@ from labkit.background.nodes import (
     half_made,
 )
 from labkit.background.wait import wait_for
+
+if TYPE_CHECKING:
+    from labkit.background.foreground import Spin
 
 __all__ = ['Registry']
 
@@ -44,7 +49,12 @@ class Registry:
         self._entries: dict[str, NodeEntry] = {}
 
     def add(
-        self, executor: BackgroundExecutor, node: Node, *, budget: int | None = None
+        self,
+        executor: BackgroundExecutor,
+        node: Node,
+        *,
+        budget: int | None = None,
+        spin: Spin | None = None,
     ) -> NodeEntry:
         """Put a node on an executor, see `Runtime.add`."""
         name = node.get_fully_qualified_name()
@@ -57,7 +67,11 @@ class Registry:
             if earlier.node is node:
                 entry, earlier.budget = earlier, budget
                 break
-            self.discard(executor, earlier)
+            with stop_button.heard_at_once():  # its destroy_node() may never return
+                self.discard(executor, earlier)
+        entry.lasts = spin is None
+        if spin is not None:
+            entry.spins.append(spin)
         executor.add_entry(entry)
         return entry
 

@@ -22,6 +22,7 @@ from labkit import domain_ids, settings, stop_button
 from labkit.background import compat, domains
 from labkit.background.console import Cell, Console
 from labkit.background.executor import BackgroundExecutor
+from labkit.background.foreground import Spin, ended_nodes, in_words, last_words
 from labkit.background.nodes import (
     NodeEntry,
     check_node,
@@ -61,7 +62,7 @@ class Runtime:
         domain_id: The ROS domain, None while ROS is not started.
         started_at: `time.monotonic()` when ROS was started.
         helper: A hidden node for labkit's own subscriptions and graph queries.
-        ended: Full names of nodes that have called `rclpy.shutdown()`, with the callback's name.
+        ended: Full names of nodes that have ended themselves, with the callback and what it did.
         foreign_threads: Threads that spin the learner's own executors, see `notebook_rclpy`.
         waits: What threads wait for: a rate's timer or a client, with words for it and the cell.
     """
@@ -81,6 +82,7 @@ class Runtime:
         self._executor: BackgroundExecutor | None = None
         self._claim: domains.DomainClaim | None = None
         self.console.after_cell = self._after_cell
+        self.console.last_words = last_words
 
     @property
     def started(self) -> bool:
@@ -142,7 +144,7 @@ class Runtime:
             self.domain_id = domain_id or 0
             self.started_at = time.monotonic()
             self.console.open()
-            self._executor = BackgroundExecutor(self.console)
+            self._executor = BackgroundExecutor(self.console, self.end_program)
             self._add_helper(self._executor)
             domains.first_node_is_made()
             if settings.in_kernel():
@@ -189,27 +191,37 @@ class Runtime:
         caller = self._executor.caller() if self._executor is not None else None
         if caller is None or caller[0].node is self.helper:
             return False
-        entry, callback = caller
+        self._end(*caller, 'called rclpy.shutdown()')
+        return True
+
+    def end_program(self, entry: NodeEntry, callback: str, error: BaseException) -> None:
+        """End the node whose callback has raised what ends a program."""
+        if entry.node is self.helper:  # a function of a cell, which belongs to no node
+            self.console.show_error(entry.name, callback, error)
+        else:
+            self._end(entry, callback, in_words(error))
+
+    def _end(self, entry: NodeEntry, callback: str, what: str) -> None:
         print(
-            f'{callback} of {entry.name} has called rclpy.shutdown(). In a program of its own '
+            f'{callback} of {entry.name} has {what}. In a program of its own '
             f'that ends all of its nodes; in a notebook it ends {entry.name} alone.'
         )
         self.discard(entry)
-        self.ended[entry.name] = callback
-        return True
+        self.ended[entry.name] = f'{callback} {what}'
 
-    def add(self, node: Node, *, budget: int | None = None) -> NodeEntry:
+    def add(self, node: Node, *, budget: int | None = None, spin: Spin | None = None) -> NodeEntry:
         """Run a node in the background, and destroy an earlier one of the same name.
 
         Args:
             node: The node.
             budget: Number of callbacks to run before it leaves the executor, None for no limit.
+            spin: The foreground spin that adds it, None to let it run on.
 
         Raises:
             LabError: It is not a node, or it has been destroyed.
         """
         check_node(node)
-        return self._registry.add(self.executor, node, budget=budget)
+        return self._registry.add(self.executor, node, budget=budget, spin=spin)
 
     def discard(self, entry: NodeEntry) -> BaseException | None:
         """Remove a node from the executor and destroy it, see `destroy`."""
@@ -348,9 +360,11 @@ class Runtime:
         executor.add_entry(NodeEntry(self.helper, name, self.console.current_cell()))
 
     def _after_cell(self, cell: Cell, error: BaseException | None) -> None:
-        """Report nodes of the cell's earlier run that an edited cell has left behind."""
+        """End what an error has ended; report nodes that an edited cell has left behind."""
         if error is not None:
             half_made.update((node, cell) for node in find_half_made(error))
+            for node in filter(node_exists, ended_nodes(error)):
+                self.destroy(node)
         for entry in self._registry.left_over(cell):
             print(
                 f'{entry.name}, which this cell started before, still runs. '

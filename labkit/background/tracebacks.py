@@ -15,7 +15,8 @@ import sys
 import sysconfig
 import threading
 import traceback
-from collections.abc import Iterator
+import warnings
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from types import FrameType, TracebackType
 from typing import Any
@@ -28,7 +29,6 @@ from labkit.errors import LabError, cell_name
 
 __all__ = [
     'argument_at_caller',
-    'caller_expects_interrupt',
     'install',
     'is_learners',
     'short_traceback',
@@ -89,19 +89,6 @@ def is_learners(filename: str) -> bool:
     return not path.startswith((*_LIBRARIES, _LABKIT)) and os.path.exists(path)
 
 
-def caller_expects_interrupt() -> bool:
-    """Return whether the learner's code that calls this would catch a `KeyboardInterrupt`."""
-    for part, line in _around_caller():
-        if not isinstance(part, ast.Try):
-            continue
-        caught = [handler.type for handler in part.handlers]
-        words = ' '.join(ast.unparse(kind) if kind else 'BaseException' for kind in caught)
-        inside = part.body[0].lineno <= line <= (part.body[-1].end_lineno or 0)
-        if inside and re.search(r'\b(KeyboardInterrupt|BaseException)\b', words):
-            return True
-    return False
-
-
 def argument_at_caller(function: str, position: int, name: str) -> ast.expr | None:
     """Return an argument as the learner's line has it that calls a function; None if unknown."""
     for part, line in _around_caller():
@@ -142,21 +129,38 @@ def without_ros(tb: TracebackType | None) -> TracebackType | None:
     return result
 
 
-def install(shell: Any) -> None:
-    """Shorten tracebacks of cells and of threads, unless `%xmode Verbose` is chosen."""
+def install(shell: Any, last_words: Callable[[BaseException], str]) -> None:
+    """Shorten tracebacks of cells and of threads, unless `%xmode Verbose` is chosen.
+
+    Args:
+        shell: IPython.
+        last_words: Returns how an exception has ended a foreground spin, '' if it has ended none.
+            The stop button and the end of a program show that alone.
+    """
     formatter = shell.InteractiveTB
     if 'structured_traceback' in vars(formatter):
         return
-    original = formatter.structured_traceback
+    original, show = formatter.structured_traceback, shell.showtraceback
     in_thread = threading.excepthook
 
     def structured_traceback(
         kind: Any, error: Any = None, tb: Any = None, *args: Any, **options: Any
     ) -> Any:
-        hint = _hint(error, tb)
+        words = [last_words(error)] if isinstance(error, BaseException) else []
+        if any(words) and isinstance(error, (KeyboardInterrupt, SystemExit)):
+            return words
+        hint = [*_hint(error, tb), *filter(None, words)]
         if formatter.mode != 'Verbose' and isinstance(tb, TracebackType):
             tb = without_ros(tb)
         return [*original(kind, error, tb, *args, **options), *hint]
+
+    def showtraceback(exc_tuple: Any = None, *args: Any, **options: Any) -> None:
+        error = exc_tuple[1] if exc_tuple else sys.exc_info()[1]
+        if isinstance(error, SystemExit) and last_words(error):
+            # IPython says of each that it is no way to end the kernel.
+            warnings.filterwarnings('ignore', "To exit: use 'exit'")
+            options['exception_only'] = False
+        show(exc_tuple, *args, **options)
 
     def excepthook(args: threading.ExceptHookArgs) -> None:
         frames = [frame for frame, _ in traceback.walk_tb(args.exc_traceback)]
@@ -171,6 +175,7 @@ def install(shell: Any) -> None:
             )
 
     formatter.structured_traceback = structured_traceback
+    shell.showtraceback = showtraceback
     threading.excepthook = excepthook
 
 

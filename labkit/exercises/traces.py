@@ -113,10 +113,10 @@ def _refuse_ended_nodes(task: str) -> None:
     """Raise Fail if a callback has ended its own node."""
     from labkit.background.runtime import runtime
 
-    for name, callback in runtime.ended.items():
+    for name, what in runtime.ended.items():
         raise Fail(
             task,
-            f'no node: {name} has ended, because its callback {callback} called rclpy.shutdown()',
+            f'no node: {name} has ended, because its callback {what}',
             words.SHUT_DOWN,
         )
 

@@ -434,7 +434,8 @@ SOMETHING_ELSE = Mistake(
 )
 SHUT_DOWN = Mistake(
     'traces/shut-down',
-    'rclpy.shutdown() ends ROS for a whole program. In a notebook it ends the node that calls it.',
+    'rclpy.shutdown() and sys.exit() end a whole program. In a notebook they end the node that '
+    'calls them.',
     'Leave it out, and run the cell of the node again. lab.remove(...) ends a node.',
 )
 ONLY_A_CLASS = Mistake(

@@ -23,35 +23,46 @@ class Ticker(Node):
 """
 
 
-@pytest.mark.parametrize(
-    ('leave', 'shown'),
-    [
-        ('sys.exit(3)', 'SystemExit: 3'),
-        ('exit_now()', 'KeyboardInterrupt: enough'),
-        ('throw(GeneratorExit())', 'GeneratorExit'),
-    ],
-)
-def test_whatever_a_callback_raises_is_shown_and_spinning_goes_on(kernel, leave, shown):
+def test_whatever_a_callback_raises_is_shown_and_spinning_goes_on(kernel):
     kernel.run(SETUP + 'def throw(error):\n    raise error\n')
-    kernel.run('def exit_now():\n    raise KeyboardInterrupt("enough")')
-    cell = kernel.run(f'ticker = lab.spin(Ticker(lambda node: {leave}))')
+    cell = kernel.run('ticker = lab.spin(Ticker(lambda node: throw(GeneratorExit())))')
     assert not kernel.run('lab.wait_until(lambda: ticker.count >= 3)').error
-    said = kernel.wait_for_output(cell.msg_id, shown)
-    assert said.count('The callback on_timer of /ticker failed') == 1
+    said = kernel.wait_for_output(cell.msg_id, 'GeneratorExit')
+    assert said.count('The callback on_timer of /ticker failed. The node goes on') == 1
     assert not kernel.run(
         'other = lab.spin(Ticker(lambda node: None, "other"))\n'
         'lab.wait_until(lambda: other.count >= 3)'
     ).error
 
 
+@pytest.mark.parametrize(
+    ('leave', 'shown'),
+    [('sys.exit(3)', 'SystemExit: 3'), ('exit_now()', "KeyboardInterrupt: 'enough'")],
+)
+def test_a_program_that_ends_in_a_callback_ends_its_node_and_spinning_goes_on(
+    kernel, leave, shown
+):
+    kernel.run(SETUP + 'def exit_now():\n    raise KeyboardInterrupt("enough")')
+    kernel.run('other = lab.spin(Ticker(lambda node: None, "other"))')
+    for _ in range(2):
+        cell = kernel.run(f'ticker = lab.spin(Ticker(lambda node: {leave}))')
+        said = kernel.wait_for_output(cell.msg_id, 'it ends /ticker alone')
+        assert f'on_timer of /ticker has ended its program ({shown}).' in said
+        assert kernel.run(
+            'before = other.count\nlab.wait_until(lambda: other.count >= before + 3)\n'
+            'print(ticker.count, [entry.name for entry in runtime.nodes()])'
+        ).text == ("1 ['/other']\n")
+
+
 def test_a_program_that_ends_in_a_callback_is_not_ended_by_it(script):
     result = script(
         SETUP
         + 'ticker = lab.spin(Ticker(lambda node: sys.exit(3)))\n'
-        + 'lab.wait_until(lambda: ticker.count >= 3)\nprint("goes on")\nsys.exit(4)\n'
+        + 'lab.wait_until(lambda: not runtime.nodes())\nprint("goes on")\nsys.exit(4)\n'
     )
-    assert (result.exit_code, result.stdout) == (4, 'goes on\n')
-    assert result.stderr.count('The callback on_timer of /ticker failed') == 1
+    assert (result.exit_code, result.stderr) == (4, '')
+    assert result.stdout.splitlines()[-1] == 'goes on'
+    assert 'on_timer of /ticker has ended its program (SystemExit: 3).' in result.stdout
 
 
 def test_a_thread_that_has_ended_is_made_up_for_by_the_next_start(kernel):

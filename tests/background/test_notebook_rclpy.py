@@ -168,7 +168,7 @@ def test_shutdown_in_a_callback_ends_its_node_alone(kernel, how):
         assert 'on_timer of /ending has called rclpy.shutdown().' in shown
         assert 'Traceback' not in shown
         assert kernel.run('print(goes_on(), runtime.ended)').text == (
-            "['/other'] {'/ending': 'on_timer'}\n"
+            "['/other'] {'/ending': 'on_timer called rclpy.shutdown()'}\n"
         )
     again = kernel.run(
         'new = lab.spin(Ticker("ending"))\nlab.wait_until(lambda: new.ticks > 3)\n'

@@ -39,8 +39,8 @@ client = node.create_client(Trigger, 'slow')
 client.call(Trigger.Request())
 """,
 }
-# As in a script after Ctrl+C, the lines after spin() are run.
-SHOWN = {'pasted spin': 'the rest of the cell'}
+# One line tells what was interrupted, and the lines after spin() are not run.
+SHOWN = {'pasted spin': 'rclpy.spin() was interrupted. No longer spun: /pasted.'}
 
 
 @pytest.mark.parametrize('what', BLOCKING)
@@ -56,7 +56,9 @@ def test_stop_button_ends_the_cell_and_ros_goes_on(open_cells, what):
     notebook.wait_output('blocking', 'inside')
     assert notebook.is_running('blocking')
     notebook.press_stop()
-    assert SHOWN.get(what, 'KeyboardInterrupt') in notebook.wait_for_end('blocking')
+    shown = notebook.wait_for_end('blocking')
+    assert SHOWN.get(what, 'KeyboardInterrupt') in shown
+    assert 'the rest of the cell' not in shown
     notebook.run_cell('talker')
     assert 'Hello World' in notebook.run_cell('after')
     assert notebook.error_of('after') == ''

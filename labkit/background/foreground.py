@@ -1,0 +1,118 @@
+"""A spin in the foreground: what a callback of its nodes raises comes out of it, as in a script.
+
+The callbacks run in the background thread, which hands over what they raise. If nobody catches it,
+it ends the cell. What ends a program, such as `sys.exit()`, then ends the nodes of the spin.
+"""
+
+from __future__ import annotations
+
+import threading
+import traceback
+from collections.abc import Sequence
+
+import rclpy.executors
+from rclpy.node import Node
+
+from labkit.background.nodes import full_name, node_exists
+from labkit.errors import first_few, quoted
+
+__all__ = ['ENDS', 'Spin', 'ended_nodes', 'in_words', 'last_words']
+
+ENDS = (SystemExit, KeyboardInterrupt)
+"""What a callback raises to end its program."""
+
+
+class Spin:
+    """One spin in the foreground.
+
+    Args:
+        what: Its call, such as `rclpy.spin()`.
+        nodes: The nodes that it spins.
+
+    Attributes:
+        error: What a callback has raised, to come out of the spin.
+        callback: The name of that callback.
+        lasts: Whether its node runs in the background all the same.
+    """
+
+    def __init__(self, what: str, nodes: Sequence[Node]) -> None:
+        self.what = what
+        self.nodes = nodes
+        self.error: BaseException | None = None
+        self.callback = ''
+        self.lasts = False
+        self._names = [full_name(node) for node in nodes]
+        self._lock = threading.Lock()
+        self._closed = False
+
+    @property
+    def is_over(self) -> bool:
+        """Return whether a callback has ended it."""
+        return self.error is not None
+
+    def take(self, error: BaseException, callback: str) -> bool:
+        """Take what a callback has raised; return False if the spin has ended already."""
+        with self._lock:
+            if self._closed:
+                return False
+            self._closed, self.error, self.callback = True, error, callback
+            return True
+
+    def close(self) -> None:
+        """Take nothing any more."""
+        with self._lock:
+            self._closed = True
+
+    def ends_program(self, error: BaseException) -> bool:
+        """Return whether an exception that left it ends its nodes; the stop button does not."""
+        return isinstance(error, SystemExit) or (isinstance(error, ENDS) and error is self.error)
+
+    def last_words(self, error: BaseException) -> str:
+        """Return how it has ended, and what has become of its nodes."""
+        names = first_few(self._names) or 'no node'
+        if self.ends_program(error):
+            who = f'{self.callback} of {names}' if self.callback else 'A callback'
+            return (
+                f'{who} has {in_words(error)}. In a notebook that ends {self.what} '
+                f'and {names} alone.'
+            )
+        if self.lasts:
+            fate = f'{names} goes on in the background, where lab.spin() runs it.'
+        elif any(map(node_exists, self.nodes)):
+            fate = f'No longer spun: {names}.'
+        else:
+            fate = f'Ended: {names}.'
+        if isinstance(error, KeyboardInterrupt):
+            return f'{self.what} was interrupted. {fate}'
+        return f'{self.what} has ended with this error. {fate}'
+
+
+def in_words(error: BaseException) -> str:
+    """Return what a callback has done that has raised one of `ENDS`."""
+    code = f': {quoted(error.args[0])}' if error.args else ''
+    return f'ended its program ({type(error).__name__}{code})'
+
+
+def last_words(error: BaseException) -> str:
+    """Return how a spin has ended that an exception has left; '' if it has left none."""
+    spin = _left_by(error)
+    return spin.last_words(error) if spin is not None else ''
+
+
+def ended_nodes(error: BaseException) -> Sequence[Node]:
+    """Return the nodes that end because nobody has caught an exception."""
+    spin = _left_by(error)
+    return spin.nodes if spin is not None and spin.ends_program(error) else ()
+
+
+def _left_by(error: BaseException) -> Spin | None:
+    """Return the outermost spin in the traceback of an exception."""
+    for frame, _ in traceback.walk_tb(error.__traceback__):
+        spin = frame.f_locals.get('spin')
+        if type(spin) is Spin:  # not isinstance(): some objects have a __class__ that raises
+            return spin
+        # The learner's own executor, whose callbacks run in the cell.
+        code = frame.f_code
+        if code.co_filename == rclpy.executors.__file__ and code.co_name.startswith('spin'):
+            return Spin(f'executor.{code.co_name}()', frame.f_locals['self'].get_nodes())
+    return None

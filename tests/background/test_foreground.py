@@ -1,0 +1,303 @@
+"""Spins in the foreground: what they raise comes out of them, as in a terminal."""
+
+from __future__ import annotations
+
+import pytest
+
+SETUP = """
+import os, signal, sys, threading, time
+import labkit as lab
+import rclpy
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.task import Future
+from labkit.background.runtime import runtime
+
+class Ticker(Node):
+    def __init__(self, act, name='ticker', at=1):
+        super().__init__(name)
+        self.count, self.act, self.at = 0, act, at
+        self.create_timer(0.01, self.on_timer)
+
+    def on_timer(self):
+        self.count += 1
+        if self.count >= self.at:
+            self.act()
+
+def fail():
+    1 / 0
+
+def leave():
+    sys.exit(3)
+
+def press():
+    raise KeyboardInterrupt
+
+def press_when_it_waits():
+    # In C, or for the background.
+    def look():
+        while True:
+            frame = sys._current_frames()[threading.main_thread().ident]
+            while frame is not None:
+                if frame.f_code.co_name in ('wait_for', 'wait_for_ready_callbacks'):
+                    return os.kill(os.getpid(), signal.SIGINT)
+                frame = frame.f_back
+    threading.Thread(target=look).start()
+
+def tick():
+    print('tick')
+
+def names():
+    spun = [entry.node for entry in runtime.nodes()]
+    return [node.get_name() for node in [*spun, *runtime.unspun_nodes()]]
+
+lab.start()
+"""
+OWN = 'executor = SingleThreadedExecutor()\n'
+# Each way to spin `node` in the foreground.
+SPINS = {
+    'spin': 'rclpy.spin(node)',
+    'spin_once': 'while True: rclpy.spin_once(node)',
+    'until a future': 'rclpy.spin_until_future_complete(node, Future())',
+    'own executor': OWN + 'executor.add_node(node)\nexecutor.spin()',
+    'own executor once': OWN + 'executor.add_node(node)\nwhile True: executor.spin_once()',
+    'with executor': OWN + 'rclpy.spin(node, executor)',
+    'once with executor': OWN + 'while True: rclpy.spin_once(node, executor=executor)',
+    'future with executor': OWN
+    + 'rclpy.spin_until_future_complete(node, Future(), executor=executor)',
+}
+QUICK = ['spin', 'own executor']
+_SLOW = pytest.mark.slow('one kernel for each way')
+ALL = [each if each in QUICK else pytest.param(each, marks=_SLOW) for each in SPINS]
+
+
+def tried(spin: str, rest: str) -> str:
+    """Return a program with a spin in its `try`."""
+    return 'try:\n' + ''.join(f'    {line}\n' for line in spin.splitlines()) + rest
+
+
+def caught(spin: str, what: str) -> str:
+    """Return a program that catches what comes out of a spin."""
+    return tried(spin, f'except {what} as error:\n    print("caught", repr(error))\n')
+
+
+@pytest.mark.parametrize('how', ALL)
+def test_what_a_callback_raises_comes_out_and_nothing_runs_after_it(kernel, how):
+    kernel.run(SETUP)
+    result = kernel.run(
+        'node = Ticker(fail, at=3)\n'
+        + caught(SPINS[how], 'ZeroDivisionError')
+        + 'other = lab.spin(Ticker(lambda: None, "other"))\n'
+        'lab.wait_until(lambda: other.count > 3)\nprint(node.count)'
+    )
+    assert result.error == ''
+    assert result.text == "caught ZeroDivisionError('division by zero')\n3\n"
+    uncaught = kernel.run(f'node = Ticker(fail)\n{SPINS[how]}\nprint("not run")')
+    assert uncaught.error == 'ZeroDivisionError: division by zero'
+    assert '1 / 0' in uncaught.traceback and 'executors.py' not in uncaught.traceback
+    assert 'has ended with this error. No longer spun: /ticker.' in uncaught.traceback
+    assert 'not run' not in uncaught.text and 'goes on' not in uncaught.traceback
+
+
+@pytest.mark.parametrize('how', ALL)
+def test_the_stop_button_is_seen_and_ends_the_cell_with_one_line(kernel, how):
+    kernel.run(SETUP)
+    program = 'node = Ticker(tick)\n' + caught(SPINS[how], 'KeyboardInterrupt')
+    cell = kernel.start(program + 'print("the end")')
+    kernel.wait_for_output(cell, 'tick')
+    kernel.interrupt()
+    result = kernel.finish(cell)
+    assert result.error == ''
+    assert result.text.endswith('caught KeyboardInterrupt()\nthe end\n')
+    # A node without callbacks: nothing else would end a wait in C.
+    result = kernel.run(
+        'node = Node("idle")\npress_when_it_waits()\n'
+        + tried(SPINS[how], 'finally:\n    print("finally")\n')
+        + 'print("not run")'
+    )
+    assert (result.error, result.text) == ('KeyboardInterrupt: ', 'finally\n')
+    assert result.traceback.endswith('() was interrupted. No longer spun: /idle.')
+    assert len(result.traceback.splitlines()) == 1
+    assert kernel.run('print(node.get_name())').text == 'idle\n'
+
+
+@pytest.mark.parametrize('how', ALL)
+def test_a_program_that_ends_in_a_callback_ends_its_spin_and_its_node(kernel, how):
+    kernel.run(SETUP + 'other = lab.spin(Ticker(lambda: None, "other"))')
+    result = kernel.run(
+        'node = Ticker(leave, at=3)\n'
+        + caught(SPINS[how], 'SystemExit')
+        + 'print(node.get_name(), node.count)\nnode.destroy_node()'
+    )
+    assert (result.error, result.text) == ('', 'caught SystemExit(3)\nticker 3\n')
+    result = kernel.run(f'node = Ticker(leave)\n{SPINS[how]}\nprint("not run")')
+    assert (result.error, result.text) == ('SystemExit: 3', '')
+    (line,) = result.traceback.splitlines()
+    assert 'has ended its program (SystemExit: 3). In a notebook that ends ' in line
+    assert line.endswith('() and /ticker alone.')
+    assert kernel.run('print(names())').text == "['other']\n"
+
+
+def test_a_node_of_lab_spin_goes_on_after_an_error_in_the_foreground(kernel):
+    kernel.run(SETUP)
+    cell = kernel.run('node = lab.spin(Ticker(fail))')
+    assert 'The node goes on' in kernel.wait_for_output(cell.msg_id, 'ZeroDivisionError')
+    for spin in ('rclpy.spin_once(node)', OWN + 'rclpy.spin_once(node, executor=executor)'):
+        result = kernel.run(caught(spin, 'ZeroDivisionError') + 'print(names())')
+        assert 'caught' in result.text and result.text.endswith("['ticker']\n")
+        before = 'before = node.count\nlab.wait_until(lambda: node.count > before + 2)'
+        assert kernel.run(before).error == ''
+    for spin in ('rclpy.spin(node)', OWN + 'rclpy.spin(node, executor)'):
+        uncaught = kernel.run(spin)
+        assert 'rclpy.spin() has ended with this error. /ticker goes on' in uncaught.traceback
+    kernel.run('node.act = tick')
+    cell = kernel.start('print("begun", flush=True)\nrclpy.spin(node)')
+    kernel.wait_for_output(cell, 'begun')
+    kernel.interrupt()
+    assert kernel.finish(cell).error == 'KeyboardInterrupt: '
+    assert kernel.run(before).error == ''
+
+
+PRESS = """
+def pressed_at(step, call):
+    # Press the stop button at a line of labkit. Return whether it has so many, and what came.
+    left = [step]
+    def trace(frame, event, arg):
+        if '/labkit/' not in frame.f_code.co_filename:
+            return None
+        if event == 'line':
+            left[0] -= 1
+            if left[0] == 0:
+                signal.raise_signal(signal.SIGINT)
+        return trace
+    error = None
+    sys.settrace(trace)
+    try:
+        call()
+    except BaseException as raised:
+        error = raised
+    finally:
+        sys.settrace(None)
+    return left[0] <= 0, error
+
+def press_everywhere(call):
+    step, swallowed, kept = 1, [], []
+    while True:
+        reached, error = pressed_at(step, call)
+        if not reached:
+            return step, swallowed, kept
+        if not isinstance(error, KeyboardInterrupt):
+            swallowed.append(step)
+        if runtime.entry_of(node) is not None:
+            kept.append(step)
+        step += 1
+"""
+
+
+def test_the_stop_button_between_any_two_lines_is_seen_and_leaves_nothing(kernel):
+    kernel.run(SETUP + PRESS + 'node = Node("idle")')
+    result = kernel.run(
+        'steps, *wrong = press_everywhere(lambda: rclpy.spin_once(node, timeout_sec=0))\n'
+        'print(steps > 50, wrong)\nlab.spin(Ticker(tick))\n'
+        'rclpy.spin_once(node, timeout_sec=0)'
+    )
+    assert (result.error, result.text.splitlines()[0]) == ('', 'True [[], []]')
+
+
+def test_the_stop_button_finds_a_loop_whose_callbacks_fail(kernel):
+    kernel.run(SETUP)
+    cell = kernel.start(
+        'node = Ticker(fail)\nwhile True:\n    try:\n        rclpy.spin_once(node)\n'
+        '    except ZeroDivisionError:\n        if node.count == 3: print("three", flush=True)\n'
+    )
+    kernel.wait_for_output(cell, 'three')
+    kernel.interrupt()
+    assert kernel.finish(cell).error == 'KeyboardInterrupt: '
+
+
+def test_an_executor_keeps_the_nodes_that_it_had(kernel):
+    kernel.run(SETUP)
+    result = kernel.run(
+        'node = Ticker(tick)\n' + OWN + 'executor.add_node(node)\n'
+        'for _ in range(2):\n    rclpy.spin_once(node, executor=executor)\n'
+        'print(executor.get_nodes() == [node])'
+    )
+    assert (result.error, result.text) == ('', 'tick\ntick\nTrue\n')
+
+
+def test_an_interrupt_in_a_callback_ends_the_spin_and_the_node(kernel):
+    kernel.run(SETUP)
+    text = kernel.run('node = Ticker(press)\n' + caught(SPINS['spin'], 'KeyboardInterrupt')).text
+    assert text == 'caught KeyboardInterrupt()\n'
+    result = kernel.run('node = Ticker(press)\nrclpy.spin(node)')
+    assert result.traceback == (
+        'on_timer of /ticker has ended its program (KeyboardInterrupt). '
+        'In a notebook that ends rclpy.spin() and /ticker alone.'
+    )
+    assert kernel.run('print(names())').text == '[]\n'
+
+
+COROUTINE = """
+class Waiting(Node):
+    def __init__(self):
+        super().__init__('waiting')
+        self.begun, self.future = 0, Future()
+        self.create_timer(0.01, self.on_timer)
+
+    async def on_timer(self):
+        self.begun += 1
+        await self.future
+        {act}()
+
+node = Waiting()
+while not node.begun:
+    rclpy.spin_once(node)
+node.future.set_result(None)
+"""
+
+
+@pytest.mark.parametrize(
+    ('act', 'error'),
+    [('fail', "ZeroDivisionError('division by zero')"), ('leave', 'SystemExit(3)')],
+)
+def test_a_coroutine_that_was_begun_in_an_earlier_spin_raises_in_this_one(kernel, act, error):
+    kernel.run(SETUP)
+    for spin in ('rclpy.spin(node)', 'rclpy.spin_once(node)'):
+        result = kernel.run(COROUTINE.format(act=act) + caught(spin, 'BaseException'))
+        assert (result.error, result.text) == ('', f'caught {error}\n')
+
+
+def test_a_function_that_waits_for_a_future_raises_in_the_spin(kernel):
+    kernel.run(SETUP + 'from std_srvs.srv import Trigger')
+    kernel.run(
+        'server = lab.spin(Node("server"))\n'
+        'server.create_service(Trigger, "fire", lambda request, response: response)\n'
+        'node = Node("client")\nclient = node.create_client(Trigger, "fire")'
+    )
+    for act, error in (('fail', 'ZeroDivisionError'), ('leave', 'SystemExit')):
+        result = kernel.run(
+            'sent = client.call_async(Trigger.Request())\n'
+            f'sent.add_done_callback(lambda future: {act}())\n'
+            + caught('rclpy.spin(node)', 'BaseException')
+        )
+        assert result.error == '' and f'caught {error}(' in result.text
+
+
+def test_a_spin_in_a_thread_ends_with_what_a_callback_raises(kernel):
+    kernel.run(SETUP)
+    start = (
+        'node = Ticker({act})\nthread = threading.Thread(target=rclpy.spin, args=(node,))\n'
+        'thread.start()\nthread.join()\nprint(names())'
+    )
+    failed = kernel.run(start.format(act='fail'))
+    shown = kernel.wait_for_output(failed.msg_id, 'ZeroDivisionError')
+    assert "['ticker']" in shown and 'An error has ended Thread-' in shown
+    left = kernel.run(start.format(act='leave'))
+    shown = kernel.wait_for_output(left.msg_id, '[]')
+    assert 'on_timer of /ticker has ended its program (SystemExit: 3).' in shown
+
+
+def test_the_last_cell_of_a_program_that_exits_says_so_only_of_a_spin(kernel):
+    kernel.run(SETUP)
+    assert kernel.run('sys.exit(4)').error == 'SystemExit: 4'
+    assert 'use %tb to see' in kernel.run('sys.exit(4)').traceback
