@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-__all__ = ['heard_at_once', 'held', 'look', 'pause', 'undoing', 'wait']
+__all__ = ['heard_at_once', 'held', 'is_usual', 'look', 'pause', 'undoing', 'wait']
 
 SLICE_SEC = 0.05
 
@@ -67,6 +67,11 @@ def held() -> Iterator[None]:
     finally:
         signal.signal(signal.SIGINT, before)
         button.look()
+
+
+def is_usual(handler: object) -> bool:
+    """Return whether a handler of SIGINT is Python's own, or holds the button."""
+    return handler is signal.default_int_handler or isinstance(handler, _Button)
 
 
 @contextmanager

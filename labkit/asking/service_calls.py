@@ -19,6 +19,7 @@ from labkit.rosgraph.interfaces import type_name
 
 if TYPE_CHECKING:
     from labkit.background.console import CallbackError
+    from labkit.background.nodes import NodeEntry
 
 __all__ = ['ServiceCalls', 'call_node', 'wait_until_spun']
 
@@ -80,10 +81,11 @@ class ServiceCalls:
 
         Raises:
             LabTimeout: No answer came in time.
-            LabError: No answer will come: the callback that serves it, in this notebook, failed.
+            LabError: No answer will come: in this notebook the callback that serves it has failed,
+                or its node has ended.
         """
         futures: list[Any] = [self._client.call_async(request)]
-        errors = self._errors()
+        errors, servers = self._errors(), self._servers()
         last_call = begun = time.monotonic()
 
         def answered() -> Any:
@@ -99,6 +101,12 @@ class ServiceCalls:
                     f'{self.name} gives no answer: {error.callback} of {error.node_name} has '
                     'failed.',
                     todo='Its error is shown above.',
+                )
+            ended = [server.name for server in servers if not server.alive]
+            if ended:
+                raise LabError(
+                    f'{self.name} gives no answer: {ended[0]} has ended.',
+                    todo='Run the cell that has started it again.',
                 )
             if timeout_sec is not None and now >= begun + timeout_sec:
                 raise LabTimeout(
@@ -128,11 +136,19 @@ class ServiceCalls:
             }
         )
 
+    def _servers(self) -> list[NodeEntry]:
+        """Return the nodes of this notebook that serve it."""
+        return [
+            entry
+            for entry in runtime.nodes()
+            if any(service.service_name == self.name for service in entry.node.services)
+        ]
+
     def _errors(self) -> list[tuple[CallbackError, int]]:
         """Return errors of this notebook's callbacks that serve it, with their counts."""
         callbacks = {
             (entry.name, callback_name(service))
-            for entry in runtime.nodes()
+            for entry in self._servers()
             for service in entry.node.services
             if service.service_name == self.name
         }

@@ -31,7 +31,7 @@ from rclpy.utilities import get_default_context
 from rclpy.validate_node_name import validate_node_name
 
 from labkit import domain_ids, settings, stop_button
-from labkit.background import compat
+from labkit.background import compat, exits
 from labkit.background.action_callbacks import guarded
 from labkit.background.arguments import check_callback, check_response, check_sent, check_type
 from labkit.background.domains import number_for_ros
@@ -105,6 +105,7 @@ def install(background: Runtime) -> None:
     if is_installed():
         return
     made.follow()
+    exits.install()
     safe = _NotebookSafe(background)
     for owner, name, stand_in in REPLACED:
         setattr(owner, name, _replacement(ORIGINALS[stand_in], getattr(safe, stand_in)))
@@ -121,6 +122,7 @@ def uninstall() -> None:
         if getattr(getattr(owner, name), '_labkit', False):
             setattr(owner, name, ORIGINALS[stand_in])
     made.forget()
+    exits.uninstall()
 
 
 def _replacement(original: Callable[..., Any], safe: Callable[..., Any]) -> Callable[..., Any]:

@@ -95,20 +95,25 @@ def test_a_program_of_an_earlier_exercise_is_no_trace_where_all_roles_are_theirs
     assert not _may_mean(probe, program + "node.create_subscription(Odometry, 'odom', f, 10)")
 
 
-def test_a_node_that_has_ended_itself_is_named(kernel: Any) -> None:
+@pytest.mark.parametrize(
+    ('how', 'said'),
+    [
+        ('rclpy.shutdown()', 'called rclpy.shutdown()'),
+        ('raise SystemExit', 'ended its program (SystemExit)'),
+    ],
+)
+def test_a_node_that_has_ended_itself_is_named(kernel: Any, how: str, said: str) -> None:
     kernel.run('import labkit as lab, rclpy; lesson = lab.lesson("odds")')
     kernel.run(
         'from rclpy.node import Node\nfrom std_msgs.msg import Int16\n'
         "node = lab.spin(Node('ones')); node.create_publisher(Int16, 'ones', 10)\n"
-        'def last():\n    rclpy.shutdown()\n'
+        f'def last():\n    {how}\n'
         'timer = node.create_timer(0.1, last)'
     )
     kernel.run('from labkit.background.runtime import runtime')
     kernel.run('import time\nwhile not runtime.ended: time.sleep(0.01)')
-    said = kernel.run('lesson.ones.check()').text
-    assert '/ones has ended, because its callback last called rclpy.shutdown()' in ' '.join(
-        said.split()
-    )
+    told = kernel.run('lesson.ones.check()').text
+    assert f'/ones has ended, because its callback last {said}' in ' '.join(told.split())
 
 
 @pytest.mark.slow('another process is killed')

@@ -1,0 +1,103 @@
+"""Ways in which a program ends its process. In a callback they end the program, not the kernel.
+
+Each of them raises there what ends a program (`foreground.ENDS`). Everywhere else, as in a cell,
+in a thread of its own or in a forked process, it does what it always does.
+"""
+
+from __future__ import annotations
+
+import _thread
+import functools
+import os
+import signal
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import rclpy.executors
+import rclpy.task
+
+from labkit import stop_button
+
+__all__ = ['install', 'uninstall']
+
+# Each callback, whoever runs it, is called by one of these files.
+_CALLERS = (rclpy.executors.__file__, rclpy.task.__file__)
+_FATAL = ('SIGTERM', 'SIGKILL', 'SIGHUP', 'SIGQUIT', 'SIGABRT')
+
+End = BaseException | None
+
+
+def _exit(status: object = None) -> End:
+    return SystemExit(status)
+
+
+def _abort() -> End:
+    return SystemExit(128 + signal.SIGABRT)
+
+
+def _ask_exit() -> End:  # `exit()` and `quit()` in a kernel
+    return SystemExit()
+
+
+def _signalled(number: int = signal.SIGINT) -> End:
+    handler = signal.getsignal(number)
+    if callable(handler) and not stop_button.is_usual(handler):
+        return None  # the program's own handler
+    if number == signal.SIGINT:
+        return KeyboardInterrupt()
+    fatal = any(number == getattr(signal, name) for name in _FATAL)
+    return SystemExit(128 + number) if fatal else None
+
+
+def _killed(pid: int, number: int) -> End:
+    return _signalled(number) if pid == os.getpid() else None
+
+
+_WAYS: tuple[tuple[Any, str, Callable[..., End]], ...] = (
+    (os, '_exit', _exit),
+    (os, 'abort', _abort),
+    (os, 'kill', _killed),
+    (signal, 'raise_signal', _signalled),
+    (_thread, 'interrupt_main', _signalled),
+)
+_replaced: list[tuple[Any, str, Any, Any]] = []
+
+
+def install() -> None:
+    """Put the replacements in place, in a kernel."""
+    shell = sys.modules['IPython'].get_ipython()
+    for owner, name, end in (*_WAYS, (shell, 'ask_exit', _ask_exit)):
+        original = getattr(owner, name)
+        guarded = _guarded(original, end, os.getpid())
+        setattr(owner, name, guarded)
+        _replaced.append((owner, name, original, guarded))
+
+
+def uninstall() -> None:
+    """Put the originals back, except what other code has replaced since."""
+    for owner, name, original, guarded in _replaced:
+        if getattr(owner, name) is guarded:
+            setattr(owner, name, original)
+    _replaced.clear()
+
+
+def _guarded(original: Callable[..., Any], end: Callable[..., End], kernel: int) -> Any:
+    @functools.wraps(original)
+    def function(*args: Any, **kwargs: Any) -> Any:
+        if os.getpid() == kernel and _in_callback():
+            error = end(*args, **kwargs)
+            if error is not None:
+                raise error
+        return original(*args, **kwargs)
+
+    return function
+
+
+def _in_callback() -> bool:
+    frame = sys._getframe(2)
+    while frame is not None:
+        if frame.f_code.co_filename in _CALLERS:
+            return True
+        frame = frame.f_back  # type: ignore[assignment]
+    return False
