@@ -7,6 +7,7 @@ or a Python in root's home is of no use to learners.
 
 from __future__ import annotations
 
+import itertools
 import os
 import random
 import shlex
@@ -135,8 +136,9 @@ def _laid_open(folder: Path) -> list[str]:
                 hidden.setdefault(above, []).append(path)
                 break
     lines = []
+    numbers = itertools.count()
     for above, paths in hidden.items():
-        kept = [folder / f'kept-{number}' for number, _ in enumerate(paths)]
+        kept = [folder / f'kept-{next(numbers)}' for _ in paths]
         for path, place in zip(paths, kept, strict=True):
             lines += [f'mkdir {place}', f'mount --bind {path} {place}']
         lines.append(f'mount -t tmpfs -o mode=755 tmpfs {above}')
