@@ -11,6 +11,8 @@ from labkit.course.lesson_run import LessonRun
 from labkit.exercises import Outcome
 from labkit.exercises.lesson import load
 
+pytestmark = pytest.mark.slow('each demonstration, in kernels')
+
 # Cells that make nodes like those that an exercise asks for.
 DEMONSTRATIONS = {
     'start_here': ['first-node'],

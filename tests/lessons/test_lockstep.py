@@ -263,6 +263,7 @@ FLOODS = {
 }
 
 
+@pytest.mark.slow('it drives while the machine is busy')
 @pytest.mark.parametrize('name', FLOODS)
 def test_flood_of_commands_ends(script: Script, name: str) -> None:
     exercise = square if name == 'a thread' else bot

@@ -17,6 +17,8 @@ import labkit.lessons
 from labkit.course.record import write_tasks
 from labkit.exercises.lesson import load
 
+pytestmark = pytest.mark.slow('all proofs of an exercise')
+
 ROOT = Path(__file__).resolve().parent.parent.parent
 NOTEBOOK = '04_odds.ipynb'
 MOST_LINES = 40

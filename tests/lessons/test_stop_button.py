@@ -38,6 +38,7 @@ def said(run: LessonRun, source: str) -> str:
     return texts[-1] if texts else ''
 
 
+@pytest.mark.slow('it stops checks many times')
 @pytest.mark.timeout(1200)
 @pytest.mark.parametrize('name', EXERCISES)
 def test_nothing_is_left_and_the_next_check_is_right(name: str, tmp_path: Path) -> None:

@@ -59,6 +59,7 @@ def neighbour(variants: Variants, seed: str) -> Exercise:
     return next(other for other in map(variants.of, others) if other.task != mine.task)
 
 
+@pytest.mark.slow('each exercise with numbers of its own')
 @pytest.mark.parametrize('seed', CHOSEN)
 @pytest.mark.parametrize('name', VARIED)
 def test_own_answer_passes_and_a_neighbours_is_told(lab: ModuleType, name: str, seed: str) -> None:

@@ -155,6 +155,7 @@ print(nodes(), gates(), stadium.wrong_gates(), stadium._process.exit_code)
     assert result.stdout == '[] [] [] 0\n', result.stderr
 
 
+@pytest.mark.slow('processes that are killed')
 def test_of_a_stadium_that_was_killed_nothing_is_shown(script: Any, env: dict[str, str]) -> None:
     code = """
 supervisor = psutil.Process(stadium._process._supervisor.pid)

@@ -165,6 +165,7 @@ def read(line: str) -> None:
             chosen.verbs[0].parser(chosen.name).read(words[1:])
 
 
+@pytest.mark.slow('thousands of lines')
 @settings(
     max_examples=10_000, deadline=None, database=None, suppress_health_check=list(HealthCheck)
 )
