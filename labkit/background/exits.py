@@ -41,7 +41,10 @@ def _ask_exit() -> End:  # `exit()` and `quit()` in a kernel
 
 
 def _signalled(number: int = signal.SIGINT) -> End:
-    handler = signal.getsignal(number)
+    try:
+        handler = signal.getsignal(number)
+    except (TypeError, ValueError):
+        return None  # no signal: `os.kill(pid, 0)` asks whether a process is alive
     if callable(handler) and not stop_button.is_usual(handler):
         return None  # the program's own handler
     if number == signal.SIGINT:

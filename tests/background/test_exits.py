@@ -154,3 +154,9 @@ def test_elsewhere_they_do_what_they_always_do(kernel):
     assert undone.text == '<built-in function _exit> False\n'
     kernel.run('exit()')
     kernel.process.wait(60)
+
+
+def test_a_callback_may_ask_whether_its_process_is_alive(kernel):
+    kernel.run(SETUP)
+    result = kernel.run('ends("asking", rclpy.spin, lambda: sys.exit(os.kill(os.getpid(), 0)))')
+    assert (result.error, result.text) == ('', 'asking SystemExit()\n')
