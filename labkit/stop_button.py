@@ -10,9 +10,10 @@ one does so in `undoing()`.
 from __future__ import annotations
 
 import signal
+import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
@@ -22,9 +23,16 @@ SLICE_SEC = 0.05
 
 
 class _Button:
-    """A handler of SIGINT that notes the signal."""
+    """A handler of SIGINT that notes the signal.
+
+    Args:
+        before: The handler that it stands in for, perhaps the learner's own.
+    """
 
     pressed = raised = at_once = undoing = False
+
+    def __init__(self, before: Callable[[int, FrameType | None], object]) -> None:
+        self._before = before
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
         self.pressed = True
@@ -33,9 +41,13 @@ class _Button:
 
     def look(self) -> None:
         # Only once: the cleanup that follows may wait, too.
-        if self.pressed and not self.raised and not self.undoing:
+        if not self.pressed or self.raised or self.undoing:
+            return
+        if is_usual(self._before):
             self.raised = True
             raise KeyboardInterrupt
+        self.pressed = False
+        self._before(signal.SIGINT, sys._getframe(1))
 
 
 def _held() -> _Button | None:
@@ -60,7 +72,7 @@ def held() -> Iterator[None]:
     if not is_main or not callable(before) or isinstance(before, _Button):
         yield
         return
-    button = _Button()
+    button = _Button(before)
     signal.signal(signal.SIGINT, button)
     try:
         yield

@@ -301,3 +301,17 @@ def test_the_last_cell_of_a_program_that_exits_says_so_only_of_a_spin(kernel):
     kernel.run(SETUP)
     assert kernel.run('sys.exit(4)').error == 'SystemExit: 4'
     assert 'use %tb to see' in kernel.run('sys.exit(4)').traceback
+
+
+@pytest.mark.parametrize('how', QUICK)
+def test_a_handler_of_the_learners_own_hears_the_stop_button(kernel, how):
+    kernel.run(SETUP)
+    cell = kernel.start(
+        'def stop(number, frame):\n    print("stop", flush=True)\n    rclpy.shutdown()\n'
+        'rclpy.init()\nnode = Ticker(tick)\nsignal.signal(signal.SIGINT, stop)\n'
+        f'{SPINS[how]}\nprint("the end")'
+    )
+    kernel.wait_for_output(cell, 'tick')
+    kernel.interrupt()
+    result = kernel.finish(cell)
+    assert result.error == '' and 'stop\n' in result.text and result.text.endswith('the end\n')
