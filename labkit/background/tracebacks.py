@@ -17,7 +17,7 @@ import threading
 import traceback
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from types import FrameType, TracebackType
 from typing import Any
 
@@ -150,9 +150,10 @@ def install(shell: Any, last_words: Callable[[BaseException], str]) -> None:
         if any(words) and isinstance(error, (KeyboardInterrupt, SystemExit)):
             return words
         hint = [*_hint(error, tb), *filter(None, words)]
-        if formatter.mode != 'Verbose' and isinstance(tb, TracebackType):
-            tb = without_ros(tb)
-        return [*original(kind, error, tb, *args, **options), *hint]
+        if formatter.mode == 'Verbose' or not isinstance(tb, TracebackType):
+            return [*original(kind, error, tb, *args, **options), *hint]
+        with _causes_without_ros(error):
+            return [*original(kind, error, without_ros(tb), *args, **options), *hint]
 
     def showtraceback(exc_tuple: Any = None, *args: Any, **options: Any) -> None:
         error = exc_tuple[1] if exc_tuple else sys.exc_info()[1]
@@ -177,6 +178,24 @@ def install(shell: Any, last_words: Callable[[BaseException], str]) -> None:
     formatter.structured_traceback = structured_traceback
     shell.showtraceback = showtraceback
     threading.excepthook = excepthook
+
+
+@contextmanager
+def _causes_without_ros(error: BaseException | None) -> Iterator[None]:
+    """Shorten the tracebacks of what has led to an error for a `with` block."""
+    whole: dict[int, tuple[BaseException, TracebackType | None]] = {}
+    left = [error]
+    while left:
+        one = left.pop()
+        if one is not None and id(one) not in whole:
+            whole[id(one)] = one, one.__traceback__
+            one.__traceback__ = without_ros(one.__traceback__) or one.__traceback__
+            left += [one.__cause__, one.__context__]
+    try:
+        yield
+    finally:
+        for one, tb in whole.values():
+            one.__traceback__ = tb
 
 
 def _hint(error: object, tb: object) -> list[str]:

@@ -315,3 +315,15 @@ def test_a_handler_of_the_learners_own_hears_the_stop_button(kernel, how):
     kernel.interrupt()
     result = kernel.finish(cell)
     assert result.error == '' and 'stop\n' in result.text and result.text.endswith('the end\n')
+
+
+def test_an_error_on_top_of_what_a_callback_raised_shows_the_learners_lines_alone(kernel):
+    kernel.run(SETUP)
+    for after in (
+        'except ZeroDivisionError as error:\n    raise ValueError("stopped") from error',
+        'finally:\n    raise ValueError("stopped")',
+    ):
+        result = kernel.run('node = Ticker(fail)\n' + tried('rclpy.spin(node)', after))
+        assert result.error == 'ValueError: stopped'
+        assert 'ZeroDivisionError: division by zero' in result.traceback
+        assert 'labkit' not in result.traceback and 'executors.py' not in result.traceback
