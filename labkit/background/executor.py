@@ -347,25 +347,30 @@ class BackgroundExecutor(Executor):
             if took >= settings.LONG_SEC or entry.took:
                 entry.took[callback_name(what)] = took
             # The error of a node or action that was removed meanwhile is only that it was.
-            if (
-                error is not None
-                and entry.node in self._entries
-                and not _was_destroyed(entry.node, what, error)
-            ):
+            if error is not None and not self._was_removed(entry, what, error):
                 self._hand_over(entry, callback_name(what), error)
             spun = self._entries.get(entry.node)
             if spun is not None and spun.budget is not None and spun.budget <= 0:
                 self.remove_node(entry.node)
             self._conditions.look()
 
+    def _was_removed(self, entry: NodeEntry, what: object, error: BaseException) -> bool:
+        """Return whether an error is only that its node or action has ended meanwhile."""
+        if entry.node in self._entries:
+            return _was_destroyed(entry.node, what, error)
+        # After its own `rclpy.shutdown()`, a callback may still end its program, or fail.
+        return isinstance(error, InvalidHandle)
+
     def _hand_over(self, entry: NodeEntry, callback: str, error: BaseException) -> None:
         """Pass on what a callback has raised, to a foreground spin if its node has one."""
         # A coroutine may have begun in an earlier spin, and with another entry.
-        spun = self._entries[entry.node]
+        spun = self._entries.get(entry.node)
         ends = isinstance(error, ENDS)
-        if any(spin.take(error, callback) for spin in reversed(tuple(spun.spins))):
-            if ends or not (spun.lasts or len(spun.spins) > 1):
+        if any(spin.take(error, callback) for spin in reversed((spun or entry).spins[:])):
+            if spun is not None and (ends or not (spun.lasts or len(spun.spins) > 1)):
                 self.remove_node(entry.node)
+        elif spun is None:
+            return  # it has ended, and its spin, too
         elif ends:
             self._end_program(entry, callback, error)
         else:

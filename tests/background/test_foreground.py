@@ -327,3 +327,16 @@ def test_an_error_on_top_of_what_a_callback_raised_shows_the_learners_lines_alon
         assert result.error == 'ValueError: stopped'
         assert 'ZeroDivisionError: division by zero' in result.traceback
         assert 'labkit' not in result.traceback and 'executors.py' not in result.traceback
+
+
+@pytest.mark.parametrize('end', ['leave', 'fail'])
+def test_what_a_callback_raises_after_its_shutdown_comes_out(kernel, end):
+    kernel.run(SETUP + f'def end():\n    rclpy.shutdown()\n    {end}()\n')
+    kernel.run('other = lab.spin(Ticker(lambda: None, "other"))')
+    error = {'leave': 'SystemExit(3)', 'fail': "ZeroDivisionError('division by zero')"}[end]
+    for _ in range(2):
+        result = kernel.run(
+            'rclpy.init()\nnode = Ticker(end)\n' + caught(SPINS['spin'], 'BaseException')
+        )
+        assert result.error == '' and result.text.endswith(f'caught {error}\n')
+    assert kernel.run('print(names())').text == "['other']\n"
