@@ -73,6 +73,7 @@ REPLACED: tuple[tuple[Any, str, str], ...] = (
     (rclpy.client.Client, 'call_async', 'call_async'),
     (rclpy.service.Service, 'send_response', 'send_response'),
     (rclpy.task.Future, 'add_done_callback', 'add_done_callback'),
+    (rclpy.task.Task, '__call__', 'run_task'),
     (rclpy.action.client.ActionClient, '__init__', 'make_action_client'),
     (rclpy.action.client.ActionClient, 'send_goal', 'send_goal'),
     (rclpy.action.client.ActionClient, 'wait_for_server', 'wait_for_server'),
@@ -356,6 +357,15 @@ class _NotebookSafe:
     def send_response(self, service: Any, response: Any, header: Any) -> None:
         check_response(service, response)
         ORIGINALS['send_response'](service, response, header)
+
+    def run_task(self, task: Any) -> None:
+        try:
+            ORIGINALS['run_task'](task)
+        except ENDS as error:
+            if _in_cell():
+                raise
+            # A MultiThreadedExecutor would never see it: rclpy notes only an Exception.
+            task.set_exception(error)
 
     def add_done_callback(self, future: Any, callback: Any) -> None:
         check_callback('add_done_callback', callback, 0)

@@ -340,3 +340,14 @@ def test_what_a_callback_raises_after_its_shutdown_comes_out(kernel, end):
         )
         assert result.error == '' and result.text.endswith(f'caught {error}\n')
     assert kernel.run('print(names())').text == "['other']\n"
+
+
+@pytest.mark.parametrize('leave', ['sys.exit(3)', 'signal.raise_signal(signal.SIGINT)'])
+def test_a_program_that_ends_in_a_thread_of_an_executor_ends_its_spin(kernel, leave):
+    kernel.run(SETUP)
+    result = kernel.run(
+        f'node = Ticker(lambda: {leave})\nexecutor = MultiThreadedExecutor(2)\n'
+        'executor.add_node(node)\nexecutor.spin()'
+    )
+    assert result.error in ('SystemExit: 3', 'KeyboardInterrupt: ')
+    assert len(result.traceback.splitlines()) == 1
