@@ -33,6 +33,7 @@ class Spin:
         error: What a callback has raised, to come out of the spin.
         callback: The name of that callback.
         lasts: Whether its node runs in the background all the same.
+        busy: The name of a callback that runs on after it; nothing can interrupt that.
     """
 
     def __init__(self, what: str, nodes: Sequence[Node]) -> None:
@@ -41,6 +42,7 @@ class Spin:
         self.error: BaseException | None = None
         self.callback = ''
         self.lasts = False
+        self.busy = ''
         self._names = [full_name(node) for node in nodes]
         self._lock = threading.Lock()
         self._closed = False
@@ -69,22 +71,24 @@ class Spin:
 
     def last_words(self, error: BaseException) -> str:
         """Return how it has ended, and what has become of its nodes."""
-        names = first_few(self._names) or 'no node'
+        names = first_few(self._names)
         if self.ends_program(error):
             who = f'{self.callback} of {names}' if self.callback else 'A callback'
-            return (
-                f'{who} has {in_words(error)}. In a notebook that ends {self.what} '
-                f'and {names} alone.'
-            )
-        if self.lasts:
+            ended = ' and '.join(filter(None, [self.what, names]))
+            return f'{who} has {in_words(error)}. In a notebook that ends {ended} alone.'
+        if not names:  # the executor was shut down since
+            fate = ''
+        elif self.lasts:
             fate = f'{names} goes on in the background, where lab.spin() runs it.'
         elif any(map(node_exists, self.nodes)):
             fate = f'No longer spun: {names}.'
         else:
             fate = f'Ended: {names}.'
         if isinstance(error, KeyboardInterrupt):
-            return f'{self.what} was interrupted. {fate}'
-        return f'{self.what} has ended with this error. {fate}'
+            busy = f'{self.busy} still runs, and until it has returned, no other callback does.'
+            words = [f'{self.what} was interrupted.', fate, busy if self.busy else '']
+            return ' '.join(filter(None, words))
+        return f'{self.what} has ended with this error. {fate}'.rstrip()
 
 
 def in_words(error: BaseException) -> str:

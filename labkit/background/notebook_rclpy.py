@@ -292,7 +292,7 @@ class _NotebookSafe:
         known = self._background.entry_of(node)
         before = known.callbacks if known is not None else 0
         with self._spun(spin, budget=1) as entry:
-            self._background.wait(lambda: spin.is_over or entry.callbacks > before, timeout_sec)
+            self._wait_spun(spin, entry, lambda: entry.callbacks > before, timeout_sec)
 
     def spin_until_future_complete(
         self,
@@ -306,8 +306,8 @@ class _NotebookSafe:
             with self._lent(spin, executor):
                 executor.spin_until_future_complete(future, timeout_sec)
             return
-        with self._spun(spin):
-            self._background.wait(lambda: spin.is_over or _is_over(future), timeout_sec)
+        with self._spun(spin) as entry:
+            self._wait_spun(spin, entry, lambda: _is_over(future), timeout_sec)
 
     def spin_executor(self, executor: Executor) -> None:
         """Spin the learner's own executor so that the stop button is heard."""
@@ -571,11 +571,30 @@ class _NotebookSafe:
             if spin.error is not None:
                 raise spin.error
 
+    def _wait_spun(
+        self,
+        spin: Spin,
+        entry: NodeEntry,
+        done: Callable[[], bool],
+        timeout_sec: float | None,
+    ) -> None:
+        if self._background.wait(lambda: spin.is_over or done(), timeout_sec) or entry.lasts:
+            return
+        if self._running_callback(entry):
+            # The timeout is none for a callback that has begun, and it may still raise.
+            self._background.wait(lambda: True, None)
+
+    def _running_callback(self, entry: NodeEntry) -> str:
+        """Return the name of the callback that its node is running, '' if it runs none."""
+        caller = self._background.running()
+        return caller[1] if caller is not None and caller[0].node is entry.node else ''
+
     def _end_spin(self, spin: Spin, entry: NodeEntry) -> None:
         entry.spins.remove(spin)
         spin.lasts = entry.lasts and self._background.entry_of(entry.node) is entry
         if not (entry.lasts or entry.spins):
             self._background.release(entry)
+            spin.busy = self._running_callback(entry)
         if isinstance(spin.error, ENDS) and not _in_cell():
             # Python does not tell that a thread ends in this way, and no cell does.
             self._background.end_program(entry, spin.callback, spin.error)

@@ -299,6 +299,11 @@ class Runtime:
             return self._executor is not None
         return self._executor is not None and self._executor.in_callback()
 
+    def running(self) -> tuple[NodeEntry, str] | None:
+        """Return the node whose callback is running, and the callback's name, or None."""
+        running = self._executor.running_for() if self._executor is not None else None
+        return running[:2] if running is not None else None
+
     @contextmanager
     def waiting_for(self, entity: Any, words: str) -> Iterator[None]:
         """Note in a `with` block that a thread waits for a rate's timer or for a client."""

@@ -351,3 +351,53 @@ def test_a_program_that_ends_in_a_thread_of_an_executor_ends_its_spin(kernel, le
     )
     assert result.error in ('SystemExit: 3', 'KeyboardInterrupt: ')
     assert len(result.traceback.splitlines()) == 1
+
+
+def test_what_a_callback_raises_after_the_timeout_comes_out(kernel):
+    kernel.run(SETUP)
+    kernel.run(
+        'begun = threading.Event()\n'
+        'def slow():\n    begun.set()\n    time.sleep(0.2)\n    fail()\n'
+        'def begin(node):\n    begun.clear()\n'
+    )
+    for spin in (
+        'while True: rclpy.spin_once(node, timeout_sec=0.05)',
+        'while True: rclpy.spin_until_future_complete(node, Future(), timeout_sec=0.05)',
+    ):
+        result = kernel.run('node = Ticker(slow)\n' + caught(spin, 'ZeroDivisionError'))
+        assert (result.error, result.text) == (
+            '',
+            "caught ZeroDivisionError('division by zero')\n",
+        )
+
+
+def test_the_words_name_no_node_when_the_executor_is_shut_down(kernel):
+    kernel.run(SETUP)
+    for act, words in (
+        ('fail', 'executor.spin_once() has ended with this error.'),
+        (
+            'leave',
+            'A callback has ended its program (SystemExit: 3). '
+            'In a notebook that ends executor.spin_once() alone.',
+        ),
+    ):
+        result = kernel.run(
+            f'node = Ticker({act})\n'
+            + tried(SPINS['own executor once'], 'finally:\n    executor.shutdown()')
+        )
+        assert result.traceback.splitlines()[-1] == words
+
+
+@pytest.mark.slow('a callback is waited for')
+def test_the_stop_button_says_which_callback_it_can_not_interrupt(kernel):
+    kernel.run(SETUP + 'free = threading.Event()')
+    cell = kernel.start(
+        'node = Ticker(lambda: (print("busy", flush=True), free.wait()))\nrclpy.spin(node)'
+    )
+    kernel.wait_for_output(cell, 'busy')
+    kernel.interrupt()
+    assert kernel.finish(cell).traceback == (
+        'rclpy.spin() was interrupted. No longer spun: /ticker. '
+        'on_timer still runs, and until it has returned, no other callback does.'
+    )
+    kernel.run('free.set()')
