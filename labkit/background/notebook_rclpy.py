@@ -315,6 +315,9 @@ class _NotebookSafe:
         self._background.refuse_in_callback(spin.what)
         self._background.foreign_threads.add(threading.current_thread())
         program = self._running_program()
+        if program is not None and program.ended_in is not None and _in_cell():
+            # What was made after its end, in another cell, is spun as by `rclpy.spin`.
+            program = program if self._has_just_ended() else None
         try:
             while executor.context.ok() and not compat.is_shut_down(executor):
                 if program is not None and program.ended_in is not None:

@@ -401,3 +401,16 @@ def test_the_stop_button_says_which_callback_it_can_not_interrupt(kernel):
         'on_timer still runs, and until it has returned, no other callback does.'
     )
     kernel.run('free.set()')
+
+
+@pytest.mark.parametrize('how', QUICK)
+def test_a_node_made_after_the_end_of_another_cells_program_is_spun(kernel, how):
+    kernel.run(SETUP + 'other = lab.spin(Ticker(lambda: None, "other"))')
+    kernel.run('rclpy.init()\nNode("ended")\nrclpy.shutdown()')
+    result = kernel.run('node = Ticker(leave)\n' + caught(SPINS[how], 'SystemExit'))
+    assert (result.error, result.text) == ('', 'caught SystemExit(3)\n')
+    result = kernel.run(
+        'rclpy.init()\nnode = Ticker(leave)\n' + OWN + 'executor.add_node(node)\n'
+        'rclpy.shutdown()\nexecutor.spin()\nprint("the end")'
+    )
+    assert (result.error, result.text) == ('', 'the end\n')
