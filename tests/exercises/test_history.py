@@ -237,6 +237,7 @@ class Ones(Node):
         self.publisher.publish(Int16(data=1))
 
 
+@pytest.mark.slow('it goes by real time, and needs a quiet machine')
 def test_burst_of_a_node_that_took_long_to_make_is_no_making_up(follows: ModuleType) -> None:
     node = Ones()
     made.add(node, Origin(runtime.console.current_cell()))  # as in a notebook
