@@ -200,6 +200,7 @@ def test_options_that_do_not_go_together(
     assert '--fast' in capsys.readouterr().err
 
 
+@pytest.mark.slow('an environment, measured')
 def test_coverage_of_processes_too(course: Course) -> None:
     course.make_complete()
     shutil.copy(ROOT / 'pyproject.toml', course.folder)

@@ -170,6 +170,7 @@ def test_what_another_process_hears_is_what_it_was_sent(run_beside):
     assert run('print(new["hears", "/other", "/chatter"])') == '3'
 
 
+@pytest.mark.slow('other processes, in real time')
 def test_of_several_other_publishers_none_is_said_to_have_sent_it(run_beside):
     run = run_beside
     run('others = [start("one"), start("two")]\ncounter.open()\n' + COUNT)

@@ -238,6 +238,7 @@ def test_codespace_opens_the_first_lesson(place: Place, servers: list[Server]) -
         assert opened == welcome, host
 
 
+@pytest.mark.slow('an environment like that of a container')
 def test_container_of_vs_code_needs_no_origin(place: Place) -> None:
     # There the variable is not set, and the option is not given.
     command = devcontainer()['postAttachCommand'].replace('exec python3', 'echo', 1)

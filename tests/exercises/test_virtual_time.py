@@ -239,7 +239,7 @@ def test_output_is_counted_and_not_shown(kernel: Any) -> None:
 
 
 STOPPED = """
-import os, signal
+import signal, threading
 import labkit as lab
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -257,7 +257,8 @@ class Ones(Node):
         if self.get_clock().ros_time_is_active:
             self.calls += 1
             if self.calls == 20:
-                os.kill(os.getpid(), signal.SIGINT)  # as the stop button does
+                # As the stop button does. A callback that sends it by os.kill ends its node.
+                signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
         self.publisher.publish(Int16(data=1))
 
 node = lab.spin(Ones())

@@ -79,6 +79,7 @@ def test_a_file_that_never_comes_to_its_end_is_ended(kernel, tmp_path):
     assert 'running' not in kernel.run('lab.processes()').text
 
 
+@pytest.mark.slow('programs that are killed')
 def test_a_killed_program_leaves_the_graph_and_comes_again_if_it_is_to(kernel, tmp_path):
     node = '<node pkg="demo_nodes_py" exec="{}"/>'
     body = node.format('talker" respawn="true') + node.format('listener')

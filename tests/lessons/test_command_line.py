@@ -95,6 +95,7 @@ def domain_id() -> Iterator[int]:
     claim.close()
 
 
+@pytest.mark.slow('a whole lesson')
 def test_commands_answer_the_questions_on_the_harbour(
     domain_id: int, lab_env: dict[str, str]
 ) -> None:

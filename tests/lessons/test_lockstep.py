@@ -96,6 +96,7 @@ def paths(script: Script, checks: int) -> list[Any]:
 
 
 # A second of the processor takes a dozen beside eight loops and the rest of the suite.
+@pytest.mark.slow('whole drives')
 @pytest.mark.timeout(600)
 def test_same_drive_gives_the_same_path_on_a_calm_and_on_a_busy_machine(script: Script) -> None:
     checks = paths(script, 2)
@@ -244,6 +245,7 @@ ROBOTS = {
 }
 
 
+@pytest.mark.slow('whole drives')
 @pytest.mark.parametrize('name', ROBOTS)
 def test_robot_that_is_not_the_one_of_the_lesson(script: Script, name: str) -> None:
     done = script(f'{START}\n{ROBOTS[name]}\n{bot.answer.code}' + CHECK.format(name='bot'))

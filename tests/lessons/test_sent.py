@@ -225,6 +225,7 @@ def test_commands_without_percent_are_told_so(notebook: Any) -> None:
         assert 'A line of a cell that is for the command line begins with %.' in text
 
 
+@pytest.mark.slow('recordings, in real time')
 def test_recordings_go_on_after_stop_without_the_setup_cell(notebook: Any) -> None:
     for _ in range(2):
         notebook.run('lab.stop()')

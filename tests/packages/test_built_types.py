@@ -42,6 +42,7 @@ ADD = 'example_interfaces/srv/AddTwoInts'
 NUMBER = 'example_interfaces/msg/Int64'
 
 
+@pytest.mark.slow('it builds types with a compiler')
 def test_a_tutorial_with_such_types_works(start_kernel):
     """One kernel for all that has to do with types: each that is new is built here."""
     kernel = start_kernel()

@@ -59,6 +59,7 @@ def test_the_word_that_is_begun_is_told():
     )
 
 
+@pytest.mark.slow('bash, many times')
 @pytest.mark.usefixtures('robot')
 def test_names_of_the_live_graph_in_bash(domain, lab_env):
     env = {**lab_env, **domain}

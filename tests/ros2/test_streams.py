@@ -117,6 +117,7 @@ def test_echo_waits_for_a_topic_that_does_not_exist_yet(script, domain):
     assert result.exit_code == 0
 
 
+@pytest.mark.slow('rates, in real time')
 def test_rates(ros2):
     hz, bw, delay, headless, no_delay, no_bw, no_header = ros2(
         'topic hz /chatter --count 2 --window 1',

@@ -76,6 +76,7 @@ def test_failed_update_leaves_what_was_there(course: Course) -> None:
     assert course.installed() == {'alpha-1.0'}
 
 
+@pytest.mark.slow('it makes environments')
 def test_killed_half_way_then_repeated(course: Course, gate: Gate) -> None:
     course.require(course.wheel('alpha'), f'{gate.url}/slow-1.0-py3-none-any.whl')
     course.wheel('slow')
@@ -153,6 +154,7 @@ def test_broken_environment_is_made_anew(course: Course, damage: str, reason: st
     assert course.installed() == {'alpha-1.0'}
 
 
+@pytest.mark.slow('it makes environments')
 def test_patch_release_of_python_changes_nothing(course: Course) -> None:
     assert course.make().returncode == 0
     stamp = course.venv / 'labkit.json'
@@ -218,6 +220,7 @@ def test_new_defaults_of_jupyterlab_of_the_same_version_arrive(installed: Course
     assert installed.make().stdout == ''
 
 
+@pytest.mark.slow('it makes environments')
 def test_new_settings_of_a_tool_install_nothing(course: Course) -> None:
     shutil.copy(ROOT / 'pyproject.toml', course.folder)
     assert course.make().returncode == 0
@@ -289,6 +292,7 @@ def test_other_platforms_are_told_what_to_do(system: str, processor: str, libc: 
     machine.check_platform('Linux', 'x86_64', 'glibc 2.28')
 
 
+@pytest.mark.slow('it makes environments')
 def test_no_network(course: Course) -> None:
     course.require('http://127.0.0.1:9/alpha-1.0-py3-none-any.whl')
     assert 'Connect to the internet' in sentence(course.make())

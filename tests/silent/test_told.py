@@ -82,6 +82,7 @@ def notebook(start_kernel: Callable[..., Kernel]) -> Kernel:
     return kernel
 
 
+@pytest.mark.slow('each fault, in a kernel of its own')
 def test_each_is_told_under_its_cell_and_gone_when_it_is_mended(notebook: Kernel) -> None:
     for name, (code, sentence) in CLASSICS.items():
         made = notebook.run(code)

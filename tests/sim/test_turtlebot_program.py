@@ -115,6 +115,7 @@ def test_a_command_timeout_without_sense_is_told():
         rclpy.shutdown()
 
 
+@pytest.mark.slow('a launch that ends')
 @pytest.mark.parametrize(
     ('value', 'words'), [('9', 'x=9.0, y=0.0 is outside of it.'), ('far', "but it is 'far'.")]
 )
