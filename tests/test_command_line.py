@@ -241,6 +241,7 @@ def test_slow():
 """
 
 
+@pytest.mark.slow('runs a small suite, twice')
 def test_what_passes_only_at_the_second_try_is_told(course: Course) -> None:
     course.make_complete()
     shutil.copy(ROOT / 'pyproject.toml', course.folder)
@@ -295,6 +296,7 @@ def test_marker_without_a_word_on_why_is_refused(course: Course) -> None:
     assert 'say why' in done.stdout + done.stderr
 
 
+@pytest.mark.slow('copies the course')
 def test_first_failure_ends_the_test_command_and_leaves_no_junk(course: Course) -> None:
     course.make_complete()
     (course.folder / 'labkit' / 'bad.py').write_text('import this is not Python\n')

@@ -71,6 +71,7 @@ def test_the_announcement_of_a_process_that_is_gone_counts_no_more(node: Node) -
         assert announced.participants() == 1
 
 
+@pytest.mark.slow('starts four processes')
 def test_a_list_has_all_that_was_announced(script: Callable[..., Any]) -> None:
     with closing(domains.claim_domain()) as claim:
         env = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'ROS_DOMAIN_ID': str(claim.domain_id)}

@@ -150,6 +150,7 @@ async def count(way, number):
 """
 
 
+@pytest.mark.slow('starts other processes')
 def test_publishers_of_other_processes_are_heard_between_cells(run_beside):
     run = run_beside
     run('others = [start("other")]\ncounter.open()\n' + COUNT)

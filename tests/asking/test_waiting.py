@@ -265,6 +265,7 @@ input()
 """
 
 
+@pytest.mark.slow('starts another process')
 def test_another_type_in_another_process_is_named(start_kernel):
     lab = start_kernel(ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST')
     assert not lab.run(SETUP).error

@@ -178,6 +178,7 @@ print(ActionClient.send_goal.__module__, hasattr(ActionClient.send_goal, '_labki
     assert result.stdout == 'rclpy.action.client False\n', result.stderr
 
 
+@pytest.mark.slow('hundreds of goals')
 def test_no_answer_is_lost_when_goals_are_sent_while_callbacks_run(kernel):
     kernel.run(NODES)
     kernel.run("""

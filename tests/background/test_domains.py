@@ -150,6 +150,7 @@ def test_two_notebooks_do_not_hear_each_other_until_they_mean_to(
     assert not one.run('lab.wait_until(lambda: "other" in listener.heard, timeout_sec=60)').error
 
 
+@pytest.mark.slow('starts another process')
 def test_second_participant_of_the_same_name_is_reported(
     start_kernel: Callable[..., object],
 ) -> None:

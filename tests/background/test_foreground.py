@@ -194,6 +194,7 @@ def press_everywhere(call):
 """
 
 
+@pytest.mark.slow('tries every line')
 def test_the_stop_button_between_any_two_lines_is_seen_and_leaves_nothing(kernel):
     kernel.run(SETUP + PRESS + 'node = Node("idle")')
     result = kernel.run(

@@ -143,6 +143,7 @@ def test_neighbours_do_not_hear_each_other(lab_env: dict[str, str]) -> None:
         assert nodes == [number]
 
 
+@pytest.mark.slow('starts several processes')
 def test_a_notebook_between_and_what_it_starts(
     start_kernel: Start, between: int, lab_env: dict[str, str]
 ) -> None:

@@ -18,6 +18,7 @@ print(sorted(names), len(infos), len(subscribers), threading.active_count())
 """
 
 
+@pytest.mark.slow('runs a lesson a hundred times')
 def test_cells_run_100_times_leave_one_node_of_each_kind(kernel):
     assert not kernel.run(SETUP + TALKER + LISTENER).error
     kernel.run('lab.wait_until(lambda: listener.heard)')

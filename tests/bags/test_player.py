@@ -343,7 +343,17 @@ playing.wait(60)
 """
 
 
-@pytest.mark.parametrize('held_up', ['', 'at first', 'at last'])
+HELD_UP = pytest.mark.slow('starts and stops another process')
+
+
+@pytest.mark.parametrize(
+    'held_up',
+    [
+        '',
+        pytest.param('at first', marks=HELD_UP),
+        pytest.param('at last', marks=HELD_UP),
+    ],
+)
 def test_another_process_hears_the_first_message_and_the_last(
     tmp_path: Path, messages: list[Stored], lab_env: dict[str, str], held_up: str
 ) -> None:

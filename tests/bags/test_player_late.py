@@ -29,6 +29,7 @@ print(len(moments), moments[-1] - moments[5])
 """
 
 
+@pytest.mark.slow('plays in real time')
 def test_what_is_late_is_not_rushed_through(kernel: Any, tmp_path: Path) -> None:
     path = make_drive(tmp_path / 'drive', seconds=4.0)
     result = kernel.run(PLAY.format(path=str(path)))

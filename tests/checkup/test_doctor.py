@@ -42,6 +42,7 @@ def test_healthy_in_a_notebook_before_and_after_ros_is_started(kernel) -> None:
     assert kernel.run('print(set(threading.enumerate()) - before)').text == 'set()\n'
 
 
+@pytest.mark.slow('the doctor looks for other processes')
 def test_headless_report_is_the_same_on_any_healthy_machine(
     start_kernel: Callable[..., object], lab_env: dict[str, str], domain_id: str
 ) -> None:
@@ -209,6 +210,7 @@ def test_node_of_an_earlier_version_of_its_class(kernel) -> None:
     assert look(kernel).exit_code == 0
 
 
+@pytest.mark.slow('starts another process')
 def test_double_in_another_process(start_kernel: Callable[..., object], domain_id: str) -> None:
     env = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'ROS_DOMAIN_ID': domain_id}
     kernel, other = start_kernel(**env), start_kernel(**env)
@@ -285,6 +287,7 @@ def test_no_fault_hides_another_one_of_its_line(kernel) -> None:
     assert "is given the parameter 'sped', which it never" in seen.red['Nodes']
 
 
+@pytest.mark.slow('waits for what hangs')
 def test_callback_that_does_not_return(kernel) -> None:
     kernel.run(SETUP + 'import threading\ngate = threading.Event()\nreached = threading.Event()')
     stuck = TALKER.replace('self.count += 1', 'reached.set(); gate.wait()')

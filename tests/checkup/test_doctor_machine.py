@@ -230,6 +230,7 @@ os.kill(os.getpid(), signal.SIGKILL)
 """
 
 
+@pytest.mark.slow('starts and kills a process')
 def test_files_of_a_killed_process(lab_env: dict[str, str], tmp_path: Path) -> None:
     (tmp_path / 'killed.py').write_text(KILLED)
     kill = f'{sys.executable} {tmp_path / "killed.py"} || true'

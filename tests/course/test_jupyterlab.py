@@ -82,6 +82,7 @@ def test_lab_serves_the_copies_to_those_who_have_the_token(ready: Course) -> Non
         process.communicate(timeout=TIMEOUT_SEC)
 
 
+@pytest.mark.slow('starts JupyterLab')
 def test_terminal_has_the_address_alone_on_a_line_and_no_log(ready: Course) -> None:
     process = ready.start(ready.command('lab', '--no-browser'))
     try:

@@ -207,6 +207,7 @@ def test_each_lesson_tells_what_went_wrong_in_it(folder: Path, nbval: Run):
     assert 'Kernel died' in told and 'my last words' in told
 
 
+@pytest.mark.slow('waits for what hangs')
 def test_a_cell_that_hangs_is_ended(folder: Path, nbval: Run):
     write(folder / '01_one.ipynb', {'long': 'import time\ntime.sleep(1000)', 'next': 'pass'})
     outcomes, output = nbval('--nbval-cell-timeout=1', 'notebooks')
@@ -259,6 +260,7 @@ def test_a_file_that_is_no_notebook_is_left_to_nbval(tmp_path: Path, text: str):
     assert not uses_labkit(path)
 
 
+@pytest.mark.slow('runs pytest on notebooks')
 def test_other_notebooks_are_compared_by_nbval(folder: Path, nbval: Run):
     write(folder / '01_ours.ipynb', {'first': 'import labkit\n1'})
     record(folder=folder)
@@ -269,6 +271,7 @@ def test_other_notebooks_are_compared_by_nbval(folder: Path, nbval: Run):
     assert outcomes == {'first': 'passed', 'Cell 0': 'passed'}, output
 
 
+@pytest.mark.slow('runs pytest on notebooks')
 def test_the_plugin_may_be_asked_for_again(folder: Path, nbval: Run):
     write(folder / '01_one.ipynb', {'first': '1', 'second': '2'})
     record(folder=folder)
@@ -278,6 +281,7 @@ def test_the_plugin_may_be_asked_for_again(folder: Path, nbval: Run):
     assert output.count('PASSED') == 2
 
 
+@pytest.mark.slow('runs pytest on notebooks')
 def test_tests_of_others_notice_nothing(tmp_path: Path, installed: dict[str, str]):
     (tmp_path / 'test_mine.py').write_text("""
 import json, os, sys

@@ -213,6 +213,7 @@ def ended(pid: str) -> bool:
         return True
 
 
+@pytest.mark.slow('records a notebook twice')
 def test_measured_values_of_an_exempted_cell_are_kept(folder: Path):
     source = 'import time\nprint(f"{time.monotonic_ns()} ns on 2 cores")'
     cells = {'measured': source, 'compared': 'print(1)'}

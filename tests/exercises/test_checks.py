@@ -142,6 +142,7 @@ def test_nodes_of_earlier_exercises_are_no_attempt_where_all_roles_are_theirs() 
     assert scope.attempt([done, new], [hears], []) == frozenset({'/cruiser'})
 
 
+@pytest.mark.slow('waits for what hangs')
 def test_callback_that_blocks_is_named(lab: ModuleType) -> None:
     release = threading.Event()
 

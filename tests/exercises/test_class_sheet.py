@@ -65,6 +65,7 @@ def test_a_clause_is_said_where_there_is_no_reason(store: ProgressStore) -> None
     assert entries['odds', 'exercise', 'evens'].sentence == ''
 
 
+@pytest.mark.slow('goes through the whole course')
 def test_all_of_the_course_fits(store: ProgressStore) -> None:
     longest = max(known_mistakes().values(), key=lambda mistake: len(mistake.sentence))
     for lesson, kind, name in catalogue():

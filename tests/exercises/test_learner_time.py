@@ -79,7 +79,13 @@ LOOKS: dict[str, Callable[[Node], float]] = {
 }
 
 
-@pytest.mark.parametrize('clock', LOOKS)
+SLOW = pytest.mark.slow('several checks for one more clock')
+
+
+@pytest.mark.parametrize(
+    'clock',
+    [pytest.param(name, marks=() if name in ('ros', 'time') else SLOW) for name in LOOKS],
+)
 def test_a_node_that_looks_at_a_clock_goes_on_after_a_check(lab: ModuleType, clock: str) -> None:
     node = lab.spin(Clocked(LOOKS[clock]))
     for _ in range(2):
@@ -219,6 +225,7 @@ def test_a_timer_of_any_clock_is_seen_exactly(lab: ModuleType, kind: ClockType) 
         assert len(lab.listen('/odds', Int16, count=3, timeout_sec=20)) == 3
 
 
+@pytest.mark.slow('several checks in kernels of their own')
 def test_code_that_is_not_the_learners_has_the_computers_time(lab: ModuleType) -> None:
     lab.spin(Clocked(LOOKS['ros']))
     see('/clocked')

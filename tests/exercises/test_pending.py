@@ -27,6 +27,7 @@ task = asyncio.create_task(work({value}))
 """
 
 
+@pytest.mark.slow('several checks in a kernel of its own')
 def test_a_task_of_the_notebook_is_judged_once_the_cell_has_ended(kernel: Any) -> None:
     kernel.run(SETUP)
     kernel.run(TASK.format(value=1))
@@ -38,6 +39,7 @@ def test_a_task_of_the_notebook_is_judged_once_the_cell_has_ended(kernel: Any) -
     assert 'Another number is put into the message.' in kernel.run('await _').text
 
 
+@pytest.mark.slow('a check that is held up')
 def test_a_check_that_goes_on_is_neither_true_nor_false(kernel: Any) -> None:
     kernel.run(SETUP)
     kernel.run(TASK.format(value=2))

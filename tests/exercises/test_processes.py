@@ -44,6 +44,7 @@ children.starting_children = lambda *_: (False, False)
 """
 
 
+@pytest.mark.slow('starts another notebook')
 def test_other_notebook_is_named(start_kernel: Callable[..., Any]) -> None:
     claim = claim_domain()
     env = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'ROS_DOMAIN_ID': str(claim.domain_id)}

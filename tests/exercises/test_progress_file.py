@@ -57,6 +57,7 @@ def test_two_processes_that_write_at_once_lose_nothing(store: Store, tmp_path: P
     assert tries(store) == 200
 
 
+@pytest.mark.slow('kills many processes')
 def test_kill_at_any_moment_leaves_a_whole_file(store: Store, tmp_path: Path) -> None:
     chance = random.Random(1)
     noted = 0

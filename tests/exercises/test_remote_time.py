@@ -130,6 +130,7 @@ def drive(script: Callable[..., Any]) -> Callable[..., dict[str, Any]]:
     return run
 
 
+@pytest.mark.slow('hundreds of messages of another process')
 def test_each_message_of_another_process_has_its_exact_time(drive: Callable[..., Any]) -> None:
     said = drive(
         SPUN,
@@ -144,6 +145,7 @@ for _ in range(2):
     assert said == {'remote': ['/ones'], 'gaps': [0.02], 'count': 200}
 
 
+@pytest.mark.slow('several checks of another process')
 def test_afterwards_time_is_real_there(drive: Callable[..., Any]) -> None:
     said = drive(
         SPUN,
@@ -177,6 +179,7 @@ say(remote=list(life.remote), count=len(life.on('/odds')))
     assert said == {'remote': [], 'count': 0}
 
 
+@pytest.mark.slow('starts other processes')
 def test_a_node_that_waits_for_a_clock_does_not_hear_that_of_a_check(
     drive: Callable[..., Any],
 ) -> None:

@@ -114,6 +114,7 @@ def test_service_of_another_process_may_come_after_its_node(
     assert 'NOT ATTEMPTED: later' in later.text, later.text
 
 
+@pytest.mark.slow('waits in real time')
 def test_service_of_an_executor_of_ones_own_is_called(kernel: Any) -> None:
     kernel.run(SETUP)
     kernel.run(
@@ -130,6 +131,7 @@ def test_service_of_an_executor_of_ones_own_is_called(kernel: Any) -> None:
     kernel.run('executor.shutdown()\nthread.join()')
 
 
+@pytest.mark.slow('several checks')
 def test_second_server_and_wrong_response_are_refused(kernel: Any) -> None:
     kernel.run(SETUP)
     kernel.run(

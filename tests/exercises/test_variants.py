@@ -58,6 +58,7 @@ def test_whose_variant_it_is(
     assert settings.variant_seed() == seed
 
 
+@pytest.mark.slow('goes through the whole course')
 def test_same_seed_same_tasks_and_none_the_usual_ones() -> None:
     assert len(VARIED) >= 5
     usual, anna = tasks({}), tasks({'LABKIT_VARIANT': 'anna'})

@@ -81,6 +81,7 @@ def test_a_second_look_is_as_exact_as_the_first(lab: ModuleType) -> None:
         assert len(odds) == 150
 
 
+@pytest.mark.slow('a thousand calls a second')
 def test_a_fast_timer_that_publishes_now_and_then_is_seen_exactly(lab: ModuleType) -> None:
     class Now(Counter):
         calls = 0
@@ -127,6 +128,7 @@ def test_a_thread_with_a_rate_misses_no_beat(lab: ModuleType) -> None:
     assert gaps(life, '/odds') == {0.1}
 
 
+@pytest.mark.slow('works in real time')
 def test_a_thread_with_a_rate_that_works_for_long_once_is_not_lost(lab: ModuleType) -> None:
     """A machine may be so busy that a thread gets no time for a while."""
     node = lab.spin(Node('loop'))
@@ -339,6 +341,7 @@ def _is_over(pid: int) -> bool:
         return True
 
 
+@pytest.mark.slow('starts and kills processes')
 def test_a_node_gets_its_time_back_when_the_examiner_is_killed(far: Any, script: Callable) -> None:
     import os
 
@@ -373,6 +376,7 @@ with Probe('test', Scope(publishes={'/odds': 'std_msgs/msg/Int16'})) as probe:
         assert probe.wait(lambda: len(watch) >= 3, 20.0)
 
 
+@pytest.mark.slow('several checks')
 def test_time_begins_in_the_present_for_a_node_that_has_had_none(lab: ModuleType) -> None:
     """A node that notes when to act next is not late by the time that others have had."""
 
@@ -489,6 +493,7 @@ def test_an_executor_of_the_learners_own_has_no_more_time(lab: ModuleType, work:
     assert ('2 times too slow' if work == 'sleeps' else 'a thread is at work') in verdict.seen
 
 
+@pytest.mark.slow('computes for seconds')
 def test_a_check_of_callbacks_that_compute_ends_early_and_says_so(lab: ModuleType) -> None:
     node = lab.spin(Works(lambda: compute(0.15)))
     verdict = check_works(lab)

@@ -338,6 +338,7 @@ def test_what_a_program_leaves_behind_is_ended(launch):
     assert one.left == []
 
 
+@pytest.mark.slow('starts many launches')
 def test_starts_and_ctrl_cs_leave_no_process(launch):
     program = '<executable cmd="sh -c \'sleep 1000; true\'"/>'
     body = [program] * 5

@@ -138,6 +138,7 @@ def test_thread_that_sleeps_is_judged_in_virtual_time(script: Script) -> None:
     assert 'PASS: square' in done.stdout, done.stdout + done.stderr
 
 
+@pytest.mark.slow('works through a lesson')
 def test_process_that_sleeps_by_itself_is_told_to_use_a_timer(script: Script) -> None:
     made = "rclpy.create_node('sleeper')"
     program = SLEEPER.replace(f'node = lab.spin({made})', f'rclpy.init()\nnode = {made}')

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import built_once
+import pytest
 
 from labkit.packages.skeleton import Part, Skeleton
 
@@ -45,6 +46,7 @@ def test_what_is_recorded_has_a_workspace_that_is_always_called_the_same(script,
 MODULE = 'def main():\n    print({!r})\n'
 
 
+@pytest.mark.slow('a build by colcon')
 def test_a_build_that_is_kept_is_the_one_that_colcon_makes(tmp_path, monkeypatch):
     built_once.install(tmp_path / 'bin')
     work = tmp_path / 'ws'

@@ -160,6 +160,7 @@ def publish(*numbers: int) -> None:
     node.destroy_node()
 
 
+@pytest.mark.slow('works through a lesson')
 @pytest.mark.parametrize('turns', TURNS.values(), ids=TURNS)
 def test_check_goes_on_from_what_was_right(turns: Sequence[Turn], odds: Exercise) -> None:
     for published, outcome, says in turns:
@@ -171,6 +172,7 @@ def test_check_goes_on_from_what_was_right(turns: Sequence[Turn], odds: Exercise
         assert says in text
 
 
+@pytest.mark.slow('works through a lesson')
 def test_loop_goes_on_after_it_was_held_up(odds: Exercise) -> None:
     node = rclpy.create_node('teller')
     publisher = node.create_publisher(Int16, '/odds', 10)
@@ -205,6 +207,7 @@ def check(kernel: Any, name: str) -> str:
     return ' '.join(kernel.run('print(verdict)').text.split())
 
 
+@pytest.mark.slow('works through a lesson')
 def test_cells_of_the_exercises_run_after_a_restart(notebook: Any) -> None:
     cells = {cell.id: cell.source for cell in nbformat.read(NOTEBOOK, as_version=4).cells}
     assert cells['setup'] == SETUP
@@ -241,6 +244,7 @@ def test_recordings_go_on_after_stop_without_the_setup_cell(notebook: Any) -> No
     assert check(notebook, 'odds').startswith('NOT ATTEMPTED')
 
 
+@pytest.mark.slow('works through a lesson')
 def test_terminal_is_heard(notebook: Any) -> None:
     """The process knows nothing of the notebook but its domain."""
     words = DRIVE.format('--times 5 --rate 10')

@@ -58,6 +58,7 @@ SLOW = pytest.mark.slow('two hosts')
             {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET'},
             True,
             id='subnet',
+            marks=SLOW,
         ),
         pytest.param(
             {'ROS_STATIC_PEERS': '10.77.0.2'},

@@ -99,6 +99,7 @@ for part in range(1, 7):
 """
 
 
+@pytest.mark.slow('many kernels')
 def test_the_stop_button_while_the_first_node_is_made_breaks_nothing(script):
     result = script(PRESS)
     assert result.stdout.splitlines() == ['True None'] * 6, result.stderr

@@ -83,6 +83,7 @@ def test_a_program_that_announces_its_nodes_is_waited_for(
     assert result.stdout == "['/slow'] ['/late']\n", result.stderr
 
 
+@pytest.mark.slow('starts several programs')
 def test_another_program_is_waited_for_until_it_answers(script: Any, env: dict[str, str]) -> None:
     result = script(
         SLOW
@@ -96,6 +97,7 @@ print(process.announced)
     assert result.stdout == "['/slow'] ['/late']\nNone\n", result.stderr
 
 
+@pytest.mark.slow('starts several programs')
 def test_a_program_that_ends_early_is_not_waited_for(script: Any, env: dict[str, str]) -> None:
     result = script(
         SLOW + 'process = start("raise SystemExit(5)", True)\nprint(process.exit_code)', **env
@@ -103,6 +105,7 @@ def test_a_program_that_ends_early_is_not_waited_for(script: Any, env: dict[str,
     assert result.stdout == '[] []\n5\n', result.stderr
 
 
+@pytest.mark.slow('starts several programs')
 def test_a_program_without_parameter_services_is_not_asked(
     script: Any, env: dict[str, str]
 ) -> None:
@@ -145,6 +148,7 @@ is_open()
 )
 
 
+@pytest.mark.slow('starts several programs')
 def test_a_stadium_that_is_opened_again_says_goodbye(script: Any, env: dict[str, str]) -> None:
     code = """
 is_open()

@@ -24,6 +24,7 @@ def test_words(command: list[str], words: str) -> None:
     assert words_of(command) == words
 
 
+@pytest.mark.slow('waits in real time')
 def test_a_line_lives_while_commands_run_and_is_gone_afterwards(start_kernel):
     kernel = start_kernel()
     kernel.run('import labkit as lab')

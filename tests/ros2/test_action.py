@@ -152,6 +152,7 @@ def test_feedback_that_arrives_together_with_the_result_is_heard(script):
     ), result.stderr
 
 
+@pytest.mark.slow('starts other processes')
 @pytest.mark.usefixtures('counter')
 def test_what_is_wrong_with_a_goal_is_said_before_it_is_sent(ros2):
     field, other, service, missing = ros2(
@@ -179,6 +180,7 @@ def test_the_stop_button_cancels_a_goal(start_kernel, counter, domain):
     assert counter.stdout.readline() == 'canceled 13\n'
 
 
+@pytest.mark.slow('starts other processes')
 def test_an_action_without_a_server_in_a_lesson_that_a_program_runs(start_kernel, domain):
     kernel = start_kernel(**domain, LABKIT_HEADLESS='1')
     kernel.run('import labkit as lab\n%load_ext labkit.ros2')
@@ -186,6 +188,7 @@ def test_an_action_without_a_server_in_a_lesson_that_a_program_runs(start_kernel
     assert '/count has no server.\nThere is no action at all.\n' in result.text
 
 
+@pytest.mark.slow('starts other processes')
 @pytest.mark.usefixtures('counter')
 def test_the_hidden_topics_of_an_action_can_be_looked_at(ros2):
     listed, kind = ros2(
@@ -211,6 +214,7 @@ def test_completion(line, words):
     labkit.stop()
 
 
+@pytest.mark.slow('starts other processes')
 @pytest.mark.usefixtures('counter')
 def test_completion_of_names_on_the_live_graph(domain, lab_env):
     def tab(line: str) -> list[str]:

@@ -190,6 +190,7 @@ def test_what_another_process_publishes_is_recorded_and_played_back(
         assert (bag.message_count, bag.note) == (5, '')
 
 
+@pytest.mark.slow('records several bags')
 @pytest.mark.usefixtures('robot')
 def test_options_of_record_are_those_of_the_real_one(
     ros2: Callable[..., list[Any]], tmp_path: Path
@@ -427,6 +428,7 @@ def test_what_is_no_file_of_overrides(tmp_path: Path, text: str) -> None:
         read_overrides(str(path))
 
 
+@pytest.mark.slow('starts other processes')
 @pytest.mark.usefixtures('robot')
 def test_ctrl_c_ends_a_recording_in_a_terminal(
     tmp_path: Path, domain: dict[str, str], lab_env: dict[str, str]

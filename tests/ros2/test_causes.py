@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import pytest
+
 BEGIN = """
 import labkit as lab
 from labkit.ros2.shell import run_line
@@ -19,6 +21,7 @@ lab.spin(node)
 """
 
 
+@pytest.mark.slow('starts other processes')
 def test_a_service_that_has_clients_only(script: Callable[..., Any]) -> None:
     code = """
 node.create_client(SetBool, '/nobody')

@@ -17,6 +17,7 @@ PARAMETER_SERVICES = [
 ]
 
 
+@pytest.mark.slow('starts other processes')
 def test_nodes(ros2):
     shown, every, count, info, hidden, wrong = ros2(
         'node list',
@@ -74,6 +75,7 @@ def test_topics(ros2):
     assert (wrong.code, wrong.err) == (1, "Unknown topic '/odon'\nDid you mean '/odom'?\n")
 
 
+@pytest.mark.slow('starts other processes')
 def test_topic_details(ros2):
     info, ends, wrong, verbose = ros2(
         'topic info /chatter', 'topic info /odds -v', 'topic info /chater', 'topic list -v'
@@ -109,6 +111,7 @@ def test_topic_details(ros2):
     assert ' * /odds [std_msgs/msg/Int16] 1 subscriber' in verbose.lines
 
 
+@pytest.mark.slow('starts other processes')
 def test_services(ros2):
     shown, types, kind, found, info, count, wrong = ros2(
         'service list',

@@ -90,6 +90,7 @@ ENDLESS = [
 ]
 
 
+@pytest.mark.slow('starts other processes')
 def test_stop_button_ends_what_goes_on(kernel, cell):
     for line in ENDLESS:
         msg_id = kernel.start(f'print("begin")\n%ros2 {line}')
@@ -202,6 +203,7 @@ def test_run_says_so_when_a_process_fails(lab_kernel):
     assert '--no-such-option' in result.text
 
 
+@pytest.mark.slow('starts other processes')
 def test_ampersand_sends_a_command_to_the_background(lab_kernel):
     heard = lab_kernel.start('%ros2 topic echo /odds std_msgs/msg/Int16 &')
     assert lab_kernel.finish(heard).text == (

@@ -55,6 +55,7 @@ def test_read(ros2):
     ]
 
 
+@pytest.mark.slow('starts other processes')
 def test_names_can_be_filtered(ros2):
     every, one, nothing, wrong = ros2(
         'param list --filter "pid|sp"',
@@ -69,6 +70,7 @@ def test_names_can_be_filtered(ros2):
     assert (wrong.code, wrong.out) == (2, '') and 'no regular expression' in wrong.err
 
 
+@pytest.mark.slow('starts other processes')
 def test_a_file_for_another_node_is_refused(ros2, tmp_path):
     other, empty, no_node = (tmp_path / name for name in ('other', 'empty', 'no_node'))
     other.write_text(DUMP.replace('/lamp', '/talker'))

@@ -187,6 +187,7 @@ ENDING = [
 ]
 
 
+@pytest.mark.slow('dozens of command lines')
 @settings(
     max_examples=1_000, deadline=None, database=None, suppress_health_check=list(HealthCheck)
 )

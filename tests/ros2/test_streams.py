@@ -214,6 +214,7 @@ WRONG = {
 }
 
 
+@pytest.mark.slow('starts other processes')
 def test_pub_says_what_is_wrong(ros2):
     answers = ros2(*(f'topic pub --once {words}' for words in WRONG))
     for answer, (words, sentence) in zip(answers, WRONG.items(), strict=True):

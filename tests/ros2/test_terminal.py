@@ -49,6 +49,7 @@ def test_ctrl_c_ends_a_stream(domain, lab_env):
     assert (process.returncode, err) == (2, '')
 
 
+@pytest.mark.slow('starts other processes')
 @pytest.mark.usefixtures('robot')
 def test_a_pipe_that_ends_early(domain, lab_env):
     process = start('topic', 'echo', '/chatter', env={**lab_env, **domain})

@@ -85,7 +85,15 @@ def seen(message: Any, path: str) -> Any:
     return message
 
 
-@pytest.mark.parametrize('name', TYPES)
+@pytest.mark.parametrize(
+    'name',
+    [
+        pytest.param(name, marks=pytest.mark.slow('thousands of numbers'))
+        if name.endswith('/MultiNested')
+        else name
+        for name in TYPES
+    ],
+)
 def test_each_number_is_read_as_it_is_in_the_message(name: str) -> None:
     msg_type, dice = message_class(name), random.Random(name)
     paths = list(number_paths(msg_type))

@@ -94,6 +94,7 @@ def test_killed_half_way_then_repeated(course: Course, gate: Gate) -> None:
     assert course.installed() == {'alpha-1.0', 'slow-1.0'}
 
 
+@pytest.mark.slow('makes environments')
 def test_interrupt_key_leaves_nothing(course: Course, gate: Gate) -> None:
     course.require(f'{gate.url}/slow-1.0-py3-none-any.whl')
     course.wheel('slow')
@@ -107,6 +108,7 @@ def test_interrupt_key_leaves_nothing(course: Course, gate: Gate) -> None:
     assert not course.venv.exists()
 
 
+@pytest.mark.slow('makes environments')
 def test_two_at_once(course: Course, gate: Gate) -> None:
     course.require(f'{gate.url}/slow-1.0-py3-none-any.whl')
     course.wheel('slow')
@@ -230,6 +232,7 @@ def test_new_settings_of_a_tool_install_nothing(course: Course) -> None:
     assert 'labkit has changed' in course.make().stdout
 
 
+@pytest.mark.slow('makes environments')
 def test_environment_made_by_hand_is_completed_not_replaced(course: Course) -> None:
     venv.create(course.venv)
     (course.venv / 'mine').write_text('kept')
@@ -247,7 +250,9 @@ def test_folder_that_is_no_environment_is_left_alone(course: Course) -> None:
     assert (course.venv / 'thesis.txt').read_text() == 'years of work'
 
 
-@pytest.mark.parametrize('version', ['3.9.18', '3.14.0'])
+@pytest.mark.parametrize(
+    'version', ['3.14.0', pytest.param('3.9.18', marks=pytest.mark.slow('it makes environments'))]
+)
 def test_wrong_python_is_named(course: Course, version: str) -> None:
     code = (
         f'(setattr(sys, "version_info", ({version.replace(".", ", ")}, "final", 0)), '

@@ -126,6 +126,7 @@ def kernel(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Kernel]:
     kernel.close()
 
 
+@pytest.mark.slow('installs packages')
 def test_its_packages_stay_its_own(kernel: Kernel) -> None:
     _, text, _ = kernel.run(
         'import IPython, ipykernel, ipywidgets, numpy, tornado, rclpy\n'
@@ -193,6 +194,7 @@ def test_an_exercise_is_checked(kernel: Kernel) -> None:
     assert 'PASS' in kernel.run('lesson.count_up.check()')[1]
 
 
+@pytest.mark.slow('installs packages')
 def test_a_package_has_its_constants_first(kernel: Kernel) -> None:
     kernel.run('import labkit as lab\nlab.start()\nfrom rclpy.node import Node\nPERIOD = 0.5')
     kernel.run(

@@ -100,6 +100,7 @@ def test_each_message_comes_once_and_nothing_else_is_seen(
     assert bo.run('print(room)').text == 'Left: /shared_chatter is not shared any more.\n'
 
 
+@pytest.mark.slow('starts other processes')
 def test_others_that_do_not_hear_yet_are_waited_for(start_kernel: Start, shared: int) -> None:
     ada = start_kernel()
     bo = start_kernel(ROS_DOMAIN_ID=str(shared), ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST')
@@ -113,6 +114,7 @@ def test_others_that_do_not_hear_yet_are_waited_for(start_kernel: Start, shared:
     assert not ada.run('room.wait_for_others(timeout_sec=60)').error
 
 
+@pytest.mark.slow('starts other processes')
 def test_running_the_cell_again_joins_once(start_kernel: Start, shared: int) -> None:
     ada, bo = start_kernel(), start_kernel()
     for kernel, name in ((ada, 'ada'), (bo, 'bo')):

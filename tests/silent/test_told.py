@@ -179,6 +179,7 @@ def test_it_is_the_last_output_of_a_cell_where_outputs_are_compared(
     assert 'labkit watch' not in threads
 
 
+@pytest.mark.slow('waits in real time')
 def test_a_node_whose_name_comes_after_its_publisher_is_seen(
     start_kernel: Callable[..., Kernel],
 ) -> None:

@@ -143,6 +143,7 @@ rclpy.shutdown()
 """
 
 
+@pytest.mark.slow('starts other processes')
 @pytest.mark.parametrize('stamped', [False, True])
 def test_the_robot_says_which_commands_it_can_not_hear(
     script: Callable[..., Any], tmp_path: Any, stamped: bool

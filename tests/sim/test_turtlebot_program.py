@@ -80,6 +80,7 @@ def test_robots_of_a_launch_stand_in_one_world(kernel, file):
     )
 
 
+@pytest.mark.slow('starts other processes')
 def test_one_robot_by_ros2_run(kernel):
     said = kernel.run('%ros2 run labkit turtlebot --ros-args -r __ns:=/robot1 -p y:=-1.0').text
     assert 'as node /robot1/turtlebot. lab.processes() lists' in said and 'installed' not in said

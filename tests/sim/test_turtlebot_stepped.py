@@ -231,6 +231,7 @@ def test_what_went_before_changes_nothing(stage: Stage) -> None:
     assert not scene.robot.collisions
 
 
+@pytest.mark.slow('makes the machine busy')
 def test_a_busy_machine_changes_nothing(stage: Stage, busy: None) -> None:
     scene = Scene(stage)
     first = scene.drive()

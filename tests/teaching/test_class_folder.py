@@ -175,6 +175,7 @@ def test_what_is_no_folder_of_a_learner_is_counted_and_not_opened(
     assert reading.note.startswith('3 things in the folder')
 
 
+@pytest.mark.slow('writes 100,000 files')
 def test_a_hundred_thousand_entries_do_not_push_a_class_out(
     share: Callable[..., Path], tmp_path: Path
 ) -> None:

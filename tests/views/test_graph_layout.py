@@ -213,6 +213,7 @@ def test_many_nodes_are_drawn_in_reasonable_size():
     assert len(picture.shapes) == 48
 
 
+@pytest.mark.slow('hundreds of graphs')
 def test_random_graphs_have_no_faults():
     chance = random.Random(7)
     for _ in range(60):

@@ -33,7 +33,15 @@ VIEWS = {
     'teleop': ('lab.teleop()', []),
     'graph': ('lab.graph()', []),
 }
-each_view = pytest.mark.parametrize(('code', 'topics'), VIEWS.values(), ids=VIEWS)
+# They share one life: the gate has two of them.
+SLOW = pytest.mark.slow('the same for one more view')
+each_view = pytest.mark.parametrize(
+    ('code', 'topics'),
+    [
+        pytest.param(*case, id=name, marks=() if name in ('monitor', 'arena') else SLOW)
+        for name, case in VIEWS.items()
+    ],
+)
 
 
 @pytest.fixture

@@ -93,6 +93,7 @@ def test_a_drawing_that_is_too_large_is_a_picture(monkeypatch: pytest.MonkeyPatc
     assert '<svg' not in html
 
 
+@pytest.mark.slow('runs pytest on notebooks')
 def test_what_is_stored_and_compared_is_the_png_alone(start_kernel: Callable[..., Kernel]) -> None:
     # As in a lesson: labkit is there before matplotlib.
     code = 'import labkit\nimport matplotlib.pyplot as plt\nplt.plot([1, 2])\nplt.show()'

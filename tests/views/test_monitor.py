@@ -191,6 +191,7 @@ def test_end_of_ros_ends_it(run):
     assert run('print(runtime.started, "stopped" in page.known["ended"])') == 'False True'
 
 
+@pytest.mark.slow('waits in real time')
 def test_page_that_is_gone_without_a_word_is_missed(run):
     run('talker = lab.spin(Talker())\npage = Page(lab.monitor("/odds"))')
     # In a cell that runs, a page can not be heard, so it is not given up. With these limits, it
@@ -204,6 +205,7 @@ def test_page_that_is_gone_without_a_word_is_missed(run):
     assert run('page.say("there")\nprint(ears())') == '1'
 
 
+@pytest.mark.slow('a thousand messages a second')
 def test_thousand_messages_a_second_are_few_updates(run):
     run('talker = lab.spin(Talker(period=0.001))\npage = Page(lab.monitor("/odds"))')
     run('lab.wait_until(lambda: talker.count > 3000, timeout_sec=60)')

@@ -103,6 +103,7 @@ def test_time_in_which_nobody_looked_is_a_gap(run):
     assert None in values[1:-1]
 
 
+@pytest.mark.slow('a thousand messages a second')
 def test_thousand_messages_a_second_are_few_updates(run):
     run('talker = lab.spin(Talker(period=0.001))\npage = PlotPage(lab.plot("/odds.data"))')
     run('lab.wait_until(lambda: talker.count > 3000, timeout_sec=60)')
@@ -125,6 +126,7 @@ def test_ticks_that_come_close_together_are_one_update(run):
     assert run('print(min(b - a for a, b in zip(page.times, page.times[1:])) >= 0.05)') == 'True'
 
 
+@pytest.mark.slow('a thousand messages a second')
 def test_all_of_a_thousand_messages_a_second_are_taken(run):
     run('talker = lab.spin(Talker(period=0.001))\nplot = PlotPage(lab.plot("/odds.data"))')
     run('monitor = Page(lab.monitor("/odds"))\nstart = talker.count')

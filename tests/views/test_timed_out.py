@@ -78,6 +78,7 @@ def test_without_a_page_the_monitor_tells_it_too(run_still) -> None:
     assert 'stands' not in run_still('print(lab.monitor("/robot1/odom"))').text
 
 
+@pytest.mark.slow('waits in real time')
 def test_one_that_is_gone_tells_nothing(run) -> None:
     run('stop()\npage = Page(lab.monitor("/robot1/odom"))')
     run(f'page.wait("note", "The robot {WHY}")')
