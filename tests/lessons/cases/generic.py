@@ -7,6 +7,7 @@ there: another sentence, or that it is right.
 from __future__ import annotations
 
 import ast
+import functools
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
@@ -43,6 +44,7 @@ class Kind:
     run: str = ''
 
 
+@functools.cache
 def generated(name: str, exercise: Exercise) -> str | None:
     """Return what a kind makes of the solution of an exercise, None if it has no place there."""
     code = exercise.answer.code
@@ -62,7 +64,12 @@ def usual(name: str, exercise: Exercise) -> tuple[Outcome, str]:
 
 def _mutant(kind: str) -> Callable[[str], Iterator[str]]:
     """Return the first one of those mutants of a program that are of one kind."""
-    return lambda code: (mutant for name, mutant in ros_changes(code) if name == kind)
+    return lambda code: (mutant for name, mutant in _mutants(code) if name == kind)
+
+
+@functools.cache
+def _mutants(code: str) -> list[tuple[str, str]]:
+    return list(ros_changes(code))
 
 
 def _renamed(change: Callable[[str], str]) -> Callable[[str], Iterator[str]]:
