@@ -9,6 +9,7 @@ from __future__ import annotations
 import threading
 import traceback
 from collections.abc import Sequence
+from typing import cast
 
 import rclpy.executors
 from rclpy.node import Node
@@ -20,6 +21,9 @@ __all__ = ['ENDS', 'Spin', 'ended_nodes', 'in_words', 'last_words']
 
 ENDS = (SystemExit, KeyboardInterrupt)
 """What a callback raises to end its program."""
+
+# The attribute of an exception that has its spin.
+_MARK = '_labkit_spin'
 
 
 class Spin:
@@ -64,6 +68,10 @@ class Spin:
         """Take nothing any more."""
         with self._lock:
             self._closed = True
+
+    def mark(self, error: BaseException) -> None:
+        """Note on an exception that it leaves this spin; the outermost one marks it last."""
+        vars(error)[_MARK] = self
 
     def ends_program(self, error: BaseException) -> bool:
         """Return whether an exception that left it ends its nodes; the stop button does not."""
@@ -110,12 +118,12 @@ def ended_nodes(error: BaseException) -> Sequence[Node]:
 
 
 def _left_by(error: BaseException) -> Spin | None:
-    """Return the outermost spin in the traceback of an exception."""
+    """Return the outermost spin that an exception has left."""
+    spin = vars(error).get(_MARK)
+    if spin is not None:
+        return cast(Spin, spin)
     for frame, _ in traceback.walk_tb(error.__traceback__):
-        spin = frame.f_locals.get('spin')
-        if type(spin) is Spin:  # not isinstance(): some objects have a __class__ that raises
-            return spin
-        # The learner's own executor, whose callbacks run in the cell.
+        # The learner's own executor, spun by rclpy's own functions in the cell.
         code = frame.f_code
         if code.co_filename == rclpy.executors.__file__ and code.co_name.startswith('spin'):
             return Spin(f'executor.{code.co_name}()', frame.f_locals['self'].get_nodes())

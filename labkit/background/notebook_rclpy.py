@@ -311,8 +311,7 @@ class _NotebookSafe:
 
     def spin_executor(self, executor: Executor) -> None:
         """Spin the learner's own executor so that the stop button is heard."""
-        spin = Spin('executor.spin()', executor.get_nodes())
-        self._background.refuse_in_callback(spin.what)
+        self._background.refuse_in_callback('executor.spin()')
         self._background.foreign_threads.add(threading.current_thread())
         program = self._running_program()
         if program is not None and program.ended_in is not None and _in_cell():
@@ -325,6 +324,9 @@ class _NotebookSafe:
                 executor.spin_once(timeout_sec=SLICE_SEC)
         except rclpy.executors.ExternalShutdownException:
             pass
+        except BaseException as error:
+            Spin('executor.spin()', executor.get_nodes()).mark(error)
+            raise
         finally:
             self._background.foreign_threads.discard(threading.current_thread())
 
@@ -559,7 +561,7 @@ class _NotebookSafe:
         """Spin a node in the background for a `with` block, and raise what a callback raises."""
         self._background.refuse_in_callback(spin.what)
         (node,) = spin.nodes
-        with stop_button.held():
+        with _marking(spin), stop_button.held():
             entry = self._background.entry_of(node)
             try:
                 if entry is None:
@@ -608,14 +610,25 @@ class _NotebookSafe:
         (node,) = spin.nodes
         known = self._background.entry_of(node)
         added = executor.add_node(node)
-        try:
-            yield
-        finally:
-            if added:
-                executor.remove_node(node)
-            if known is not None and known.alive:
-                self._background.executor.add_entry(known)
-                spin.lasts = True
+        with _marking(spin):
+            try:
+                yield
+            finally:
+                if added:
+                    executor.remove_node(node)
+                if known is not None and known.alive:
+                    self._background.executor.add_entry(known)
+                    spin.lasts = True
+
+
+@contextmanager
+def _marking(spin: Spin) -> Iterator[None]:
+    """Mark what leaves a `with` block as having left a spin."""
+    try:
+        yield
+    except BaseException as error:
+        spin.mark(error)
+        raise
 
 
 def _make(what: str, *args: Any, **kwargs: Any) -> Any:

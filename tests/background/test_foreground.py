@@ -298,6 +298,16 @@ def test_a_spin_in_a_thread_ends_with_what_a_callback_raises(kernel):
     assert 'on_timer of /ticker has ended its program (SystemExit: 3).' in shown
 
 
+@pytest.mark.parametrize('how', ['spin', 'own executor', 'with executor'])
+def test_what_a_program_raises_again_without_its_traceback_is_known(kernel, how):
+    kernel.run(SETUP)
+    again = 'except BaseException as error:\n    raise error.with_traceback(None)'
+    result = kernel.run('node = Ticker(leave)\n' + tried(SPINS[how], again))
+    assert result.error == 'SystemExit: 3'
+    assert result.traceback.endswith('spin() and /ticker alone.')
+    assert kernel.run('print(names())').text == '[]\n'
+
+
 def test_the_last_cell_of_a_program_that_exits_says_so_only_of_a_spin(kernel):
     kernel.run(SETUP)
     assert kernel.run('sys.exit(4)').error == 'SystemExit: 4'
