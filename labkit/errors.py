@@ -32,7 +32,12 @@ class LabError(Exception):
     Args:
         message: What was expected and what was seen, values shown with `!r`.
         todo: What to do next, in one or more sentences. Shown on a separate line.
+
+    Attributes:
+        end: How it has ended a spin, in sentences; '' if it has ended none. Shown last.
     """
+
+    end = ''
 
     def __init__(self, message: str, *, todo: str = '') -> None:
         super().__init__(f'{message}\n{todo}' if todo else message)
@@ -44,7 +49,8 @@ class LabError(Exception):
         place = _learner_line(self)
         # The public name: subclasses are for internal use.
         name = next(c.__name__ for c in type(self).__mro__ if c.__module__ == __name__)
-        return [place] * bool(place) + _wrapped(f'{name}: {self}')
+        text = f'{name}: {self}' + f'\n{self.end}' * bool(self.end)
+        return [place] * bool(place) + _wrapped(text)
 
 
 def _wrapped(text: str) -> list[str]:

@@ -161,6 +161,8 @@ def install(shell: Any, last_words: Callable[[BaseException], str]) -> None:
             # IPython says of each that it is no way to end the kernel.
             warnings.filterwarnings('ignore', "To exit: use 'exit'")
             options['exception_only'] = False
+        if isinstance(error, LabError):  # it is shown without `structured_traceback`
+            error.end = last_words(error)
         show(exc_tuple, *args, **options)
 
     def excepthook(args: threading.ExceptHookArgs) -> None:

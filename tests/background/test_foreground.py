@@ -99,6 +99,19 @@ def test_what_a_callback_raises_comes_out_and_nothing_runs_after_it(kernel, how)
     assert 'not run' not in uncaught.text and 'goes on' not in uncaught.traceback
 
 
+def test_an_error_of_labkit_says_that_it_has_ended_a_spin(kernel):
+    kernel.run(SETUP + 'def refuse(): raise lab.LabError("seen", todo="do")')
+    goes_on = '/ticker goes on in the background, where lab.spin() runs it.'
+    for node, fate in (
+        ('Ticker(refuse)', 'No longer spun: /ticker.'),
+        ('lab.spin(Ticker(refuse))', goes_on),
+    ):
+        _, *said, end = kernel.run(f'node = {node}\nrclpy.spin(node)').traceback.split('\n', 3)
+        assert said == ['LabError: seen', 'do']
+        assert ' '.join(end.split()) == f'rclpy.spin() has ended with this error. {fate}'
+    assert kernel.run('refuse()').traceback.splitlines()[1:] == ['LabError: seen', 'do']
+
+
 @pytest.mark.parametrize('how', ALL)
 def test_the_stop_button_is_seen_and_ends_the_cell_with_one_line(kernel, how):
     kernel.run(SETUP)
