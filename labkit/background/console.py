@@ -97,10 +97,11 @@ class Console:
 
     def __init__(self) -> None:
         self.errors: list[CallbackError] = []
-        # Called at the end of a cell with its exception, while prints still belong to the cell.
-        self.after_cell: Callable[[Cell, BaseException | None], None] = lambda cell, error: None
-        # Called with an exception that nobody has caught; returns how it has ended a spin.
+        # Called at the end of a cell, while prints still belong to the cell.
+        self.after_cell: Callable[[Cell], None] = lambda cell: None
+        # Called with an exception that nobody has caught; the first returns how it ended a spin.
         self.last_words: Callable[[BaseException], str] = lambda error: ''
+        self.uncaught: Callable[[BaseException], None] = lambda error: None
         # Called for each line of a log with its logger and its text, in the thread that logs.
         self.on_log: Callable[[str, str], None] = lambda name, message: None
         # Nodes started by one execution share its Cell, and so its limit of lines.
@@ -125,7 +126,7 @@ class Console:
         _shell().events.register('pre_run_cell', self._end_cell)
         _shell().events.register('post_run_cell', self._finish_cell)
         self._is_running = True  # ROS is started by a cell
-        tracebacks.install(_shell(), lambda error: self.last_words(error))
+        tracebacks.install(_shell(), self.last_words, self.uncaught)
 
     def close(self) -> None:
         """Restore the streams and the ROS logs."""
@@ -317,11 +318,9 @@ class Console:
         self._running = None
         self._is_running = True
 
-    def _finish_cell(self, result: Any = None) -> None:
+    def _finish_cell(self, *_: object) -> None:
         self._is_running = False
-        error = getattr(result, 'error_in_exec', None)
-        if self._running is not None or error is not None:
-            self.after_cell(self.current_cell(), error)
+        self.after_cell(self.current_cell())
 
 
 def _shortened(line: str) -> str:

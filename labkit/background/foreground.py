@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import threading
 import traceback
+from collections import deque
 from collections.abc import Sequence
 from typing import cast
 
@@ -15,15 +16,18 @@ import rclpy.executors
 from rclpy.node import Node
 
 from labkit.background.nodes import full_name, node_exists
+from labkit.background.tracebacks import is_learners
 from labkit.errors import first_few, quoted
 
-__all__ = ['ENDS', 'Spin', 'ended_nodes', 'in_words', 'last_words']
+__all__ = ['ENDS', 'Spin', 'ended_nodes', 'in_words', 'last_words', 'swallowed']
 
 ENDS = (SystemExit, KeyboardInterrupt)
 """What a callback raises to end its program."""
 
 # The attribute of an exception that has its spin.
 _MARK = '_labkit_spin'
+# What has left the spins of the running cell.
+_left: deque[BaseException] = deque(maxlen=100)
 
 
 class Spin:
@@ -72,10 +76,14 @@ class Spin:
     def mark(self, error: BaseException) -> None:
         """Note on an exception that it leaves this spin; the outermost one marks it last."""
         vars(error)[_MARK] = self
+        if isinstance(error, ENDS) and _in_cell():
+            _left.append(error)
 
     def ends_program(self, error: BaseException) -> bool:
         """Return whether an exception that left it ends its nodes; the stop button does not."""
-        return isinstance(error, SystemExit) or (isinstance(error, ENDS) and error is self.error)
+        if isinstance(error, KeyboardInterrupt):
+            return error is self.error or not _in_cell()  # no button interrupts a thread
+        return isinstance(error, ENDS)
 
     def last_words(self, error: BaseException) -> str:
         """Return how it has ended, and what has become of its nodes."""
@@ -115,6 +123,26 @@ def ended_nodes(error: BaseException) -> Sequence[Node]:
     """Return the nodes that end because nobody has caught an exception."""
     spin = _left_by(error)
     return spin.nodes if spin is not None and spin.ends_program(error) else ()
+
+
+def swallowed() -> list[BaseException]:
+    """Return, once, what has ended a spin in this cell and was caught by IPython alone.
+
+    IPython is silent when a file of `%run` ends with `sys.exit(0)`.
+    """
+    errors = list(_left)
+    _left.clear()
+    return [error for error in errors if not _caught_by_learner(error)]
+
+
+def _in_cell() -> bool:
+    return threading.current_thread() is threading.main_thread()
+
+
+def _caught_by_learner(error: BaseException) -> bool:
+    # The first frame of a traceback is the one that has caught it.
+    tb = error.__traceback__
+    return tb is not None and is_learners(tb.tb_frame.f_code.co_filename)
 
 
 def _left_by(error: BaseException) -> Spin | None:

@@ -35,7 +35,7 @@ from labkit.background import compat, exits
 from labkit.background.action_callbacks import guarded
 from labkit.background.arguments import check_callback, check_response, check_sent, check_type
 from labkit.background.domains import number_for_ros
-from labkit.background.foreground import ENDS, Spin
+from labkit.background.foreground import Spin
 from labkit.background.nodes import Origin, existing_nodes, full_name, made
 from labkit.background.pending_tasks import answered_by
 from labkit.background.program import Arguments, Program, renamed
@@ -366,7 +366,7 @@ class _NotebookSafe:
     def run_task(self, task: Any) -> None:
         try:
             ORIGINALS['run_task'](task)
-        except ENDS as error:
+        except BaseException as error:
             if _in_cell():
                 raise
             # A MultiThreadedExecutor would never see it: rclpy notes only an Exception.
@@ -600,9 +600,6 @@ class _NotebookSafe:
         if not (entry.lasts or entry.spins):
             self._background.release(entry)
             spin.busy = self._running_callback(entry)
-        if isinstance(spin.error, ENDS) and not _in_cell():
-            # Python does not tell that a thread ends in this way, and no cell does.
-            self._background.end_program(entry, spin.callback, spin.error)
 
     @contextmanager
     def _lent(self, spin: Spin, executor: Executor) -> Iterator[None]:

@@ -22,7 +22,7 @@ from labkit import domain_ids, settings, stop_button
 from labkit.background import compat, domains
 from labkit.background.console import Cell, Console
 from labkit.background.executor import BackgroundExecutor
-from labkit.background.foreground import Spin, ended_nodes, in_words, last_words
+from labkit.background.foreground import Spin, ended_nodes, in_words, last_words, swallowed
 from labkit.background.nodes import (
     NodeEntry,
     check_node,
@@ -83,6 +83,7 @@ class Runtime:
         self._claim: domains.DomainClaim | None = None
         self.console.after_cell = self._after_cell
         self.console.last_words = last_words
+        self.console.uncaught = self._end_after
 
     @property
     def started(self) -> bool:
@@ -364,12 +365,20 @@ class Runtime:
         name = self.helper.get_fully_qualified_name()
         executor.add_entry(NodeEntry(self.helper, name, self.console.current_cell()))
 
-    def _after_cell(self, cell: Cell, error: BaseException | None) -> None:
-        """End what an error has ended; report nodes that an edited cell has left behind."""
-        if error is not None:
-            half_made.update((node, cell) for node in find_half_made(error))
-            for node in filter(node_exists, ended_nodes(error)):
-                self.destroy(node)
+    def _end_after(self, error: BaseException) -> None:
+        """End what an error has ended that nobody has caught."""
+        cell = self.console.current_cell()
+        for node in find_half_made(error):
+            half_made.setdefault(node, cell)
+        for node in filter(node_exists, ended_nodes(error)):
+            self.destroy(node)
+
+    def _after_cell(self, cell: Cell) -> None:
+        """End what IPython keeps to itself; report nodes that an edited cell has left behind."""
+        for error in swallowed():
+            if any(map(node_exists, ended_nodes(error))):
+                print(last_words(error))
+                self._end_after(error)
         for entry in self._registry.left_over(cell):
             print(
                 f'{entry.name}, which this cell started before, still runs. '

@@ -129,13 +129,18 @@ def without_ros(tb: TracebackType | None) -> TracebackType | None:
     return result
 
 
-def install(shell: Any, last_words: Callable[[BaseException], str]) -> None:
+def install(
+    shell: Any,
+    last_words: Callable[[BaseException], str],
+    uncaught: Callable[[BaseException], None],
+) -> None:
     """Shorten tracebacks of cells and of threads, unless `%xmode Verbose` is chosen.
 
     Args:
         shell: IPython.
         last_words: Returns how an exception has ended a foreground spin, '' if it has ended none.
             The stop button and the end of a program show that alone.
+        uncaught: Called with what nobody has caught in a cell, in a thread or in a file of `%run`.
     """
     formatter = shell.InteractiveTB
     if 'structured_traceback' in vars(formatter):
@@ -164,18 +169,23 @@ def install(shell: Any, last_words: Callable[[BaseException], str]) -> None:
         if isinstance(error, LabError):  # it is shown without `structured_traceback`
             error.end = last_words(error)
         show(exc_tuple, *args, **options)
+        if error is not None:
+            uncaught(error)
 
     def excepthook(args: threading.ExceptHookArgs) -> None:
+        error = args.exc_value
+        if isinstance(error, (KeyboardInterrupt, SystemExit)) and (words := last_words(error)):
+            print(words)  # Python does not tell that a thread ends in this way
+            uncaught(error)
+            return
         frames = [frame for frame, _ in traceback.walk_tb(args.exc_traceback)]
         if formatter.mode == 'Verbose' or not any(
             is_learners(frame.f_code.co_filename) for frame in frames
         ):
             in_thread(args)
-        elif args.exc_value is not None and not isinstance(args.exc_value, SystemExit):
+        elif error is not None and not isinstance(error, SystemExit):
             name = args.thread.name if args.thread else 'a thread'
-            print(
-                f'An error has ended {name}:\n{short_traceback(args.exc_value)}', file=sys.stderr
-            )
+            print(f'An error has ended {name}:\n{short_traceback(error)}', file=sys.stderr)
 
     formatter.structured_traceback = structured_traceback
     shell.showtraceback = showtraceback

@@ -297,18 +297,100 @@ def test_a_function_that_waits_for_a_future_raises_in_the_spin(kernel):
         assert result.error == '' and f'caught {error}(' in result.text
 
 
+# What runs `node` in a thread.
+IN_THREAD = {
+    'rclpy.spin': 'rclpy.spin()',
+    'lambda node: rclpy.spin_once(node)': 'rclpy.spin_once()',
+    'own_executor': 'executor.spin()',
+    'many_threads': 'executor.spin()',
+}
+
+
 def test_a_spin_in_a_thread_ends_with_what_a_callback_raises(kernel):
-    kernel.run(SETUP)
+    kernel.run(
+        SETUP + 'def own_executor(node, kind=SingleThreadedExecutor):\n'
+        '    executor = kind()\n    executor.add_node(node)\n    executor.spin()\n'
+        'def many_threads(node):\n    own_executor(node, MultiThreadedExecutor)\n'
+    )
     start = (
-        'node = Ticker({act})\nthread = threading.Thread(target=rclpy.spin, args=(node,))\n'
+        'node = Ticker({act})\nthread = threading.Thread(target={spin}, args=(node,))\n'
         'thread.start()\nthread.join()\nprint(names())'
     )
-    failed = kernel.run(start.format(act='fail'))
-    shown = kernel.wait_for_output(failed.msg_id, 'ZeroDivisionError')
-    assert "['ticker']" in shown and 'An error has ended Thread-' in shown
-    left = kernel.run(start.format(act='leave'))
-    shown = kernel.wait_for_output(left.msg_id, '[]')
-    assert 'on_timer of /ticker has ended its program (SystemExit: 3).' in shown
+    for spin, what in IN_THREAD.items():
+        failed = kernel.run(start.format(act='fail', spin=spin))
+        shown = kernel.wait_for_output(failed.msg_id, 'ZeroDivisionError')
+        assert "['ticker']" in shown and 'An error has ended Thread-' in shown
+        for act, error in (('leave', 'SystemExit: 3'), ('press', 'KeyboardInterrupt')):
+            left = kernel.run(start.format(act=act, spin=spin))
+            shown = kernel.wait_for_output(left.msg_id, '[]')
+            assert f'has ended its program ({error}). In a notebook that ends {what} and' in shown
+            assert 'Thread-' not in shown
+
+
+def test_a_thread_goes_on_that_catches_the_end_of_its_program(kernel):
+    kernel.run(SETUP)
+    work = caught('rclpy.spin(node)', 'SystemExit').replace('\n', '\n    ')
+    result = kernel.run(
+        f'node = Ticker(leave)\ndef work():\n    {work}\n'
+        'thread = threading.Thread(target=work)\nthread.start()\nthread.join()\nprint(names())'
+    )
+    assert kernel.wait_for_output(result.msg_id, "['ticker']") == (
+        "caught SystemExit(3)\n['ticker']\n"
+    )
+
+
+# A file as `ros2 run` starts it.
+FILE = """
+import sys
+import rclpy
+from rclpy.node import Node
+
+class Leaving(Node):
+    def __init__(self):
+        super().__init__('leaving')
+        self.create_timer(0.01, self.on_timer)
+
+    def on_timer(self):
+        {act}
+
+def main():
+    rclpy.init()
+    rclpy.spin(Leaving())
+    rclpy.shutdown()
+
+if __name__ == '__main__':
+    {main}
+"""
+
+
+@pytest.mark.parametrize('how', ['%run', '%run -e', '%run -m', 'paste'])
+def test_a_file_that_is_run_leaves_what_a_pasted_program_leaves(kernel, how):
+    kernel.run('import labkit as lab')
+    for name, (act, said) in enumerate(
+        {
+            'sys.exit()': 'on_timer of /leaving has ended its program (SystemExit).',
+            'sys.exit(3)': 'on_timer of /leaving has ended its program (SystemExit: 3).',
+            'raise KeyboardInterrupt': 'on_timer of /leaving has ended its program (Keyboard',
+            '1 / 0': 'rclpy.spin() has ended with this error. No longer spun: /leaving.',
+        }.items()
+    ):
+        code = FILE.format(act=act, main='main()')
+        (kernel.folder / f'prog{name}.py').write_text(code)
+        file = f'prog{name}' if how.endswith('-m') else f'prog{name}.py'
+        result = kernel.run(code if how == 'paste' else f'{how} {file}')
+        assert said in result.text + result.traceback
+        left = kernel.run(
+            'from labkit.background.runtime import runtime\n'
+            'print([each.get_name() for each in runtime.unspun_nodes()], runtime.nodes())'
+        )
+        assert left.text == f'{["leaving"] * (act == "1 / 0")} []\n'
+    (kernel.folder / 'caught.py').write_text(
+        FILE.format(act='sys.exit()', main='try: main()\n    except SystemExit: print("caught")')
+    )
+    assert kernel.run('%run caught.py').text == 'caught\n'
+    assert kernel.run('print([each.get_name() for each in runtime.unspun_nodes()])').text == (
+        "['leaving']\n"
+    )
 
 
 @pytest.mark.parametrize('how', ['spin', 'own executor', 'with executor'])
