@@ -27,32 +27,42 @@ TOPICS = {'/odds': 'std_msgs/msg/Int16'}
 
 
 class Slow(Node):
-    """A node whose callback does not return for a while."""
+    """A node whose callback does not return for a while, once a check lets time pass."""
 
     def __init__(self) -> None:
         super().__init__('slow')
         self.publisher = self.create_publisher(Int16, 'odds', 10)
         self.create_timer(0.05, self.on_timer)
         self.is_slow = threading.Event()
+        self.begun = threading.Event()
         self.released = threading.Event()
         self.is_slow.set()
 
     def on_timer(self) -> None:
-        if self.is_slow.is_set():
+        clock: Any = self.get_clock()
+        if self.is_slow.is_set() and clock.ros_time_is_active:
+            self.begun.set()
             self.released.wait(60)
         self.publisher.publish(Int16())
 
 
 @contextmanager
-def pressed(after_sec: float) -> Iterator[None]:
-    """Press the stop button once, unless the `with` block has ended before."""
-    main = threading.get_ident()
-    button = threading.Timer(after_sec, signal.pthread_kill, (main, signal.SIGINT))
+def pressed(after: threading.Event, timeout_sec: float) -> Iterator[None]:
+    """Press the stop button once, after an event or in time, unless the `with` block has ended."""
+    main, ended = threading.get_ident(), threading.Event()
+
+    def press() -> None:
+        after.wait(timeout_sec)
+        if not ended.is_set():
+            signal.pthread_kill(main, signal.SIGINT)
+
+    button = threading.Thread(target=press)
     button.start()
     try:
         yield
     finally:
-        button.cancel()
+        ended.set()
+        after.set()
         button.join()
 
 
@@ -75,7 +85,7 @@ def left() -> dict[str, Any]:
 def test_stop_while_a_callback_hangs_leaves_nothing_behind(lab: ModuleType) -> None:
     node = lab.spin(Slow())
     before = left()
-    with pytest.raises(KeyboardInterrupt), pressed(0.3):
+    with pytest.raises(KeyboardInterrupt), pressed(node.begun, 60):
         see()
     assert left() == before
     node.is_slow.clear()
@@ -96,7 +106,7 @@ def test_stop_at_any_moment_of_a_check_leaves_nothing_behind(lab: ModuleType) ->
     stopped = 0
     for _ in range(20):
         try:
-            with pressed(draw.uniform(0, took)):
+            with pressed(threading.Event(), draw.uniform(0, took)):
                 see()
         except KeyboardInterrupt:
             stopped += 1
