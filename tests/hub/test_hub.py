@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -273,8 +272,10 @@ def test_who_loops_fills_memory_or_forks_does_not_stop_others(
     assert 'KeyboardInterrupt' in open_pages['carl'].finish(looping)
     # One after the other they would begin anew, and take the time of all further tests.
     machine.run('runuser', '-u', 'emil', '--', 'kill', '-KILL', '--', '-1')
-    while any(state[0] != 'Z' for state in emils_processes('stat=')):
-        time.sleep(0.1)
+    hub.wait(
+        lambda: all(state[0] == 'Z' for state in emils_processes('stat=')),
+        "the end of emil's processes",
+    )
 
 
 # --- The hub goes away ---------------------------------------------------------------------------
