@@ -23,7 +23,11 @@ __all__ = ['install', 'uninstall']
 
 # Each callback, whoever runs it, is called by one of these files.
 _CALLERS = (rclpy.executors.__file__, rclpy.task.__file__)
-_FATAL = ('SIGTERM', 'SIGKILL', 'SIGHUP', 'SIGQUIT', 'SIGABRT')
+# By default, these do nothing. All others end a process, or stop it, and a kernel that is stopped
+# is of as little use.
+_HARMLESS = ('SIGCHLD', 'SIGCONT', 'SIGURG', 'SIGWINCH')
+# The signal at the end of each timer of `setitimer`, by number.
+_OF_TIMERS = (signal.SIGALRM, signal.SIGVTALRM, signal.SIGPROF)
 
 End = BaseException | None
 
@@ -47,21 +51,48 @@ def _signalled(number: int = signal.SIGINT) -> End:
         return None  # no signal: `os.kill(pid, 0)` asks whether a process is alive
     if callable(handler) and not stop_button.is_usual(handler):
         return None  # the program's own handler
-    if number == signal.SIGINT:
+    if number == signal.SIGINT:  # which the kernel ignores between cells
         return KeyboardInterrupt()
-    fatal = any(number == getattr(signal, name) for name in _FATAL)
-    return SystemExit(128 + number) if fatal else None
+    ignored = handler is signal.SIG_IGN or any(number == getattr(signal, n) for n in _HARMLESS)
+    return None if ignored else SystemExit(128 + number)
 
 
 def _killed(pid: int, number: int) -> End:
-    return _signalled(number) if pid == os.getpid() else None
+    group = os.getpgrp()
+    return _signalled(number) if pid in (os.getpid(), 0, -1, -group) else None
+
+
+def _group_killed(group: int, number: int) -> End:
+    return _signalled(number) if group in (0, os.getpgrp()) else None
+
+
+def _thread_killed(_: int, number: int) -> End:
+    return _signalled(number)
+
+
+def _alarmed(seconds: float) -> End:
+    return _signalled(signal.SIGALRM) if seconds else None
+
+
+def _timed(timer: int, seconds: float, *_: float) -> End:
+    return _signalled(_OF_TIMERS[timer]) if seconds else None
+
+
+def _executed(path: object, *_: object) -> End:
+    return SystemExit(f'os.exec of {path}')
 
 
 _WAYS: tuple[tuple[Any, str, Callable[..., End]], ...] = (
     (os, '_exit', _exit),
     (os, 'abort', _abort),
+    (os, 'execv', _executed),  # all others of its kind call one of these two
+    (os, 'execve', _executed),
     (os, 'kill', _killed),
+    (os, 'killpg', _group_killed),
+    (signal, 'alarm', _alarmed),
+    (signal, 'pthread_kill', _thread_killed),
     (signal, 'raise_signal', _signalled),
+    (signal, 'setitimer', _timed),
     (_thread, 'interrupt_main', _signalled),
 )
 _replaced: list[tuple[Any, str, Any, Any]] = []

@@ -29,6 +29,7 @@ def own(node):
     executor.add_node(node)
     executor.spin()
 
+MAIN = threading.main_thread().ident
 other = lab.spin(Node('other'))
 """
 INTERRUPT, EXIT = 'KeyboardInterrupt', 'SystemExit'
@@ -44,7 +45,19 @@ WAYS = {
     'os.kill(os.getpid(), signal.SIGINT)': f'{INTERRUPT}()',
     'os.kill(os.getpid(), signal.SIGTERM)': f'{EXIT}(143)',
     'os.kill(os.getpid(), 9)': f'{EXIT}(137)',
+    'os.kill(0, signal.SIGTERM)': f'{EXIT}(143)',
+    'os.kill(-os.getpgrp(), signal.SIGINT)': f'{INTERRUPT}()',
+    'os.kill(os.getpid(), signal.SIGUSR1)': f'{EXIT}(138)',
+    'os.kill(os.getpid(), signal.SIGSTOP)': f'{EXIT}(147)',
+    'os.killpg(os.getpgrp(), signal.SIGTERM)': f'{EXIT}(143)',
+    'os.killpg(0, 9)': f'{EXIT}(137)',
+    'signal.pthread_kill(MAIN, signal.SIGTERM)': f'{EXIT}(143)',
+    'signal.pthread_kill(MAIN, signal.SIGINT)': f'{INTERRUPT}()',
+    'signal.alarm(1)': f'{EXIT}(142)',
+    'signal.setitimer(signal.ITIMER_PROF, 0.1)': f'{EXIT}(155)',
     '_thread.interrupt_main()': f'{INTERRUPT}()',
+    'os.execv("/bin/true", ["true"])': f"{EXIT}('os.exec of /bin/true')",
+    'os.execle("/bin/true", "true", {})': f"{EXIT}('os.exec of /bin/true')",
 }
 
 
@@ -160,3 +173,9 @@ def test_a_callback_may_ask_whether_its_process_is_alive(kernel):
     kernel.run(SETUP)
     result = kernel.run('ends("asking", rclpy.spin, lambda: sys.exit(os.kill(os.getpid(), 0)))')
     assert (result.error, result.text) == ('', 'asking SystemExit()\n')
+    harmless = kernel.run(
+        'signal.signal(signal.SIGUSR1, signal.SIG_IGN)\n'
+        'sent = lambda: [os.kill(0, each) for each in (signal.SIGCHLD, signal.SIGUSR1)]\n'
+        'ends("sending", rclpy.spin, lambda: sys.exit(f"{sent()} {signal.alarm(0)}"))'
+    )
+    assert (harmless.error, harmless.text) == ('', "sending SystemExit('[None, None] 0')\n")
