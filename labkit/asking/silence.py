@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import TYPE_CHECKING, Any
 
+from labkit.asking.traffic import sent_by
 from labkit.background.nodes import existing_nodes, full_name
 from labkit.background.runtime import runtime
 from labkit.background.wait import wait_for
@@ -100,6 +101,7 @@ def why_silent(
     heard: int = 0,
     failures: Failures | None = None,
     patience_sec: float = LONG_SEC,
+    guess: bool = True,
 ) -> str:
     """Return in a sentence or two why no message of a topic arrives.
 
@@ -111,6 +113,7 @@ def why_silent(
         heard: Number of messages that did arrive.
         failures: The callbacks that have failed since they were waited for.
         patience_sec: Seconds to wait for a running callback to return.
+        guess: Whether to say what may be the reason; not where it is told beside this.
 
     Returns:
         What is seen, and the fix. If nothing is: what may be the reason, as that.
@@ -129,9 +132,23 @@ def why_silent(
         return seen
     if heard:
         return 'Maybe they come more slowly than that.'
-    return (
+    seen = (
         f'{", ".join(names)} has a publisher on {topic} with the right type and QoS, but nothing '
-        'came from it in that time. Maybe its timer does not run, or publish() is not reached.'
+        'came from it in that time.'
+    )
+    if _has_published(names, topic):
+        return f'{seen} It has published before.'
+    return f'{seen} Maybe its timer does not run, or publish() is not reached.' if guess else seen
+
+
+def _has_published(names: Collection[str], topic: str) -> bool:
+    """Return whether one of some nodes is of this process, and has published on a topic."""
+    return any(
+        sent_by(publisher).count
+        for node in existing_nodes()
+        if full_name(node) in names
+        for publisher in node.publishers
+        if publisher.topic_name == topic
     )
 
 

@@ -203,8 +203,12 @@ class Feed:
             return 0.0
         return 1 / interval if interval > 0 else None
 
-    def silence(self) -> str:
-        """Return why nothing arrives and what to do, '' if all is well."""
+    def silence(self, *, guess: bool = True) -> str:
+        """Return why nothing arrives and what to do, '' if all is well.
+
+        Args:
+            guess: See `why_silent`.
+        """
         since = time.monotonic() - max(self.heard_at, self._changed_at)
         if self._optional or self._node is None or not node_exists(self._node):
             return ''
@@ -219,7 +223,9 @@ class Feed:
         if self.count and since < 3 * interval and listener is not None:
             return ''
         profile = listener.profile if listener is not None else least_profile()
-        return why_silent(self._node, self.topic, self.msg_type, profile, patience_sec=0.0)
+        return why_silent(
+            self._node, self.topic, self.msg_type, profile, patience_sec=0.0, guess=guess
+        )
 
 
 @contextmanager

@@ -114,7 +114,7 @@ class Monitor(LivePage):
         with subscribed([feed, *timed_out], enough):
             standing = _standing(timed_out)
             if not messages:
-                why = ' '.join([feed.silence(), *standing])
+                why = ' '.join([feed.silence(guess=not standing), *standing])
                 return f'{self.topic}: no message came. {why}'.strip()
             ends = ', '.join(
                 f'{name} ({", ".join(qos)})' for name, *qos in _publisher_rows(feed.publishers)
@@ -128,14 +128,13 @@ class Monitor(LivePage):
 
     def _update(self, everything: bool) -> Update:
         now, feed = time.monotonic(), self._feed
+        known = [*_standing(self._timed_out), *_faults(self.topic)]
         rate = feed.rate()
         state: dict[str, Any] = {
             'topic': self.topic,
             'type': type_name(feed.msg_type) if feed.msg_type else '',
             'rate': '' if rate is None else f'{rate:.3g}' if rate < 99.5 else f'{rate:.0f}',
-            'note': ' '.join(
-                filter(None, [feed.silence(), *_standing(self._timed_out), *_faults(self.topic)])
-            ),
+            'note': ' '.join(filter(None, [feed.silence(guess=not known), *known])),
             'publishers': _publisher_rows(feed.publishers),
             'count': feed.count,
         }

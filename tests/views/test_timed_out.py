@@ -78,6 +78,22 @@ def test_without_a_page_the_monitor_tells_it_too(run_still) -> None:
     assert 'stands' not in run_still('print(lab.monitor("/robot1/odom"))').text
 
 
+@pytest.mark.slow('it waits twice for messages that do not come')
+def test_no_cause_is_guessed_where_one_is_known(run) -> None:
+    run('stop()')
+    known = 'nothing came from it in that time. It has published before. The robot stands'
+    assert known in run('print(lab.monitor("/robot1/cmd_vel"))')
+    # As by another process, of which nothing is counted here.
+    run(
+        'lab.remove(pilot)\npilot = lab.spin(Node("pilot"))\n'
+        'commands = pilot.create_publisher(Twist, "/robot1/cmd_vel", 10)\n'
+        'lab.wait_for_subscribers(commands)\ncommand = Twist()\ncommand.linear.x = 0.2\n'
+        'with commands.handle:\n    commands.handle.publish(command)'
+    )
+    shown = run('lab.wait_until(lambda: robot.timed_out)\nprint(lab.monitor("/robot1/cmd_vel"))')
+    assert 'nothing came from it in that time. The robot stands' in shown
+
+
 @pytest.mark.slow('waits in real time')
 def test_one_that_is_gone_tells_nothing(run) -> None:
     run('stop()\npage = Page(lab.monitor("/robot1/odom"))')
