@@ -228,6 +228,12 @@ function render({ model, el }) {
   };
   const badge = element('div', { className: 'labkit-arena-bump', textContent: 'Bump', hidden: true });
   const takeRobot = (name, news, buffers) => {
+    if (news.gone) {
+      const gone = robots.findIndex((robot) => robot.name === name);
+      if (map.followed === robots[gone]) map.followed = null;
+      if (gone >= 0) robots.splice(gone, 1);
+      return;
+    }
     const robot = robotNamed(name);
     take(scene.shown, robot, news, news.eye ? buffers.shift() : null);
     if (news.pose) robot.glide.take(news.pose);

@@ -76,6 +76,8 @@ class Arena(LivePage):
         """The scenes in words."""
         words = '\n'.join(filter(None, (scene.words() for scene in self.scenes.values())))
         why = self._why or 'Start a robot with lab.spin(lab.Turtlebot()).'
+        if any(robot.has_gone for robot in self._robots.values()):
+            return words or f'The robot has gone. {why}'
         return words or f'Nothing was heard on {self._feeds[0].topic} yet. {why}'
 
     def __repr__(self) -> str:
@@ -126,7 +128,7 @@ class Arena(LivePage):
         super()._tick()
 
     def _find_robots(self) -> None:
-        """Put robots on the map that have appeared."""
+        """Put robots on the map that have appeared, and take those from it that have gone."""
         names = self._names()
         if names and '' not in names and '' in self._robots and not self._robots[''].scene.pose:
             # It stood for one that was to come.
@@ -140,6 +142,10 @@ class Arena(LivePage):
                 if self._node is not None:
                     for feed in feeds:
                         feed.open(self._node)
+        # Last: the page is told before one that has gone is left out here.
+        for robot in self._robots.values():
+            if robot.scene.pose and not helper().count_publishers(robot.feeds[0].topic):
+                robot.forget()
 
     def _names(self) -> list[str]:
         """Return the namespaces of the robots; '' for one that is to come if there are none."""

@@ -36,6 +36,11 @@ AHEAD = math.radians(80)
 # Walls are remembered as one point per square of this size, m.
 SQUARE = 0.02
 MAX_WALLS = 20_000
+# A scan is drawn where the robot was at its time. It waits for the odometry of that time, unless
+# that is so near, s, or so far that it must be of another clock; and not for ever.
+NEAR_SEC, FAR_SEC = 0.01, 10.0
+MAX_WAITING = 30
+MAX_POSES = 300
 
 
 class MappedRobot:
@@ -52,11 +57,12 @@ class MappedRobot:
         timed_out: The last of them.
         others: The other robots on the map.
         frame: The frame of its odometry, '' before the first message.
+        has_gone: Whether it was there, and nobody publishes its odometry any more.
     """
 
     def __init__(self, name: str, goals: Sequence[tuple[float, ...]]) -> None:
         self.name = name
-        self.frame = ''
+        self.frame, self.has_gone = '', False
         self.scene = Scene(name=name, goals=[(x, y) for x, y, *_ in goals])
         self.trail: deque[tuple[float, float]] = deque(maxlen=TRAIL_LENGTH)
         self.feeds: list[Feed] = []
@@ -71,8 +77,9 @@ class MappedRobot:
         self._received_scan: tuple[object, Pose] | None = None
         self._ends: Any = None
         self._unread_scan: LaserScan | None = None
-        # A scan that came before the first pose: a robot at rest may not send another one.
-        self._pending_scan: LaserScan | None = None
+        # Where it was, by the time of the odometry, s; and the scans that no odometry is known of.
+        self._poses: deque[tuple[float, Pose, Twist2]] = deque(maxlen=MAX_POSES)
+        self._waiting: deque[LaserScan] = deque(maxlen=MAX_WAITING)
         # Changes that the page has not received yet, and what it has.
         self._lifted = False
         self._new_trail: list[float] = []
@@ -103,7 +110,7 @@ class MappedRobot:
         pose, twist = motion
         point = (pose.x, pose.y)
         self._heard.add(self.feeds[0].topic)
-        self.frame = message.header.frame_id
+        self.frame, self.has_gone = message.header.frame_id, False
         scene, bumped = self.scene, False
         way = math.dist(self.trail[-1], point) if self.trail else math.inf
         if way > JUMP:
@@ -117,9 +124,12 @@ class MappedRobot:
             scene.bump = self._touched(pose, scene.twist.v)
             bumped = scene.bump is not None
         scene.pose, scene.twist = motion
-        early, self._pending_scan = self._pending_scan, None
-        if early is not None:
-            self.take_scan(early)
+        at = _seconds(message)
+        if self._poses and at < self._poses[-1][0]:
+            self._poses.clear()  # its clock began anew
+            self._waiting.clear()
+        self._poses.append((at, *motion))
+        self._place_scans()
         if way >= TRAIL_STEP:
             self.trail.append(point)
             self._new_trail += point
@@ -138,10 +148,41 @@ class MappedRobot:
 
     def take_scan(self, message: LaserScan) -> None:
         """Take what its scanner sees."""
-        pose = self.scene.pose
-        if pose is None:
-            self._pending_scan = message
-            return
+        self._waiting.append(message)
+        self._place_scans()
+
+    def forget(self) -> None:
+        """Take it from the map. Walls stay."""
+        self.has_gone = True
+        self.scene = Scene(name=self.name, goals=self.scene.goals)
+        self.trail.clear()
+        self._poses.clear()
+        self._waiting.clear()
+        self._received_scan = self._unread_scan = self._scanner = self._sent_twist = None
+        self._new_scan = self._last_scan = b''
+        self._new_trail.clear()
+
+    def _place_scans(self) -> None:
+        while self._waiting and (pose := self._pose_of(self._waiting[0])) is not None:
+            self._place(self._waiting.popleft(), pose)
+
+    def _pose_of(self, message: LaserScan) -> Pose | None:
+        """Return where the robot was at the time of a scan; None if that is still to come."""
+        if not self._poses:
+            return None
+        at, latest = _seconds(message), self._poses[-1]
+        ahead = at - latest[0]
+        if NEAR_SEC < ahead < FAR_SEC and len(self._waiting) < MAX_WAITING:
+            return None
+        if not self._poses[0][0] <= at < latest[0] + FAR_SEC:
+            return latest[1]
+        since, pose, twist = next(each for each in reversed(self._poses) if each[0] <= at)
+        way, turn = twist.v * (at - since), twist.w * (at - since)
+        middle = pose.yaw + turn / 2
+        x, y = pose.x + way * math.cos(middle), pose.y + way * math.sin(middle)
+        return Pose(x, y, pose.yaw + turn)
+
+    def _place(self, message: LaserScan, pose: Pose) -> None:
         self._heard.add(self.feeds[1].topic)
         if self._received_scan == (message.ranges, pose):
             return  # at rest, every scan is the same
@@ -202,7 +243,9 @@ class MappedRobot:
         scene = self.scene
         buffers: list[bytes] = []
         if scene.pose is None:
-            return {}, buffers
+            was_there = bool(self._in_page)
+            self._in_page.clear()
+            return ({'gone': True} if was_there else {}), buffers
         if everything:
             self._in_page.clear()
             self._lifted, self._new_scan = True, self._new_scan or self._last_scan
@@ -226,3 +269,9 @@ class MappedRobot:
         self._last_scan = self._new_scan or self._last_scan
         self._lifted, self._new_trail, self._new_scan = False, [], b''
         return changes, buffers
+
+
+def _seconds(message: Odometry | LaserScan) -> float:
+    """Return the time in the header of a message, s."""
+    stamp = message.header.stamp
+    return float(stamp.sec + stamp.nanosec * 1e-9)

@@ -5,12 +5,17 @@ from __future__ import annotations
 import base64
 import math
 import re
+from types import SimpleNamespace
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import LaserScan
 
-from labkit.sim.kinematics import Pose, Twist2
+from labkit.sim.kinematics import BURGER, Pose, Twist2
 from labkit.views.arena_picture import Scene, bounds, joined, row, to_svg
+from labkit.views.arena_robot import MappedRobot
 
 ROBOT = """
 import labkit as lab
@@ -115,6 +120,83 @@ def test_scan_that_comes_before_the_odometry_is_not_lost(kernel):
         'print(view.text)'
     ).text
     assert 'Nearest obstacle 1.81 m away' in text
+
+
+def odometry(sec, x, v=0.0, w=0.0):
+    message = Odometry()
+    message.header.stamp.sec, message.header.stamp.nanosec = sec, 0
+    message.pose.pose.position.x = x
+    message.pose.pose.orientation.w = 1.0
+    message.twist.twist.linear.x, message.twist.twist.angular.z = v, w
+    return message
+
+
+def scan_at(sec, nanosec=0):
+    """Return a scan of one beam, straight ahead."""
+    message = LaserScan(range_min=0.1, range_max=3.5, ranges=[1.0])
+    message.header.stamp.sec, message.header.stamp.nanosec = sec, nanosec
+    return message
+
+
+@pytest.fixture
+def mapped():
+    robot: Any = MappedRobot('', [])
+    robot.feeds = [SimpleNamespace(topic='/odom'), SimpleNamespace(topic='/scan')]
+    return robot
+
+
+def seen_at(robot):
+    return [pytest.approx(end, abs=1e-3) for end in robot.current_scene().scan]
+
+
+AHEAD = 1.0 + BURGER.scan_x
+
+
+def test_a_scan_is_drawn_where_the_robot_was_at_its_time(mapped):
+    mapped.take_odometry(odometry(10, 0.0, v=0.2))
+    mapped.take_scan(scan_at(15))
+    assert seen_at(mapped) == []  # where it was then is not known yet
+    mapped.take_odometry(odometry(15, 1.0))
+    assert seen_at(mapped) == [(1.0 + AHEAD, 0.0)]
+    # Late, and between two messages of the odometry.
+    mapped.take_scan(scan_at(12))
+    assert seen_at(mapped) == [(0.4 + AHEAD, 0.0)]
+    mapped.take_odometry(odometry(16, 1.0, w=math.pi))
+    mapped.take_odometry(odometry(17, 1.0))
+    mapped.take_scan(scan_at(16, 500_000_000))
+    assert seen_at(mapped) == [(1.0, AHEAD)]
+
+
+@pytest.mark.parametrize('sec', [0, 9, 1_000])
+def test_a_scan_of_another_clock_is_drawn_where_the_robot_is(mapped, sec):
+    mapped.take_odometry(odometry(10, 0.0, v=0.2))
+    mapped.take_odometry(odometry(11, 0.2))
+    mapped.take_scan(scan_at(sec))
+    assert seen_at(mapped) == [(0.2 + AHEAD, 0.0)]
+    # And of one whose odometry does not come, after a while.
+    for _ in range(100):
+        mapped.take_scan(scan_at(12))
+    assert seen_at(mapped) == [(0.2 + AHEAD, 0.0)]
+
+
+def test_a_robot_whose_clock_begins_anew_is_drawn(mapped):
+    for sec in (100, 0):
+        mapped.take_odometry(odometry(sec, sec / 100))
+        mapped.take_scan(scan_at(sec))
+        assert seen_at(mapped) == [(sec / 100 + AHEAD, 0.0)]
+
+
+def test_a_robot_that_has_gone_is_on_the_map_no_more(kernel):
+    kernel.run(ROBOT)
+    kernel.run(f'view = lab.arena()\n{SPY}\ndisplay(view)\nsay("seen")')
+    assert not kernel.run('lab.wait_until(lambda: any("pose" in c for c in told()))').error
+    kernel.run('lab.remove(robot)')
+    assert not kernel.run('lab.wait_until(lambda: told()[-1] == {"gone": True})').error
+    gone = 'The robot has gone. Start a robot with lab.spin(lab.Turtlebot()).\n'
+    assert kernel.run('print(view.text)').text == gone
+    kernel.run('sent.clear()\nrobot = lab.spin(lab.Turtlebot())')
+    assert not kernel.run('lab.wait_until(lambda: any("pose" in c for c in told()))').error
+    assert kernel.run('print(view)').text.startswith('Robot at x = 0.00 m')
 
 
 def test_closing_leaves_nothing(kernel):
