@@ -108,6 +108,7 @@ def install(background: Runtime) -> None:
     made.follow()
     exits.install()
     safe = _NotebookSafe(background)
+    background.on_exit = safe.exit_program
     for owner, name, stand_in in REPLACED:
         setattr(owner, name, _replacement(ORIGINALS[stand_in], getattr(safe, stand_in)))
 
@@ -188,8 +189,9 @@ class _NotebookSafe:
             return up
         thread, program = threading.current_thread(), self._running_program()
         if program is None or thread is threading.main_thread():
-            return up and not self._has_just_ended()
-        return up and self._programs.setdefault(thread, program).ended_in is None
+            return up and not self._has_just_ended() and not self._has_just_left()
+        program = self._programs.setdefault(thread, program)
+        return up and program.ended_in is None and program.left_in is None
 
     def shutdown(
         self, *, context: Context | None = None, uninstall_handlers: bool | None = None
@@ -202,7 +204,11 @@ class _NotebookSafe:
             ORIGINALS['shutdown'](context=context, uninstall_handlers=uninstall_handlers)
         elif not self._background.started:
             ORIGINALS['shutdown']()
-        elif not self._background.end_caller():
+        elif (node := self._background.end_caller()) is not None:
+            program = self._running_program()
+            if program is not None and program.made(node):
+                program.left_in = self._request_id
+        else:
             if self._has_just_ended():
                 raise LabError(
                     'rclpy.shutdown() was called already. It has ended all that was made since '
@@ -231,6 +237,22 @@ class _NotebookSafe:
         """Return whether the program in this cell has called `shutdown` already."""
         program = self._running_program()
         return program is not None and program.ended_in == self._request_id
+
+    def _has_just_left(self) -> bool:
+        """Return whether a callback of a node of this cell has called `shutdown`."""
+        program = self._running_program()
+        return program is not None and program.left_in == self._request_id
+
+    def exit_program(self) -> None:
+        """End the program that this cell has begun, as its `sys.exit()` does in a terminal."""
+        program = self._running_program()
+        begun_here = program is not None and program.request_id == self._request_id
+        if program is None or not begun_here or program.ended_in is not None:
+            return
+        names = [full_name(node) for node in existing_nodes() if program.made(node)]
+        self._end_program()
+        if names:
+            print(f'The end of this program has ended {first_few(names)}.')
 
     def _end_program(self) -> None:
         """End what was made since the last `init`; everything, if nothing else would remain."""

@@ -99,6 +99,7 @@ class Program:
 
     Attributes:
         ended_in: The execution of the cell in which it has called `rclpy.shutdown`, None before.
+        left_in: The one of a node of its own that has called it in a callback, None before.
 
     Raises:
         LabError: A parameter file cannot be read.
@@ -115,6 +116,7 @@ class Program:
         self.request_id = request_id
         self.started_at = started_at
         self.ended_in: str | None = None
+        self.left_in: str | None = None
         self._args = Arguments.read(args)
         self._before = WeakSet(existing_nodes())
         self._loggers: list[str] = []

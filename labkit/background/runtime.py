@@ -64,6 +64,7 @@ class Runtime:
         helper: A hidden node for labkit's own subscriptions and graph queries.
         ended: Full names of nodes that have ended themselves, with the callback and what it did.
         foreign_threads: Threads that spin the learner's own executors, see `notebook_rclpy`.
+        on_exit: Called when a cell ends with `sys.exit()`, out of no spin.
         waits: What threads wait for: a rate's timer or a client, with words for it and the cell.
     """
 
@@ -75,6 +76,7 @@ class Runtime:
         self.ended: dict[str, str] = {}
         self.foreign_threads: set[threading.Thread] = set()
         self.waits: dict[Any, tuple[str, Cell]] = {}
+        self.on_exit: Callable[[], None] = lambda: None
         self._starting = threading.RLock()  # never taken by a callback, see `start`
         self._ending = threading.Lock()
         self._registry = Registry(self.console, self._count_nodes)
@@ -187,13 +189,13 @@ class Runtime:
 
     # -- nodes ----------------------------------------------------------------------------------
 
-    def end_caller(self) -> bool:
-        """End the node whose callback calls this; return False outside of callbacks."""
+    def end_caller(self) -> Node | None:
+        """End the node whose callback calls this, and return it; None outside of callbacks."""
         caller = self._executor.caller() if self._executor is not None else None
         if caller is None or caller[0].node is self.helper:
-            return False
+            return None
         self._end(*caller, 'called rclpy.shutdown()')
-        return True
+        return caller[0].node
 
     def end_program(self, entry: NodeEntry, callback: str, error: BaseException) -> None:
         """End the node whose callback has raised what ends a program."""
@@ -372,6 +374,8 @@ class Runtime:
             half_made.setdefault(node, cell)
         for node in filter(node_exists, ended_nodes(error)):
             self.destroy(node)
+        if isinstance(error, SystemExit) and not last_words(error):
+            self.on_exit()
 
     def _after_cell(self, cell: Cell) -> None:
         """End what IPython keeps to itself; report nodes that an edited cell has left behind."""

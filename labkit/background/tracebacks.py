@@ -57,6 +57,9 @@ That is undone now. Write msg = {kind}(), and run this cell again."""
 _NOT_YET = """
 This {kind} is not a node yet: its __init__ has not called the one of Node. Let
 super().__init__('name_of_the_node') be the first line of its __init__."""
+_IN_A_LOOP = """
+A cell runs in an event loop already. Write there, outside of any function, await and the
+coroutine: await spin_for_a_while(node) instead of asyncio.run(spin_for_a_while(node))."""
 _DESTROYED = """
 This {kind} exists no more: it was destroyed, as all parts of a node are when its cell is run
 again, or when ROS is stopped. Use the new one, and let no callback or thread keep the old one."""
@@ -212,6 +215,8 @@ def _causes_without_ros(error: BaseException | None) -> Iterator[None]:
 
 def _hint(error: object, tb: object) -> list[str]:
     """Return a hint where Python's words don't say what to do."""
+    if isinstance(error, RuntimeError) and str(error).startswith('asyncio.run() cannot be'):
+        return [_IN_A_LOOP]
     known = (AttributeError, TypeError, InvalidHandle)
     if not isinstance(error, known) or not isinstance(tb, TracebackType):
         return []

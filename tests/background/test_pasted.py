@@ -380,3 +380,74 @@ def test_the_branch_for_the_stop_button_is_reached(kernel, spin, what, is_caught
     result = kernel.finish(cell)
     assert (result.error == '', result.text.endswith('the end\n')) == (is_caught, is_caught)
     assert ('stopping the robot' in result.text) == is_caught
+
+
+ENDING = """
+import asyncio, sys
+import rclpy
+from rclpy.node import Node
+
+class Ending(Node):
+    def __init__(self, end):
+        super().__init__('ending')
+        self.count, self.end = 0, end
+        self.create_timer(0.01, self.on_timer)
+
+    def on_timer(self):
+        self.count += 1
+        self.end()
+
+def names():
+    from labkit.background.runtime import runtime
+    spun = [entry.node for entry in runtime.nodes()]
+    return [node.get_name() for node in [*spun, *runtime.unspun_nodes()]]
+"""
+
+
+def test_a_loop_ends_whose_callback_calls_shutdown(kernel):
+    kernel.run('import labkit as lab' + ENDING + 'other = lab.spin(Node("other"))')
+    for made, work in (
+        ('Ending(rclpy.shutdown)', 'rclpy.spin_once(node)'),
+        ('lab.spin(Ending(rclpy.shutdown))', 'lab.wait_until(lambda: node.count)'),
+    ):
+        result = kernel.run(
+            f'rclpy.init()\nnode = {made}\nwhile rclpy.ok():\n    {work}\nprint("the end")'
+        )
+        assert result.error == '' and result.text.endswith('the end\n'), result.traceback
+        # In another cell the notebook goes on.
+        assert kernel.run('print(rclpy.ok(), names())').text == "True ['other']\n"
+    thread = kernel.run(
+        'import threading\nrclpy.init()\nnode = Ending(rclpy.shutdown)\n'
+        'def work():\n    while rclpy.ok(): rclpy.spin_once(node)\n'
+        'thread = threading.Thread(target=work)\nthread.start()\nthread.join(30)\n'
+        'print(thread.is_alive())'
+    )
+    assert 'False\n' in thread.text and thread.error == ''
+
+
+def test_sys_exit_ends_what_its_program_has_made(kernel):
+    kernel.run('import labkit as lab' + ENDING + 'other = lab.spin(Node("other"))')
+    result = kernel.run('rclpy.init()\nnode = Node("own")\nsys.exit("no robot")')
+    assert result.error == 'SystemExit: no robot'
+    assert 'The end of this program has ended /own.\n' in result.text
+    assert kernel.run('print(names())').text == "['other']\n"
+    # Not what an earlier cell has begun, and not what has ended already.
+    kernel.run('rclpy.init()\nnode = Node("own")')
+    assert 'has ended /own' not in kernel.run('sys.exit(1)').text
+    result = kernel.run('rclpy.init()\nmine = Node("mine")\nrclpy.shutdown()\nsys.exit(0)')
+    assert 'has ended' not in result.text
+    assert kernel.run('print(names())').text == "['other', 'own']\n"
+    with_spin = kernel.run('rclpy.init()\nrclpy.spin(Ending(sys.exit))')
+    assert 'The end of' not in with_spin.text
+
+
+def test_a_cell_awaits_where_a_program_calls_asyncio_run(kernel):
+    kernel.run('import labkit as lab' + ENDING)
+    kernel.run(
+        'async def spin_for_a_while(node):\n    while node.count < 3:\n'
+        '        rclpy.spin_once(node, timeout_sec=0)\n        await asyncio.sleep(0.01)\n'
+        'node = Ending(lambda: None)'
+    )
+    run = kernel.run('asyncio.run(spin_for_a_while(node))')
+    assert 'A cell runs in an event loop already.' in run.traceback
+    assert kernel.run('await spin_for_a_while(node)\nprint(node.count)').text == '3\n'
