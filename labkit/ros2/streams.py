@@ -7,6 +7,7 @@ command. It holds back the output of other callbacks, so the output is the same 
 from __future__ import annotations
 
 import time
+from argparse import Namespace
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -29,7 +30,9 @@ if TYPE_CHECKING:
 __all__ = [
     'MAX_SHOWN',
     'Arrivals',
+    'Filter',
     'Stop',
+    'add_filter_option',
     'add_stop_options',
     'log',
     'subscribed',
@@ -54,6 +57,55 @@ def add_stop_options(parser: Parser, what: str) -> None:
     parser.add(
         '--timeout', metavar='N', type=positive_float, help='Exit after N seconds (only here)'
     )
+
+
+def add_filter_option(parser: Parser) -> None:
+    """Add the option that leaves messages out."""
+    parser.add(
+        '--filter',
+        dest='filter_expr',
+        metavar='EXPRESSION',
+        help='Take only messages for which an expression over m (the message) is true, such as '
+        "'m.data > 5'",
+    )
+
+
+class Filter:
+    """The messages that `--filter` lets through; all of them without that option.
+
+    Args:
+        args: The arguments, maybe with that of `add_filter_option`.
+        sample: A message of the type, whatever it holds.
+
+    Raises:
+        LabError: The expression can't be understood.
+    """
+
+    def __init__(self, args: Namespace, sample: Any) -> None:
+        self._expression = getattr(args, 'filter_expr', None)
+        self._is_wanted: Callable[[Any], bool] = lambda message: True
+        self._left_out = 0
+        if self._expression is not None:
+            # Loaded here: it costs only those who filter.
+            from labkit.launching.expressions import message_filter
+
+            self._is_wanted = message_filter(self._expression, sample)
+
+    def passes(self, message: Any) -> bool:
+        """Return whether a message is wanted.
+
+        Raises:
+            LabError: The expression has no value for it.
+        """
+        wanted = self._is_wanted(message)
+        self._left_out += not wanted
+        return wanted
+
+    def why_none(self) -> str:
+        """Return what to say if no message was wanted, '' if none came."""
+        if not self._left_out:
+            return ''
+        return f'{self._left_out} messages came, and for none is {self._expression} true.'
 
 
 class Stop:

@@ -18,14 +18,22 @@ from labkit.ros2.asking import add_discovery_options, asking_node, full_name
 from labkit.ros2.graph_words import topic_names, types_of_topic
 from labkit.ros2.parser import (
     Parser,
-    Usage,
     Verb,
     positive_float,
     positive_int,
     unsigned_int,
 )
 from labkit.ros2.qos_options import add_qos_options, matching_profile
-from labkit.ros2.streams import MAX_SHOWN, Arrivals, Stop, subscribed, tell, wait_for_type
+from labkit.ros2.streams import (
+    MAX_SHOWN,
+    Arrivals,
+    Filter,
+    Stop,
+    add_filter_option,
+    subscribed,
+    tell,
+    wait_for_type,
+)
 from labkit.rosgraph import interfaces
 from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.message_yaml import field_paths, to_csv, to_yaml
@@ -41,11 +49,6 @@ SETTLE_SEC = 2.0
 
 def echo(args: Namespace) -> str | None:
     """Show messages until a count, a timeout, or the stop button."""
-    if args.filter_expr is not None:
-        raise Usage(
-            'ros2 topic echo: --filter takes Python code, and %ros2 runs none.',
-            todo='Pick a part of the message with --field, or write a subscription in a cell.',
-        )
     stop = Stop(1 if args.once else args.count, args.timeout)
     node = asking_node(args)
     topic = full_name(args.topic_name, node)
@@ -53,6 +56,7 @@ def echo(args: Namespace) -> str | None:
     if msg_type is None:
         return f'No message came: {topic} has not appeared.'
     fields = _check_field(args.field, msg_type)
+    wanted = Filter(args, b'' if args.raw else _part_of(msg_type(), fields))
     profile, notes = matching_profile(args, node, topic)
     for note in notes:
         print(note)
@@ -63,7 +67,9 @@ def echo(args: Namespace) -> str | None:
 
     def arrived(message: Any, info: dict[str, Any]) -> None:
         def print_it() -> None:
-            if not stop.reached:
+            if stop.reached:
+                return
+            if wanted.passes(_part_of(message, fields)):
                 seen.append(True)
                 show(message, info)
                 stop.count_one()
@@ -93,7 +99,8 @@ def echo(args: Namespace) -> str | None:
         # same. A message is too late.
         runtime.executor.settle(SETTLE_SEC)
         arrivals.show_rest()
-        return f'No message came. {why_silent(node, topic, msg_type, profile)}'
+        silent = f'No message came. {why_silent(node, topic, msg_type, profile)}'
+        return wanted.why_none() or silent
 
 
 def _type_of(node: Node, topic: str, args: Namespace, stop: Stop) -> Any:
@@ -121,9 +128,13 @@ def _check_field(text: str | None, msg_type: Any) -> list[str]:
     return parts
 
 
+def _part_of(message: Any, fields: list[str]) -> Any:
+    return functools.reduce(getattr, fields, message)
+
+
 def _show(args: Namespace, fields: list[str], message: Any, info: dict[str, Any]) -> None:
     """Print one message."""
-    part = functools.reduce(getattr, fields, message)
+    part = _part_of(message, fields)
     if not hasattr(part, 'get_fields_and_field_types'):
         if args.include_message_info:
             print('---Got new message, message info:---')
@@ -225,7 +236,7 @@ def _arguments(parser: Parser) -> None:
         action='store_true',
         help='Shows the associated message info.',
     )
-    parser.add('--filter', dest='filter_expr', help=argparse.SUPPRESS)
+    add_filter_option(parser)
     parser.add('--include-hidden-topics', action='store_true', help=argparse.SUPPRESS)
 
 
@@ -236,5 +247,6 @@ ECHO = Verb(
     _arguments,
     'It waits for a topic that does not exist yet; the real one needs its type then. If no '
     'message has come before --timeout, that is exit code 1 here and 0 with the real one. '
-    '--filter is refused here, because it runs Python code.',
+    '--filter takes any Python code there; here '
+    'it is an expression that can change nothing.',
 )

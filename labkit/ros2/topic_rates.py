@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import argparse
+import functools
 import math
 import time
 from argparse import Namespace
 from collections import deque
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, NoReturn
 
 from labkit.asking.silence import why_silent
 from labkit.errors import LabError
 from labkit.ros2.asking import add_discovery_options, asking_node, full_name
 from labkit.ros2.graph_words import topic_names
-from labkit.ros2.parser import Parser, Usage, Verb, positive_int
+from labkit.ros2.parser import Parser, Verb, positive_int
 from labkit.ros2.streams import (
     Arrivals,
+    Filter,
     Stop,
+    add_filter_option,
     add_stop_options,
     subscribed,
     wait_for_type,
@@ -63,12 +66,10 @@ def statistics(values: list[float]) -> tuple[float, float, float, float]:
 
 def hz(args: Namespace) -> str | None:
     """Print the rate of messages."""
-    if args.filter_expr is not None:
-        raise Usage('ros2 topic hz: --filter takes Python code, and %ros2 runs none.')
     window = Window(args.window_size)
     last: list[float] = []
 
-    def arrived(_: bytes) -> None:
+    def arrived(_: Any) -> None:
         now = time.monotonic()
         if last:
             window.add(now - last[0])
@@ -81,7 +82,7 @@ def hz(args: Namespace) -> str | None:
             f'{greatest:.3f}s std dev: {spread:.5f}s window: {len(window.values)}'
         )
 
-    return _measure(args, args.topic_name, window, arrived, report, raw=True)
+    return _measure(args, args.topic_name, window, arrived, report, raw=args.filter_expr is None)
 
 
 def bandwidth(args: Namespace) -> str | None:
@@ -160,6 +161,7 @@ def _measure(
             'msg does not have header',
             todo=f'{type_name(msg_type)} carries no time stamp, so its delay is not known.',
         )
+    wanted = Filter(args, msg_type())
     if begin:
         print(begin.format(args.topic_name), flush=True)
     due = time.monotonic() + REPORT_SEC
@@ -175,12 +177,26 @@ def _measure(
             print(report(), flush=True)
             stop.count_one()
 
+    arrivals = Arrivals()
+
+    def fail(error: LabError) -> NoReturn:
+        raise error
+
+    def take(message: Any) -> None:
+        try:
+            if wanted.passes(message):
+                arrived(message)
+        except LabError as error:
+            arrivals.put(functools.partial(fail, error))
+
     profile = make_profile('sensor_data')
-    with subscribed(node, topic, msg_type, profile, arrived, raw=raw):
-        Arrivals().show_until(stop, look)
+    with subscribed(node, topic, msg_type, profile, take, raw=raw):
+        arrivals.show_until(stop, look)
         if window.total:
             return None
-        return f'No message came. {why_silent(node, topic, msg_type, profile)}'
+        return (
+            wanted.why_none() or f'No message came. {why_silent(node, topic, msg_type, profile)}'
+        )
 
 
 def _arguments(
@@ -210,7 +226,7 @@ def _hz_arguments(parser: Parser) -> None:
         HZ_WINDOW,
         [('--wall-time', text)],
     )
-    parser.add('--filter', dest='filter_expr', help=argparse.SUPPRESS)
+    add_filter_option(parser)
 
 
 def _bw_arguments(parser: Parser) -> None:

@@ -58,13 +58,12 @@ def test_echo_cuts_long_arrays(ros2):
 
 
 def test_echo_says_what_is_wrong(ros2):
-    field, kind, topic, silent, quiet, code = ros2(
+    field, kind, topic, silent, quiet = ros2(
         'topic echo /odom --field pose.pose.postion',
         'topic echo /chatter std_msgs/msg/Strin',
         'topic echo /chater --timeout 0.2',
         'topic echo /cmd_vel --timeout 0.2',
         'topic echo /scan --qos-reliability reliable --timeout 0.001',
-        'topic echo /chatter --filter "m.data"',
     )
     assert field.err == (
         "Invalid field 'pose.pose.postion': nav_msgs/msg/Odometry has none.\n"
@@ -77,7 +76,29 @@ def test_echo_says_what_is_wrong(ros2):
     assert 'Nobody publishes on /cmd_vel' in silent.err
     assert 'offering incompatible QoS. No messages will be received from it.' in quiet.out
     assert 'QoS profile does not match' in quiet.err
-    assert (code.code, code.out) == (2, '')
+
+
+EVEN = 'int(m.data.rpartition(\\" \\")[-1]) % 2 == 0'
+
+
+def test_echo_shows_what_passes_a_filter(ros2):
+    even, part, none, wrong, no_value, code = ros2(
+        f'topic echo /chatter --filter "{EVEN}" --count 2',
+        'topic echo /odom --field pose.pose.position --filter "m.x > 1" --once',
+        'topic echo /chatter --filter "m.data == \'nothing\'" --timeout 1',
+        'topic echo /chatter --filter "m.dta"',
+        'topic echo /scan --filter "m.ranges[500] > 0"',
+        'topic echo /chatter --filter "__import__(\'os\')"',
+    )
+    first, second = (int(number) for number in re.findall(r'Hello (\d+)', even.out))
+    assert first % 2 == 0 and second == first + 2
+    assert part.out == 'x: 1.5\ny: 0.0\nz: 0.0\n---\n'
+    assert re.fullmatch(
+        r"\d+ messages came, and for none is m\.data == 'nothing' true\.\n", none.err
+    )
+    assert wrong.err == "m.dta: 'dta' is no field of a String.\nDid you mean 'data'?\n"
+    assert (no_value.code, no_value.out) == (1, '') and 'index out of range' in no_value.err
+    assert (code.code, code.out) == (1, '') and 'is not allowed in it.' in code.err
 
 
 LATE = """
@@ -119,8 +140,10 @@ def test_echo_waits_for_a_topic_that_does_not_exist_yet(script, domain):
 
 @pytest.mark.slow('rates, in real time')
 def test_rates(ros2):
-    hz, bw, delay, headless, no_delay, no_bw, no_header = ros2(
+    hz, some, wrong, bw, delay, headless, no_delay, no_bw, no_header = ros2(
         'topic hz /chatter --count 2 --window 1',
+        f'topic hz /chatter --count 1 --filter "{EVEN}"',
+        'topic hz /scan --filter "m.ranges[500] > 0"',
         'topic bw scan --count 1',
         'topic delay /odom --count 1',
         'topic hz /nothing --timeout 0.1',
@@ -131,6 +154,9 @@ def test_rates(ros2):
     # A report comes after a second, however few messages came in it: one interval is enough.
     report = r'average rate: \d+\.\d{3}\n\tmin: \d+\.\d{3}s max: \d+\.\d{3}s std dev: 0\.0{5}s'
     assert re.fullmatch(f'({report} window: 1\n){{2}}', hz.out)
+    # Of twenty messages a second every second one.
+    assert 0 < float(some.out.split()[2]) < 15
+    assert (wrong.code, wrong.out) == (1, '') and 'index out of range' in wrong.err
     amount = r'[\d.]+ K?B'
     assert re.fullmatch(
         rf'Subscribed to \[scan\]\n{amount}/s from \d+ messages\n'
