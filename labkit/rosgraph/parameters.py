@@ -102,6 +102,11 @@ def _values_in(path: str, node_name: str, wildcard: bool) -> dict[str, Any]:
     found = [(name, tree) for name, tree in sections if re.fullmatch(_pattern(name), node_name)]
     if not wildcard:
         found = [(name, tree) for name, tree in found if '*' not in name]
+        if all(name == '/**' for name, _ in sections):
+            raise LabError(
+                'Param file does not contain selected parameters',
+                todo='It has some for all nodes, which --no-use-wildcard leaves out.',
+            )
     if not found:
         near = nearest(node_name, [name for name, _ in sections])
         raise LabError(

@@ -72,18 +72,25 @@ def test_names_can_be_filtered(ros2):
 
 @pytest.mark.slow('starts other processes')
 def test_a_file_for_another_node_is_refused(ros2, tmp_path):
-    other, empty, no_node = (tmp_path / name for name in ('other', 'empty', 'no_node'))
+    names = 'other', 'empty', 'no_node', 'for_all'
+    other, empty, no_node, for_all = (tmp_path / name for name in names)
     other.write_text(DUMP.replace('/lamp', '/talker'))
     empty.write_text('{}')
     no_node.write_text('/lamp: {speed: 5}')
-    answers = ros2(*(f'param load /lamp {path}' for path in (other, empty, no_node)))
-    assert [(answer.code, answer.out) for answer in answers] == [(1, '')] * 3
+    for_all.write_text(DUMP.replace('/lamp', '/**'))
+    files = other, empty, no_node, f'{for_all} --no-use-wildcard'
+    answers = ros2(*(f'param load /lamp {path}' for path in files))
+    assert [(answer.code, answer.out) for answer in answers] == [(1, '')] * 4
     # The words of rclpy.
     assert answers[0].err == (
         "Param file does not contain parameters for /lamp, only for nodes: ['/talker']\n"
     )
     assert answers[1].err == 'Param file does not contain selected parameters\n'
     assert answers[2].err == 'YAML file is not a valid ROS parameter file for node /lamp\n'
+    assert answers[3].err == (
+        'Param file does not contain selected parameters\n'
+        'It has some for all nodes, which --no-use-wildcard leaves out.\n'
+    )
 
 
 def test_write(ros2, tmp_path):
