@@ -24,6 +24,7 @@ __all__ = [
     'audience',
     'dropped_variables',
     'in_kernel',
+    'is_ros2_command',
     'notebook_name',
     'prepare_environment',
     'state_dir',
@@ -35,6 +36,9 @@ after_start: list[Callable[[], None]] = []
 
 # A callback that takes so long is felt by people, s.
 LONG_SEC = 1.0
+
+is_ros2_command = False
+"""Whether this process is `ros2` of a terminal: it is on the graph as the real one is."""
 
 # Variables removed by `prepare_environment`, with their values.
 dropped_variables: dict[str, str] = {}

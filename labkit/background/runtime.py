@@ -362,7 +362,13 @@ class Runtime:
         ORIGINALS['shutdown']()
 
     def _add_helper(self, executor: BackgroundExecutor) -> None:
-        self.helper = helper_node(f'_labkit_{os.getpid()}', context=executor.context)
+        # Scripts know the node of `ros2` by its name, and leave it out of a list.
+        who = '_ros2cli' if settings.is_ros2_command else '_labkit'
+        self.helper = helper_node(
+            f'{who}_{os.getpid()}',
+            context=executor.context,
+            enable_rosout=settings.is_ros2_command,
+        )
         self.helper.create_timer(DUPLICATE_CHECK_SEC, self._report_duplicates)
         name = self.helper.get_fully_qualified_name()
         executor.add_entry(NodeEntry(self.helper, name, self.console.current_cell()))

@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 
-from labkit import domain_ids
+from labkit import domain_ids, settings
 from labkit.background import domains
 from labkit.errors import LabError
 from labkit.files import read_limited
@@ -45,6 +45,7 @@ def run(words: list[str]) -> int:
         return 2
     from labkit.ros2.shell import execute
 
+    settings.is_ros2_command = True
     try:
         code = execute(words)
         sys.stdout.flush()
