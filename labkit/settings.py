@@ -18,6 +18,7 @@ __all__ = [
     'LEARNER',
     'LONG_SEC',
     'RECORDING',
+    'SCRIPT',
     'TERMINAL',
     'Audience',
     'after_start',
@@ -40,6 +41,9 @@ LONG_SEC = 1.0
 is_ros2_command = False
 """Whether this process is `ros2` of a terminal: it is on the graph as the real one is."""
 
+# Set for what a notebook's cells start: a cell shows their output, though it is a pipe.
+_CELL = 'LABKIT_CELL'
+
 # Variables removed by `prepare_environment`, with their values.
 dropped_variables: dict[str, str] = {}
 
@@ -57,6 +61,7 @@ def prepare_environment() -> None:
         # ipykernel requests colours (FORCE_COLOR) of all child processes. Python has them since
         # 3.13: errors of `ros2 run` would be different text there, and `grep` would not find it.
         os.environ.setdefault('PYTHON_COLORS', '0')
+        os.environ[_CELL] = '1'
         _find_log_folder()
     # Stay on this machine, unless the learner says otherwise. To ROS, '' is the network.
     if not os.environ.get('ROS_AUTOMATIC_DISCOVERY_RANGE'):
@@ -124,11 +129,14 @@ class Audience:
             leave out what differs between healthy machines, progress is not kept.
         patience_sec: Time that a command waits for others, s; None for no limit, because a person
             can press the stop button.
+        wants_reasons: Whether `ros2` explains what the real one is silent about, or tells in other
+            words, which scripts rely on.
     """
 
     live: bool
     same_each_time: bool
     patience_sec: float | None
+    wants_reasons: bool = True
 
 
 LEARNER = Audience(live=True, same_each_time=False, patience_sec=None)
@@ -136,6 +144,9 @@ LEARNER = Audience(live=True, same_each_time=False, patience_sec=None)
 
 TERMINAL = Audience(live=False, same_each_time=False, patience_sec=None)
 """A person in a terminal, or a script."""
+
+SCRIPT = Audience(live=False, same_each_time=False, patience_sec=None, wants_reasons=False)
+"""A program that runs `ros2`: its output goes into a pipe or a file, and not into a cell."""
 
 RECORDING = Audience(live=False, same_each_time=True, patience_sec=5.0)
 """A program that runs a lesson: nbval and `labkit record`. They set `LABKIT_HEADLESS=1`."""
@@ -146,7 +157,10 @@ def audience() -> Audience:
     """Return the audience of this process, determined on the first call."""
     if os.environ.get('LABKIT_HEADLESS', '') not in ('', '0'):
         return RECORDING
-    return LEARNER if in_kernel() else TERMINAL
+    if in_kernel():
+        return LEARNER
+    is_read_by_program = is_ros2_command and not sys.stdout.isatty() and _CELL not in os.environ
+    return SCRIPT if is_read_by_program else TERMINAL
 
 
 def in_kernel() -> bool:

@@ -232,5 +232,5 @@ def _build(work: Path, name: str, texts: dict[str, str]) -> Path:
 @functools.cache
 def _say(name: str) -> None:
     """Tell a terminal why nothing happens; a notebook has a progress bar."""
-    if settings.audience() is settings.TERMINAL:
+    if settings.audience() in (settings.TERMINAL, settings.SCRIPT):
         print(f'labkit builds {name}, once for this environment.', file=sys.stderr)

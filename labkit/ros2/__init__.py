@@ -1,8 +1,9 @@
 """The `ros2` command line: `%ros2 topic list` in a notebook, `ros2` in a terminal.
 
 Words, options and output are those of the real `ros2` of ROS 2 Jazzy, so that what is learnt here
-is true elsewhere. Verbs that would run for ever end after a count, after a `--timeout`, or with
-the stop button; no input is evaluated as Python.
+is true elsewhere. What is wrong is explained, except to scripts: see `parser.real_one`. Verbs that
+would run for ever end after a count, after a `--timeout`, or with the stop button; no input is
+evaluated as Python.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ from labkit.ros2.asking import (
     values_text,
 )
 from labkit.ros2.graph_words import action_names, types_of_action
-from labkit.ros2.parser import Command, Parser, Verb
+from labkit.ros2.parser import Command, Parser, Verb, real_one
 from labkit.ros2.streams import tell
 from labkit.rosgraph import interfaces
 from labkit.rosgraph.interfaces import type_name
@@ -63,7 +63,9 @@ def show_info(args: Namespace) -> None:
     """Print the nodes at both ends of an action."""
     node = asking_node(args)
     name = full_name(args.action_name, node)
-    _types_of(node, name)
+    nobody = f'Action: {args.action_name}\nAction clients: 0\nAction servers: 0'
+    with real_one(says='', shows=nobody, code=0):
+        _types_of(node, name)
     ends = poll_until(lambda: action_ends(node, name))
     print(f'Action: {args.action_name}')
     _print_ends('clients', ends.clients, args)
@@ -79,7 +81,10 @@ def _print_ends(what: str, found: NamesAndTypes, args: Namespace) -> None:
 def show_type(args: Namespace) -> None:
     """Print the type of an action."""
     node = asking_node(args)
-    print('\n'.join(_types_of(node, full_name(args.action_name, node))))
+    name = full_name(args.action_name, node)
+    with real_one(says=''):
+        types = _types_of(node, name)
+    print('\n'.join(types))
 
 
 def send_goal(args: Namespace) -> None:

@@ -12,7 +12,7 @@ from labkit.asking.discovery import DISCOVERY_SEC, SOON_SEC, poll_until
 from labkit.asking.notebook_graph import KINDS, ask_notebook
 from labkit.background.runtime import runtime
 from labkit.errors import LabError, nearest
-from labkit.ros2.parser import Parser, Usage, positive_float
+from labkit.ros2.parser import Parser, Usage, positive_float, real_one
 from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.listings import NamesAndTypes
 from labkit.rosgraph.matching import other_type_here
@@ -88,7 +88,8 @@ def check_node_name(node: Node, name: str, *, timeout_sec: float = SOON_SEC) -> 
     """
     full_name = name if name.startswith('/') else f'/{name}'
     if not poll_until(lambda: full_name in node_names(node), timeout_sec):
-        raise LabError('Node not found', todo=unknown(full_name, node_names(node), 'node'))
+        with real_one():
+            raise LabError('Node not found', todo=unknown(full_name, node_names(node), 'node'))
     return full_name
 
 

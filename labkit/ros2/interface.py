@@ -5,8 +5,10 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 
+from ament_index_python import get_packages_with_prefixes
+
 from labkit import settings
-from labkit.ros2.parser import Command, Parser, Usage, Verb
+from labkit.ros2.parser import Command, Parser, Usage, Verb, real_one
 from labkit.rosgraph import interfaces
 from labkit.rosgraph.definitions import definition
 from labkit.rosgraph.message_yaml import to_yaml
@@ -28,7 +30,8 @@ def list_interfaces(args: Namespace) -> None:
 
 def list_package(args: Namespace) -> None:
     """Print the names of the interface types of one package."""
-    interfaces.check_package(args.package_name)
+    with real_one():
+        interfaces.check_package(args.package_name)
     kinds = _kinds(args)
     for name in interfaces.listed_in(args.package_name):
         if name.split('/')[1] in kinds:
@@ -44,11 +47,24 @@ def list_packages(args: Namespace) -> None:
 
 def show(args: Namespace) -> None:
     """Print the definition of an interface type, including nested types."""
-    name = interfaces.check_exists(_type(args))
+    asked = _type(args)
+    with real_one(says=_in_real_words(asked)):
+        name = interfaces.check_exists(asked)
     if args.all_comments and args.no_comments:
         raise Usage('ros2 interface show: --all-comments and --no-comments can not go together.')
     for line in definition(name, comments=not args.no_comments, nested_comments=args.all_comments):
         print(line)
+
+
+def _in_real_words(name: str) -> str:
+    """Return what the real `show` says of a type that is not there."""
+    package, *rest = name.split('/')
+    if len(rest) != 2:
+        return f"Invalid name '{name}'. Expected three parts separated by '/'"
+    prefix = get_packages_with_prefixes().get(package)
+    if not prefix:
+        return f"Unknown package '{package}'"
+    return f"Could not find the interface '{prefix}/share/{name}.idl'"
 
 
 def show_prototype(args: Namespace) -> None:

@@ -11,7 +11,7 @@ from labkit.asking.discovery import poll_until
 from labkit.errors import LabError
 from labkit.ros2.asking import add_discovery_options, asking_node, known_names, unknown
 from labkit.ros2.graph_words import node_names
-from labkit.ros2.parser import Command, Parser, Verb
+from labkit.ros2.parser import Command, Parser, Verb, real_one
 from labkit.rosgraph.listings import ends_of_node
 from labkit.rosgraph.names import is_hidden
 from labkit.rosgraph.snapshot import node_names as names_of_nodes
@@ -47,10 +47,11 @@ def show_info(args: Namespace) -> None:
     if not count:
         hidden = name in _nodes(node, include_hidden=True)
         todo = unknown(name, _nodes(node, include_hidden=False), 'node')
-        raise LabError(
-            f"Unable to find node '{name}'",
-            todo='It is hidden. Add --include-hidden to see it.' if hidden else todo,
-        )
+        with real_one():
+            raise LabError(
+                f"Unable to find node '{name}'",
+                todo='It is hidden. Add --include-hidden to see it.' if hidden else todo,
+            )
     if count > 1:
         print(
             f'There are {count} nodes in the graph with the exact name "{name}". You are seeing '

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from argparse import Namespace
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from rcl_interfaces.msg import Parameter
@@ -21,7 +21,7 @@ from labkit.asking.parameters import (
 from labkit.errors import LabError, quoted
 from labkit.ros2.asking import add_discovery_options, asking_node, check_node_name, unknown
 from labkit.ros2.graph_words import node_names
-from labkit.ros2.parser import Command, Parser, Usage, Verb, positive_float
+from labkit.ros2.parser import Command, Parser, Usage, Verb, positive_float, real_one
 from labkit.rosgraph.names import is_hidden
 from labkit.rosgraph.parameters import (
     NOT_SET,
@@ -34,7 +34,7 @@ from labkit.rosgraph.parameters import (
 from labkit.rosgraph.snapshot import node_names as names_of_nodes
 
 if TYPE_CHECKING:
-    from rcl_interfaces.msg import SetParametersResult
+    from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
     from rclpy.node import Node
 
 __all__ = ['COMMAND']
@@ -86,10 +86,11 @@ def get(args: Namespace) -> str | None:
     if kind == NOT_SET:
         names = parameter_names(node, name)
         if args.parameter_name not in names:
-            raise LabError(
-                f"Parameter not set: {name} has no parameter '{args.parameter_name}'.",
-                todo=_other_name(args.parameter_name, names),
-            )
+            with real_one(says='Parameter not set'):
+                raise LabError(
+                    f"Parameter not set: {name} has no parameter '{args.parameter_name}'.",
+                    todo=_other_name(args.parameter_name, names),
+                )
     if not values:
         return 'Parameter not set'
     value = python_value(values[0])
@@ -100,21 +101,21 @@ def get(args: Namespace) -> str | None:
     return None
 
 
-def set_parameter(args: Namespace) -> str | None:
+def set_parameter(args: Namespace) -> None:
     """Set a parameter to a value."""
     node = asking_node(args)
     name = check_node_name(node, args.node_name)
     parameter = Parameter(name=args.parameter_name, value=value_from(args.value))
     result = set_parameters(node, name, [parameter])[0]
-    return _told(result, 'Set parameter successful', 'Setting parameter failed')
+    _check(_told(result, 'Set parameter successful', 'Setting parameter failed'))
 
 
-def delete(args: Namespace) -> str | None:
+def delete(args: Namespace) -> None:
     """Undeclare a parameter, if the node allows it."""
     node = asking_node(args)
     name = check_node_name(node, args.node_name)
     result = delete_parameter(node, name, args.parameter_name)
-    return _told(result, 'Deleted parameter successfully', 'Deleting parameter failed')
+    _check(_told(result, 'Deleted parameter successfully', 'Deleting parameter failed'))
 
 
 def describe(args: Namespace) -> None:
@@ -122,26 +123,33 @@ def describe(args: Namespace) -> None:
     node = asking_node(args)
     name = check_node_name(node, args.node_name)
     known = parameter_names(node, name)
+    there = [parameter for parameter in args.parameter_names if parameter in known]
+    found = describe_parameters(node, name, there) if there else []
+    text = '\n'.join(line for descriptor in found for line in _described(descriptor))
     for parameter in args.parameter_names:
         if parameter not in known:
-            raise LabError(
-                f"{name} has no parameter '{parameter}'.", todo=_other_name(parameter, known)
-            )
-    for descriptor in describe_parameters(node, name, args.parameter_names):
-        print('Parameter name:', descriptor.name)
-        print('  Type:', type_word(descriptor.type))
-        if descriptor.description:
-            print('  Description:', descriptor.description)
-        print('  Constraints:')
-        if descriptor.read_only:
-            print('    Read only: true')
-        for limits in [*descriptor.floating_point_range, *descriptor.integer_range][:1]:
-            print('    Min value:', limits.from_value)
-            print('    Max value:', limits.to_value)
-            if limits.step:
-                print('    Step:', limits.step)
-        if descriptor.additional_constraints:
-            print('    Additional constraints:', descriptor.additional_constraints)
+            with real_one(says='', shows=text, code=0):
+                raise LabError(
+                    f"{name} has no parameter '{parameter}'.", todo=_other_name(parameter, known)
+                )
+    print(text)
+
+
+def _described(descriptor: ParameterDescriptor) -> Iterator[str]:
+    yield f'Parameter name: {descriptor.name}'
+    yield f'  Type: {type_word(descriptor.type)}'
+    if descriptor.description:
+        yield f'  Description: {descriptor.description}'
+    yield '  Constraints:'
+    if descriptor.read_only:
+        yield '    Read only: true'
+    for limits in [*descriptor.floating_point_range, *descriptor.integer_range][:1]:
+        yield f'    Min value: {limits.from_value}'
+        yield f'    Max value: {limits.to_value}'
+        if limits.step:
+            yield f'    Step: {limits.step}'
+    if descriptor.additional_constraints:
+        yield f'    Additional constraints: {descriptor.additional_constraints}'
 
 
 def dump(args: Namespace) -> None:
@@ -153,29 +161,34 @@ def dump(args: Namespace) -> None:
     print(to_yaml(name, dict(zip(names, values, strict=False))))
 
 
-def load(args: Namespace) -> int:
+def load(args: Namespace) -> None:
     """Set the parameters of a node from a file."""
     node = asking_node(args)
     name = check_node_name(node, args.node_name)
     wanted = parameters_in(args.parameter_file, name, wildcard=not args.no_use_wildcard)
     results = set_parameters(node, name, list(wanted.values()))
-    failed = 0
-    for parameter, result in zip(wanted, results, strict=True):
-        words = f'Set parameter {parameter}'
-        complaint = _told(result, f'{words} successful', f'{words} failed')
-        if complaint:
-            failed = 1
-            print(complaint, file=sys.stderr)
-    return failed
+    words = 'Set parameter {} successful', 'Set parameter {} failed'
+    complaints = [
+        _told(result, *(text.format(parameter) for text in words))
+        for parameter, result in zip(wanted, results, strict=True)
+    ]
+    _check('\n'.join(filter(None, complaints)))
 
 
-def _told(result: SetParametersResult, good: str, bad: str) -> str | None:
+def _told(result: SetParametersResult, good: str, bad: str) -> str:
     """Print that a parameter was set; return an error message if it was not."""
     reason = f': {result.reason}' if result.reason else ''
     if not result.successful:
         return f'{bad}{reason}'
     print(f'{good}{reason}')
-    return None
+    return ''
+
+
+def _check(complaint: str) -> None:
+    """Raise a LabError if there is a complaint. With the real one the exit code stays 0."""
+    if complaint:
+        with real_one(code=0):
+            raise LabError(complaint)
 
 
 def _label(kind: str) -> str:
@@ -274,8 +287,8 @@ COMMAND = Command(
             'Delete parameter',
             delete,
             _parameter_arguments,
-            'A parameter that is not deleted gives exit code 1 here, and one that is 0; the real '
-            'one has it the other way round.',
+            'A parameter that is not deleted gives exit code 1 here; the real one ends with 0, as '
+            'this one does into a pipe.',
         ),
         Verb(
             'describe',
@@ -283,7 +296,7 @@ COMMAND = Command(
             describe,
             _describe_arguments,
             'A parameter that the node does not have is an error here, with exit code 1; the real '
-            'one says nothing.',
+            'one says nothing, as this one does into a pipe.',
         ),
         Verb(
             'dump',
@@ -298,15 +311,17 @@ COMMAND = Command(
             'Load parameter file for a node',
             load,
             _load_arguments,
-            'A parameter that is not set, or a file for another node, gives exit code 1 here; the '
-            'real one sets all that the file has, for whatever node, and ends with 0.',
+            'A parameter that is not set gives exit code 1 here; the real one ends with 0, as '
+            'this one does into a pipe. A file for another node is refused here; the real one '
+            'sets all that the file has, for whatever node.',
         ),
         Verb(
             'set',
             'Set parameter',
             set_parameter,
             _set_arguments,
-            'A parameter that is not set gives exit code 1 here; the real one ends with 0.',
+            'A parameter that is not set gives exit code 1 here; the real one ends with 0, as '
+            'this one does into a pipe.',
         ),
     ),
 )

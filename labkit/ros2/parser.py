@@ -10,21 +10,24 @@ from __future__ import annotations
 import argparse
 import math
 import textwrap
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
-from labkit.errors import nearest, quoted
+from labkit.errors import LabError, nearest, quoted
 from labkit.rosgraph.refusals import Refusal, Refused
 
 __all__ = [
     'Command',
     'Done',
     'Parser',
+    'RealOne',
     'Usage',
     'Verb',
     'positive_float',
     'positive_int',
+    'real_one',
     'unsigned_int',
 ]
 
@@ -41,6 +44,38 @@ class Usage(Refused):
 
 class Done(Exception):
     """End a line early, because help was requested and shown."""
+
+
+@dataclass(frozen=True)
+class RealOne:
+    """How the real `ros2` ends where this one explains.
+
+    Attributes:
+        says: What it prints on standard error, '' if nothing.
+        shows: What it prints on standard output, '' if nothing.
+        code: Its exit code.
+    """
+
+    says: str
+    shows: str
+    code: int
+
+
+@contextmanager
+def real_one(says: str | None = None, *, shows: str = '', code: int = 1) -> Iterator[None]:
+    """Let errors of a `with` block end the line as the real `ros2` does, if a script runs it.
+
+    Args:
+        says: As in `RealOne`; the error without what to do next if None.
+        shows: As in `RealOne`.
+        code: As in `RealOne`.
+    """
+    try:
+        yield
+    except LabError as error:
+        told = error.message if says is None else says
+        error.real_one = RealOne(told, shows, code)  # type: ignore[attr-defined]
+        raise
 
 
 class Parser(argparse.ArgumentParser):
@@ -139,7 +174,10 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Raise a `Usage` error; called by argparse."""
-        raise Usage(f'{self.prog}: {message}', todo=self.usage_line, reason=Refusal.BAD_ARGUMENT)
+        with real_one(f'{self.usage_line}\n{self.prog}: error: {message}', code=2):
+            raise Usage(
+                f'{self.prog}: {message}', todo=self.usage_line, reason=Refusal.BAD_ARGUMENT
+            )
 
     def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
         """End the line; called by argparse after showing help."""

@@ -5,10 +5,11 @@ from __future__ import annotations
 import sys
 import xml.etree.ElementTree as ET
 from argparse import Namespace
+from pathlib import Path
 
 from labkit import settings
 from labkit.errors import LabError, quoted
-from labkit.ros2.parser import Command, Parser, Verb
+from labkit.ros2.parser import Command, Parser, Verb, real_one
 from labkit.ros2.pkg_create import CREATE
 from labkit.rosgraph.packages import DEMO, executables, package_names, prefix_of, with_executables
 
@@ -22,13 +23,13 @@ def list_packages(args: Namespace) -> None:
 
 def show_prefix(args: Namespace) -> None:
     """Print the folder where a package is installed."""
-    prefix = prefix_of(args.package_name)
+    prefix = _prefix(args)
     print(prefix / 'share' / args.package_name if args.share else prefix)
 
 
 def show_xml(args: Namespace) -> None:
     """Print the manifest of a package."""
-    path = prefix_of(args.package_name) / 'share' / args.package_name / 'package.xml'
+    path = _prefix(args) / 'share' / args.package_name / 'package.xml'
     try:
         tree = ET.parse(path)
     except (OSError, ET.ParseError) as error:
@@ -39,9 +40,15 @@ def show_xml(args: Namespace) -> None:
     elements = tree.getroot().findall(args.tag)
     if not elements:
         tags = ', '.join(sorted({child.tag for child in tree.getroot()}))
-        raise LabError(f'XML tag not found: {quoted(args.tag)}', todo=f'It has: {tags}.')
+        with real_one(says='XML tag not found'):
+            raise LabError(f'XML tag not found: {quoted(args.tag)}', todo=f'It has: {tags}.')
     for element in elements:
         print(element.text)
+
+
+def _prefix(args: Namespace) -> Path:
+    with real_one(says='Package not found'):
+        return prefix_of(args.package_name)
 
 
 def list_executables(args: Namespace) -> None:

@@ -23,7 +23,7 @@ from labkit.ros2.asking import (
     values_text,
 )
 from labkit.ros2.graph_words import service_names, types_of_service
-from labkit.ros2.parser import Command, Parser, Verb, positive_float
+from labkit.ros2.parser import Command, Parser, Verb, positive_float, real_one
 from labkit.ros2.service_echo import ECHO
 from labkit.rosgraph import interfaces
 from labkit.rosgraph.interfaces import type_name
@@ -52,13 +52,17 @@ def list_services(args: Namespace) -> None:
 
 def show_type(args: Namespace) -> None:
     """Print a service's type."""
-    print('\n'.join(_types_of(asking_node(args), args.service_name)))
+    node = asking_node(args)
+    with real_one(says=''):
+        types = _types_of(node, args.service_name)
+    print('\n'.join(types))
 
 
 def show_info(args: Namespace) -> None:
     """Print a service's type, and the number of its clients and servers."""
     node = asking_node(args)
-    types = _types_of(node, args.service_name)
+    with real_one():
+        types = _types_of(node, args.service_name)
     print(f'Type: {types[0] if len(types) == 1 else types}')
     print(f'Clients count: {node.count_clients(args.service_name)}')
     print(f'Services count: {node.count_services(args.service_name)}')
@@ -69,7 +73,8 @@ def find(args: Namespace) -> None:
     found = known_names(args, 'services', include_hidden=args.include_hidden_services)
     names = [name for name, types in found if args.service_type in types]
     if not names:
-        interfaces.check_exists(args.service_type, 'srv')
+        with real_one(says='', shows='0' if args.count_services else '', code=0):
+            interfaces.check_exists(args.service_type, 'srv')
     print(len(names)) if args.count_services else print('\n'.join(names), end='\n' * bool(names))
 
 
@@ -220,7 +225,7 @@ COMMAND = Command(
             find,
             _find_arguments,
             'A type that is not installed is an error here, with exit code 1; the real one finds '
-            'nothing.',
+            'nothing, as this one does into a pipe.',
         ),
         Verb('info', 'Print information about a service', show_info, _info_arguments),
         Verb('list', 'Output a list of available services', list_services, _list_arguments),

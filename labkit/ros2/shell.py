@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from labkit import settings
 from labkit.errors import LabError, nearest, quoted
-from labkit.ros2.parser import Command, Done, Usage, Verb, table
+from labkit.ros2.parser import Command, Done, RealOne, Usage, Verb, table
 from labkit.rosgraph.refusals import Refusal, Refused
 
 __all__ = ['COMMANDS', 'Ran', 'command', 'execute', 'history', 'is_complete', 'run_line', 'split']
@@ -172,10 +172,11 @@ def execute(words: Sequence[str], *, background: bool = False) -> int:
         result = 0
     except KeyboardInterrupt:
         result = 2  # SIGINT, as with the real command
-    except Usage as error:
-        return _complain(words, 2, error)
     except LabError as error:
-        return _complain(words, 1, error)
+        told = getattr(error, 'real_one', None)
+        if told is None or settings.audience().wants_reasons:
+            return _complain(words, 2 if isinstance(error, Usage) else 1, error)
+        return _end_as(told)
     except BrokenPipeError:
         raise
     except Exception as error:  # never a traceback: the user of a command can't read it
@@ -191,6 +192,14 @@ def _complain(words: Sequence[str], code: int, error: LabError) -> int:
     history.append(Ran(tuple(words), str(error), reason, _topic_in(words)))
     print(error, file=sys.stderr)
     return code
+
+
+def _end_as(told: RealOne) -> int:
+    if told.shows:
+        print(told.shows)
+    if told.says:
+        print(told.says, file=sys.stderr)
+    return told.code
 
 
 def _topic_in(words: Sequence[str]) -> str:

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from labkit import settings
-from labkit.asking.discovery import poll_until
+from labkit.asking.discovery import poll_until, wait_until_graph_is_stable
 from labkit.asking.listener import Listener
 from labkit.background.compat import RCLError
 from labkit.background.wait import wait_for
@@ -190,7 +190,9 @@ def log(level: str, node_name: str, text: str) -> None:
     tell(f'[{level}] [{node_name}]: {text}')
 
 
-def wait_for_type(node: Node, topic: str, stop: Stop, *, typed: str) -> str | None:
+def wait_for_type(
+    node: Node, topic: str, stop: Stop, *, typed: str, is_patient: bool = True
+) -> str | None:
     """Return the type of a topic; wait for a topic that does not exist yet, and say so.
 
     Args:
@@ -198,6 +200,7 @@ def wait_for_type(node: Node, topic: str, stop: Stop, *, typed: str) -> str | No
         topic: Full name of the topic.
         stop: When to stop waiting.
         typed: The name of the topic as typed, for messages.
+        is_patient: Whether to wait for it.
 
     Returns:
         The type's name, None if it was time to stop.
@@ -205,12 +208,19 @@ def wait_for_type(node: Node, topic: str, stop: Stop, *, typed: str) -> str | No
     Raises:
         LabError: The topic has more than one type.
     """
-    types = poll_until(lambda: topic_types(node, topic))
+    types = topic_types(node, topic)
+    if not types and is_patient:
+        types = poll_until(lambda: topic_types(node, topic))
+    elif not types:
+        wait_until_graph_is_stable(node)
+        types = topic_types(node, topic)
     if not types:
         hint = unknown(topic, [name for name, _ in topics(node)], 'topic')
         print(f'WARNING: topic [{typed}] does not appear to be published yet', flush=True)
-        if hint.startswith('Did you mean'):
+        if hint.startswith('Did you mean') and settings.audience().wants_reasons:
             print(hint, flush=True)
+        if not is_patient:
+            return None
         wait_for(lambda: topic_types(node, topic) or stop.reached, None)
         types = topic_types(node, topic)
     if len(types) > 1:

@@ -10,7 +10,7 @@ from labkit.asking.discovery import poll_until
 from labkit.errors import LabError
 from labkit.ros2.asking import add_discovery_options, asking_node, known_names, unknown
 from labkit.ros2.graph_words import topic_names
-from labkit.ros2.parser import Command, Parser, Verb
+from labkit.ros2.parser import Command, Parser, Verb, real_one
 from labkit.ros2.topic_echo import ECHO
 from labkit.ros2.topic_pub import PUB
 from labkit.ros2.topic_rates import BW, DELAY, HZ
@@ -50,7 +50,8 @@ def show_info(args: Namespace) -> None:
     types = poll_until(lambda: topic_types(node, name))
     if not types:
         names = [topic for topic, _ in topics(node)]
-        raise LabError(f"Unknown topic '{name}'", todo=unknown(name, names, 'topic'))
+        with real_one():
+            raise LabError(f"Unknown topic '{name}'", todo=unknown(name, names, 'topic'))
     end = '\n\n' if args.verbose else '\n'
     print(f'Type: {types[0] if len(types) == 1 else types}', end=end)
     print(f'Publisher count: {node.count_publishers(name)}', end=end)
@@ -68,11 +69,11 @@ def show_type(args: Namespace) -> str | int:
         lambda: dict(topics(node, include_hidden=args.include_hidden_topics)).get(args.topic_name)
     )
     if not types:
-        # The real one is silent and ends with code 1; a learner needs an explanation.
         names = [topic for topic, _ in topics(node)]
-        raise LabError(
-            f"Unknown topic '{args.topic_name}'", todo=unknown(args.topic_name, names, 'topic')
-        )
+        with real_one(says=''):
+            raise LabError(
+                f"Unknown topic '{args.topic_name}'", todo=unknown(args.topic_name, names, 'topic')
+            )
     print('\n'.join(types))
     return 0
 
@@ -82,7 +83,8 @@ def find(args: Namespace) -> None:
     found = known_names(args, 'topics', include_hidden=args.include_hidden_topics)
     names = [name for name, types in found if args.topic_type in types]
     if not names:
-        interfaces.check_exists(args.topic_type, 'msg')
+        with real_one(says='', shows='0' if args.count_topics else '', code=0):
+            interfaces.check_exists(args.topic_type, 'msg')
     print(len(names)) if args.count_topics else print('\n'.join(names), end='\n' * bool(names))
 
 
@@ -172,7 +174,7 @@ COMMAND = Command(
             find,
             _find_arguments,
             'A type that is not installed is an error here, with exit code 1; the real one finds '
-            'nothing.',
+            'nothing, as this one does into a pipe.',
         ),
         HZ,
         Verb('info', 'Print information about a topic', show_info, _info_arguments),
@@ -183,7 +185,8 @@ COMMAND = Command(
             "Print a topic's type",
             show_type,
             _type_arguments,
-            'An unknown topic is told here; the real one only ends with exit code 1.',
+            'An unknown topic is told here; the real one only ends with exit code 1, as this one '
+            'does into a pipe.',
         ),
     ),
     {HIDDEN: 'Consider hidden topics as well'},

@@ -21,6 +21,7 @@ from labkit.ros2.parser import (
     Verb,
     positive_float,
     positive_int,
+    real_one,
     unsigned_int,
 )
 from labkit.ros2.qos_options import add_qos_options, matching_profile
@@ -47,14 +48,16 @@ TRUNCATE_LENGTH = 128
 SETTLE_SEC = 2.0
 
 
-def echo(args: Namespace) -> str | None:
+def echo(args: Namespace) -> None:
     """Show messages until a count, a timeout, or the stop button."""
     stop = Stop(1 if args.once else args.count, args.timeout)
     node = asking_node(args)
     topic = full_name(args.topic_name, node)
     msg_type = _type_of(node, topic, args, stop)
     if msg_type is None:
-        return f'No message came: {topic} has not appeared.'
+        # A person waits for it, and ends that; the real one does not even begin.
+        with real_one(says='Could not determine the type for the passed topic'):
+            raise LabError(f'No message came: {topic} has not appeared.')
     fields = _check_field(args.field, msg_type)
     wanted = Filter(args, b'' if args.raw else _part_of(msg_type(), fields))
     profile, notes = matching_profile(args, node, topic)
@@ -94,20 +97,23 @@ def echo(args: Namespace) -> str | None:
     ):
         arrivals.show_until(stop)
         if seen:
-            return None
+            return
         # The background may have had no turn yet; what was to be known at once is told all the
         # same. A message is too late.
         runtime.executor.settle(SETTLE_SEC)
         arrivals.show_rest()
-        silent = f'No message came. {why_silent(node, topic, msg_type, profile)}'
-        return wanted.why_none() or silent
+        # With the real one, that is no fault.
+        with real_one(says='', code=0):
+            silent = f'No message came. {why_silent(node, topic, msg_type, profile)}'
+            raise LabError(wanted.why_none() or silent)
 
 
 def _type_of(node: Node, topic: str, args: Namespace, stop: Stop) -> Any:
     """Return the class of the topic's messages, None if it was time to stop."""
     if args.message_type is not None:
         return interfaces.message_class(args.message_type)
-    name = wait_for_type(node, topic, stop, typed=args.topic_name)
+    is_patient = settings.audience().wants_reasons
+    name = wait_for_type(node, topic, stop, typed=args.topic_name, is_patient=is_patient)
     return None if name is None else interfaces.message_class(name)
 
 
@@ -124,8 +130,17 @@ def _check_field(text: str | None, msg_type: Any) -> list[str]:
         near = nearest(path, paths)
         fields = ', '.join(msg_type.get_fields_and_field_types())
         hint = f'Did you mean {near!r}?' if near else f'Its fields: {fields}.'
-        raise LabError(f"Invalid field '{path}': {type_name(msg_type)} has none.", todo=hint)
+        with real_one(says=f"Invalid field '{path}': {_why_not(msg_type, parts)}"):
+            raise LabError(f"Invalid field '{path}': {type_name(msg_type)} has none.", todo=hint)
     return parts
+
+
+def _why_not(msg_type: Any, parts: list[str]) -> str:
+    """Return what Python says of the path of a field that a message does not have."""
+    try:
+        return str(_part_of(msg_type(), parts))
+    except AttributeError as error:
+        return str(error)
 
 
 def _part_of(message: Any, fields: list[str]) -> Any:
@@ -247,6 +262,6 @@ ECHO = Verb(
     _arguments,
     'It waits for a topic that does not exist yet; the real one needs its type then. If no '
     'message has come before --timeout, that is exit code 1 here and 0 with the real one. '
-    '--filter takes any Python code there; here '
+    'Into a pipe, both are as with the real one. --filter takes any Python code there; here '
     'it is an expression that can change nothing.',
 )

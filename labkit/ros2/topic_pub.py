@@ -25,7 +25,7 @@ from labkit.ros2.asking import (
     values_text,
 )
 from labkit.ros2.graph_words import topic_names, types_of_topic
-from labkit.ros2.parser import Parser, Usage, Verb, positive_float, unsigned_int
+from labkit.ros2.parser import Parser, Usage, Verb, positive_float, real_one, unsigned_int
 from labkit.ros2.qos_options import add_qos_options, profile_from
 from labkit.ros2.streams import MAX_SHOWN, Stop, tell
 from labkit.rosgraph import interfaces
@@ -112,25 +112,28 @@ def _wait_for_subscribers(
     """Wait for enough subscribers, with a line each second."""
     if max_wait_sec is None:
         max_wait_sec = settings.audience().patience_sec
-    end = math.inf if max_wait_sec is None else time.monotonic() + max_wait_sec
+    due = time.monotonic()
+    end = math.inf if max_wait_sec is None else due + max_wait_sec
     known = node.count_subscribers(publisher.topic_name) >= count
-    hint = _other_topic(node, publisher.topic_name)
+    hint = _other_topic(node, publisher.topic_name) if settings.audience().wants_reasons else ''
 
     def enough() -> bool:
         return publisher.get_subscription_count() >= count or stop.reached
 
-    patience_sec = MATCH_SEC if known else 0.0
-    while not wait_for(enough, min(patience_sec, end - time.monotonic())):
+    due += MATCH_SEC * known
+    while not wait_for(enough, min(due, end) - time.monotonic()):
+        if time.monotonic() >= due:
+            print(f'Waiting for at least {count} matching subscription(s)...', flush=True)
+            if hint:
+                print(hint, flush=True)
+                hint = ''
+            due += 1.0
         if time.monotonic() >= end:
-            raise LabError(
-                f'Timed out waiting for subscribers: Expected {count} subscribers but only got '
-                f'{publisher.get_subscription_count()} subscribers'
-            )
-        print(f'Waiting for at least {count} matching subscription(s)...', flush=True)
-        if hint:
-            print(hint, flush=True)
-            hint = ''
-        patience_sec = 1.0
+            got = publisher.get_subscription_count()
+            text = 'Timed out waiting for subscribers: Expected {} {} but only got {} subscribers'
+            # A script may look for the word as the real one spells it.
+            with real_one(says=text.format(count, 'subcribers', got)):
+                raise LabError(text.format(count, 'subscribers', got))
     if count:
         wait_until_found(node, [publisher])
 

@@ -20,8 +20,10 @@ ROBOT = Path(__file__).with_name('robot.py')
 ASKER = """
 import contextlib, io, json, sys
 import labkit
+from labkit import settings
 from labkit.ros2.shell import run_line
 
+settings.is_ros2_command = {for_a_script}
 answers = []
 for line in {lines!r}:
     out, err = io.StringIO(), io.StringIO()
@@ -83,10 +85,14 @@ def robot(domain: dict[str, str], lab_env: dict[str, str]) -> Iterator[subproces
 
 @pytest.fixture
 def ros2(script: Callable, domain: dict[str, str]) -> Callable[..., list[Answer]]:
-    """Give a function that runs lines in a process of its own, as `%ros2` would."""
+    """Give a function that runs lines in a process of its own, as `%ros2` would.
 
-    def run(*lines: str, **env: str) -> list[Answer]:
-        result = script(ASKER.format(lines=list(lines)), **{**domain, **env})
+    With `for_a_script` it is `ros2` with its output in a pipe instead.
+    """
+
+    def run(*lines: str, for_a_script: bool = False, **env: str) -> list[Answer]:
+        code = ASKER.format(lines=list(lines), for_a_script=for_a_script)
+        result = script(code, **{**domain, **env})
         assert result.exit_code == 0, result.stderr
         return [Answer(*answer) for answer in json.loads(result.stdout.splitlines()[-1])]
 
