@@ -28,6 +28,7 @@ __all__ = [
     'is_ros2_command',
     'notebook_name',
     'prepare_environment',
+    'prepared_variables',
     'state_dir',
     'variant_seed',
 ]
@@ -46,6 +47,8 @@ _CELL = 'LABKIT_CELL'
 
 # Variables removed by `prepare_environment`, with their values.
 dropped_variables: dict[str, str] = {}
+# All variables as it has left them: a cell may set others since.
+prepared_variables: dict[str, str] = {}
 
 
 def prepare_environment() -> None:
@@ -71,6 +74,7 @@ def prepare_environment() -> None:
     for name, module in list(sys.modules.items()):
         if ('.msg._' in name or '.srv._' in name) and hasattr(module, 'ros_python_check_fields'):
             vars(module)['ros_python_check_fields'] = os.environ['ROS_PYTHON_CHECK_FIELDS']
+    prepared_variables.update(os.environ)
 
 
 def _find_own_commands() -> None:

@@ -17,10 +17,13 @@ from labkit.errors import LabError
 from labkit.files import read_json
 from labkit.packages.cells import Notebook, place
 from labkit.packages.gather import Gathered
+from labkit.settings import prepared_variables
 
 __all__ = ['lacking_imports']
 
 _SCRIPT = Path(__file__).with_name('fresh_python.py')
+# What `lab.source` adds packages to.
+_SOURCED = ('AMENT_PREFIX_PATH', 'LD_LIBRARY_PATH', 'PYTHONPATH')
 # rclpy takes a second, on a busy machine ten.
 LOAD_SEC = 60
 # For Python to start and to end, and for code in C that does not look at the signal.
@@ -47,8 +50,8 @@ def lacking_imports(module: str, text: str, gathered: Gathered, notebook: Notebo
         line, missing = answer['line'], answer['missing'].partition('.')[0]
         file = getattr(sys.modules.get(missing), '__file__', None)
         todo = (
-            'A program has neither the other cells nor the folder of this notebook. Write what '
-            'the line needs into its cell.'
+            'A program has neither the other cells nor the folder of this notebook, nor '
+            'variables that a cell has set. Write what the line needs into its cell.'
         )
         if file:
             todo = (
@@ -80,6 +83,7 @@ def _load(module: str, text: str, submodules: list[str]) -> dict[str, Any]:
         process = subprocess.Popen(
             [sys.executable, '-c', _SCRIPT.read_text(encoding='utf-8'), json.dumps(asked)],
             cwd=folder,
+            env=_variables(),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
@@ -99,6 +103,12 @@ def _load(module: str, text: str, submodules: list[str]) -> dict[str, Any]:
             return answer
     state = 'It does not end.' if ended is None else f'Python ended with exit code {ended}.'
     return {'lacking': [], 'error': state, 'line': 0, 'missing': ''}
+
+
+def _variables() -> dict[str, str]:
+    """Return the variables of this process without those that cells have set."""
+    sourced = {name: os.environ[name] for name in _SOURCED if name in os.environ}
+    return {**prepared_variables, **sourced}
 
 
 def _place(line: int, text: str, gathered: Gathered, notebook: Notebook) -> str:

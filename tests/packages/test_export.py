@@ -219,6 +219,16 @@ def test_what_does_not_load_without_the_notebook_is_named(notebook, kernel):
     assert not (kernel.folder / 'src').exists()
 
 
+def test_variables_that_a_cell_has_set_are_not_there(notebook, source):
+    notebook('import os', "os.environ['ROBOT'] = 'r2'", 'ROBOT = os.environ["ROBOT"]')
+    talker = TALKER.replace("'chatter'", 'ROBOT')
+    result = notebook(talker, EXPORT.format('Talker'))
+    assert 'Cell In[4], line 1: ROBOT = os.environ["ROBOT"]\nKeyError: ' in result.error
+    assert 'nor variables that a cell has set' in ' '.join(result.error.split())
+    # Those from before are.
+    assert 'HOME' in source('ROBOT = os.environ["HOME"]', talker)
+
+
 def test_a_folder_that_is_there(notebook, kernel):
     plain = EXPORT.replace(', overwrite=True', '').format('Talker')
     notebook(TALKER, plain)
