@@ -138,7 +138,7 @@ def export(
 
     Raises:
         LabError: A class uses something that can't be included, its module does not load in a
-            Python without the notebook, or the folder exists.
+            Python without the notebook, or the folder exists, or one beside it has that package.
     """
     check_name(package)
     modules = _modules(node_classes)
@@ -364,15 +364,22 @@ def _make(parts: Sequence[Part], target: Path, *, overwrite: bool) -> None:
     """Write the files of a package, replacing an existing one if allowed.
 
     Raises:
-        LabError: The folder exists, or can't be written.
+        LabError: The folder exists, or can't be written; or one beside it has the package.
     """
+    for other in sorted(target.parent.glob('*/')):
+        if other.name != target.name and _has_package(other, target.name):
+            raise LabError(
+                f'{other} is a package with the name {target.name}, too, and colcon builds each '
+                'name once.',
+                todo='Take another name, or move that folder away.',
+            )
     if target.exists() or target.is_symlink():
         if not overwrite:
             raise LabError(
                 f'{target} is there already.',
                 todo='overwrite=True replaces it, with all that you have changed in it.',
             )
-        if not _is_package(target):
+        if target.is_symlink() or not _has_package(target, target.name):
             raise LabError(
                 f'{target} is there, and is no package of that name: it is not overwritten.',
                 todo='Take another name, or another folder.',
@@ -386,11 +393,10 @@ def _make(parts: Sequence[Part], target: Path, *, overwrite: bool) -> None:
         raise LabError(f'{error.filename} can not be made: {error.strerror}.') from error
 
 
-def _is_package(target: Path) -> bool:
-    """Return whether a folder is a package of the same name."""
-    path = target / 'package.xml'
+def _has_package(folder: Path, name: str) -> bool:
+    """Return whether a folder is the package of a name."""
     try:
-        text = read_limited(path).decode()
-        return not target.is_symlink() and f'<name>{target.name}</name>' in text
+        text = read_limited(folder / 'package.xml').decode()
+        return f'<name>{name}</name>' in text
     except (OSError, UnicodeDecodeError):
         return False

@@ -243,6 +243,17 @@ def test_a_folder_that_is_there(notebook, kernel):
     assert (own / 'setup.py').exists()
 
 
+def test_a_folder_of_another_name_that_has_the_package(notebook, kernel):
+    notebook(TALKER, EXPORT.format('Talker'))
+    src = kernel.folder / 'src'
+    (src / 'talk').rename(src / 'my_talk')
+    said = ' '.join(notebook(EXPORT.format('Talker')).error.split())
+    assert 'src/my_talk is a package with the name talk, too, and colcon builds each name' in said
+    assert not (src / 'talk').exists()
+    (src / 'my_talk').rename(src / 'talk')
+    assert not notebook(EXPORT.format('Talker')).error
+
+
 def test_several_classes_and_other_packages(notebook, kernel):
     listener = TALKER.replace('Talker', 'ListenerABTest').replace("'talker'", "'ear'")
     result = notebook(TALKER, f'import yaml, rosbags\n{listener}', 'pass')
