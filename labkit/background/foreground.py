@@ -119,10 +119,12 @@ def last_words(error: BaseException) -> str:
     return spin.last_words(error) if spin is not None else ''
 
 
-def ended_nodes(error: BaseException) -> Sequence[Node]:
-    """Return the nodes that end because nobody has caught an exception."""
+def ended_nodes(error: BaseException) -> dict[Node, str]:
+    """Return the nodes that end because nobody has caught an exception: what a callback did."""
     spin = _left_by(error)
-    return spin.nodes if spin is not None and spin.ends_program(error) else ()
+    if spin is None or not spin.ends_program(error):
+        return {}
+    return dict.fromkeys(spin.nodes, f'{spin.callback} {in_words(error)}'.strip())
 
 
 def swallowed() -> list[BaseException]:

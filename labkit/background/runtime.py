@@ -378,8 +378,10 @@ class Runtime:
         cell = self.console.current_cell()
         for node in find_half_made(error):
             half_made.setdefault(node, cell)
-        for node in filter(node_exists, ended_nodes(error)):
-            self.destroy(node)
+        for node, what in ended_nodes(error).items():
+            if node_exists(node):
+                self.ended[full_name(node)] = what
+                self.destroy(node)
         if isinstance(error, SystemExit) and not last_words(error):
             self.on_exit()
 

@@ -95,20 +95,30 @@ def test_a_program_of_an_earlier_exercise_is_no_trace_where_all_roles_are_theirs
     assert not _may_mean(probe, program + "node.create_subscription(Odometry, 'odom', f, 10)")
 
 
+SPIN_IN_THREAD = (
+    'import threading\nspun = threading.Thread(target=rclpy.spin, args=(node,))\n'
+    'spun.start()\nspun.join()'
+)
+
+
 @pytest.mark.parametrize(
-    ('how', 'said'),
+    ('how', 'said', 'spin'),
     [
-        ('rclpy.shutdown()', 'called rclpy.shutdown()'),
-        ('raise SystemExit', 'ended its program (SystemExit)'),
+        ('rclpy.shutdown()', 'called rclpy.shutdown()', 'lab.spin(node)'),
+        ('raise SystemExit', 'ended its program (SystemExit)', 'lab.spin(node)'),
+        ('raise SystemExit', 'ended its program (SystemExit)', 'rclpy.spin(node)'),
+        ('raise SystemExit', 'ended its program (SystemExit)', SPIN_IN_THREAD),
     ],
 )
-def test_a_node_that_has_ended_itself_is_named(kernel: Any, how: str, said: str) -> None:
+def test_a_node_that_has_ended_itself_is_named(
+    kernel: Any, how: str, said: str, spin: str
+) -> None:
     kernel.run('import labkit as lab, rclpy; lesson = lab.lesson("odds")')
     kernel.run(
         'from rclpy.node import Node\nfrom std_msgs.msg import Int16\n'
-        "node = lab.spin(Node('ones')); node.create_publisher(Int16, 'ones', 10)\n"
+        "node = Node('ones'); node.create_publisher(Int16, 'ones', 10)\n"
         f'def last():\n    {how}\n'
-        'timer = node.create_timer(0.1, last)'
+        f'timer = node.create_timer(0.1, last)\n{spin}'
     )
     kernel.run('from labkit.background.runtime import runtime')
     kernel.run('import time\nwhile not runtime.ended: time.sleep(0.01)')
