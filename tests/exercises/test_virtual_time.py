@@ -259,8 +259,9 @@ class Ones(Node):
         if self.get_clock().ros_time_is_active:
             self.calls += 1
             if self.calls == 20:
-                # As the stop button does. A callback that sends it by os.kill ends its node.
-                signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+                # As the stop button does. A callback that sends a signal itself ends its node.
+                button = (threading.main_thread().ident, signal.SIGINT)
+                threading.Thread(target=signal.pthread_kill, args=button).start()
         self.publisher.publish(Int16(data=1))
 
 node = lab.spin(Ones())

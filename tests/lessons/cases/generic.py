@@ -44,7 +44,6 @@ class Kind:
     run: str = ''
 
 
-@functools.cache
 def generated(name: str, exercise: Exercise) -> str | None:
     """Return what a kind makes of the solution of an exercise, None if it has no place there."""
     code = exercise.answer.code
