@@ -16,8 +16,6 @@ from labkit.errors import LabError, LabTimeout, SetupError
 from labkit.settings import prepare_environment
 
 if TYPE_CHECKING:
-    from types import FrameType
-
     # For editors and type checkers, which can't follow `__getattr__`.
     from labkit.asking.waiting import (
         listen,
@@ -150,19 +148,9 @@ def __dir__() -> list[str]:
     return sorted(__all__)
 
 
-def _is_only_listed() -> bool:
-    """Tell whether pytest imports this for its plugin, as it does in each of its runs."""
-    frame: FrameType | None = sys._getframe()
-    while frame is not None and frame.f_code.co_name != 'load_setuptools_entrypoints':
-        frame = frame.f_back
-    return frame is not None
-
-
-# The variables of somebody else's tests are left alone: see labkit/course/pytest_plugin.py.
-PREPARED = not _is_only_listed()
-if PREPARED:
-    prepare_environment()
-if PREPARED and 'IPython' in sys.modules:
+# pytest imports this for its plugin in each of its runs: labkit/course/pytest_plugin.py undoes it.
+prepare_environment()
+if 'IPython' in sys.modules:
     with stop_button.held():
         for _home in (
             'labkit.packages.imports',

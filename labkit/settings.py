@@ -24,6 +24,7 @@ __all__ = [
     'after_start',
     'audience',
     'dropped_variables',
+    'give_environment_back',
     'in_kernel',
     'is_ros2_command',
     'notebook_name',
@@ -47,12 +48,16 @@ _CELL = 'LABKIT_CELL'
 
 # Variables removed by `prepare_environment`, with their values.
 dropped_variables: dict[str, str] = {}
-# All variables as it has left them: a cell may set others since.
+# All variables as it has found them, and as it has left them: a cell may set others since.
+_found_variables: dict[str, str] = {}
 prepared_variables: dict[str, str] = {}
+_added_folders: list[str] = []
+_STAND_INS = os.path.join(os.path.dirname(__file__), 'packages', 'stand_ins')
 
 
 def prepare_environment() -> None:
     """Set the variables that ROS reads when it is loaded. Variables already set win."""
+    _found_variables.update(os.environ)
     # Without it `Int16(data=40000)` silently arrives as -25536.
     os.environ.setdefault('ROS_PYTHON_CHECK_FIELDS', '1')
     # Set wherever ROS 2 is sourced: programs and launch files ask it for the release.
@@ -77,6 +82,18 @@ def prepare_environment() -> None:
     prepared_variables.update(os.environ)
 
 
+def give_environment_back() -> None:
+    """Undo `prepare_environment`, but for variables that somebody has set since."""
+    for name, value in prepared_variables.items():
+        before = _found_variables.get(name)
+        if value != before and os.environ.get(name) == value:
+            del os.environ[name]
+            if before is not None:
+                os.environ[name] = before
+    os.environ.update(dropped_variables)
+    sys.path[:] = [folder for folder in sys.path if folder not in _added_folders]
+
+
 def _find_own_commands() -> None:
     """Let `!ros2` find the environment's `ros2`, activated or not, after any other one."""
     own = os.path.join(sys.prefix, 'bin')
@@ -87,12 +104,12 @@ def _find_own_commands() -> None:
 
 def _find_stand_ins() -> None:
     """Let this process and those that it starts find the types that labkit builds, last of all."""
-    folder = os.path.join(os.path.dirname(__file__), 'packages', 'stand_ins')
-    if folder not in sys.path:
-        sys.path.append(folder)
+    if _STAND_INS not in sys.path:
+        sys.path.append(_STAND_INS)
+        _added_folders.append(_STAND_INS)
     paths = list(filter(None, os.environ.get('PYTHONPATH', '').split(os.pathsep)))
-    if folder not in paths:
-        os.environ['PYTHONPATH'] = os.pathsep.join([*paths, folder])
+    if _STAND_INS not in paths:
+        os.environ['PYTHONPATH'] = os.pathsep.join([*paths, _STAND_INS])
 
 
 def _find_log_folder() -> None:

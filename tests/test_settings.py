@@ -119,3 +119,21 @@ def test_programs_start_where_nothing_can_be_written_to_the_home(start_kernel):
         'print(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True))'
     )
     assert "stdout='1\\n'" in result.text, result
+
+
+def test_the_environment_is_given_back_but_for_what_was_set_since(script):
+    done = script("""
+import os, sys
+for name in ('ROS_DISTRO', 'ROS_AUTOMATIC_DISCOVERY_RANGE', 'ROS_PYTHON_CHECK_FIELDS'):
+    os.environ.pop(name, None)
+os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = ''
+before = dict(os.environ), list(sys.path)
+import labkit
+from labkit.settings import give_environment_back
+assert (os.environ, sys.path) != before
+os.environ['ROS_DISTRO'], os.environ['OWN'] = 'mine', 'new'
+give_environment_back()
+assert os.environ.pop('ROS_DISTRO') == 'mine' and os.environ.pop('OWN') == 'new'
+assert (dict(os.environ), sys.path) == before
+""")
+    assert done.exit_code == 0, done.stderr

@@ -15,15 +15,26 @@ from pathlib import Path
 
 import pytest
 
+_LOADED_WITH_THIS = {
+    'labkit',
+    'labkit.course',
+    'labkit.domain_ids',
+    'labkit.errors',
+    'labkit.settings',
+    'labkit.stop_button',
+    __name__,
+}
 _IMPORT = re.compile(r'^\s*(?:import|from)\s+(?:[\w.]+\s*,\s*)*labkit\b', re.MULTILINE)
 
 
 def pytest_addoption() -> None:
-    """Forget labkit, if pytest alone has imported it: whoever imports it then gets it prepared."""
-    labkit = sys.modules.get('labkit')
-    if labkit is not None and not vars(labkit)['PREPARED']:
-        for name in [name for name in sys.modules if name.partition('.')[0] == 'labkit']:
-            del sys.modules[name]
+    """Undo the import of labkit, if that was for this plugin: whoever imports it does so anew."""
+    loaded = {name for name in sys.modules if name.partition('.')[0] == 'labkit'}
+    if 'labkit' not in loaded or loaded - _LOADED_WITH_THIS:
+        return  # it was forgotten already, or is used
+    sys.modules['labkit.settings'].give_environment_back()
+    for name in loaded:
+        del sys.modules[name]
 
 
 @pytest.hookimpl(wrapper=True)
