@@ -185,6 +185,13 @@ def tasks(lesson: Lesson) -> Found:
 
 
 @rule
+def moves(lesson: Lesson) -> Found:
+    """The robot comes first: no lesson before its own waits for it."""
+    if lesson.name < '07' and not any('lab.Turtlebot(' in cell.source for cell in lesson.code):
+        yield '', 'has nothing that moves', 'Let one of its examples drive lab.Turtlebot().'
+
+
+@rule
 def size(lesson: Lesson) -> Found:
     low = SHORT.get(lesson.name, {'cells': CELLS[0], 'words': WORDS[0]})
     prose = sum(words(cell.source) for cell in lesson.text)

@@ -59,6 +59,7 @@ def good(name: str) -> NotebookNode:
     for number in range(9):
         cells.append(new_markdown_cell(f'## Part {number}\n\n{PROSE}', id=f'part-{number}'))
         cells.append(new_code_cell(f'count = {number}\nprint(count)', id=f'cell-{number}'))
+    cells[-1].source = 'robot = lab.spin(lab.Turtlebot())\nprint(8)'
     cells.append(new_markdown_cell(REAL, id='real-machine'))
     cells.append(new_markdown_cell(LAST, id='done'))
     meta = {'kernelspec': KERNELSPEC, 'language_info': {'name': 'python'}}
@@ -137,6 +138,7 @@ BAD = [
     ('box', text(-2, REAL.replace('SUBNET', 'LAN')), "does not say 'SUBNET'"),
     ('box', text(-2, REAL.replace('until Ctrl-C', 'for ever')), "does not say 'Ctrl-C'"),
     ('tasks', a_task('- ' + 'word ' * 21), 'has a bullet of 21 words'),
+    ('moves', text(-3, 'print(8)'), 'has nothing that moves'),
     ('size', lambda nb: nb.cells.__delitem__(slice(2, 6)), 'has 18 cells. Make it 20'),
     ('size', lambda nb: [text(n, 'Few words.')(nb) for n in range(2, 20, 2)], 'words of prose'),
     ('size', text(2, PROSE * 2), "'part-0': has 168 words"),
