@@ -161,9 +161,11 @@ class Lesson:
             raise AttributeError(name)
         exercise = self._exercises.get(name)
         if exercise is None:
+            elsewhere = [other.heading for other in all_lessons() if name in other._exercises]
             raise NoSuchNameError(
                 f'Lesson {self.name!r} has no exercise {name!r}.',
-                todo=_suggest(name, list(self._exercises))
+                todo=(f'It is in lesson {elsewhere[0]}.' if elsewhere else '')
+                or _suggest(name, list(self._exercises))
                 or f'Its exercises: {", ".join(self._exercises) or "none"}.',
             )
         return exercise

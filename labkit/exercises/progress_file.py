@@ -23,6 +23,8 @@ VERSION = 1
 LOCK_TIMEOUT_SEC = 2.0
 # A valid file has five levels. Python can read many more levels than it can write.
 MAX_LEVELS = 50
+# Exercises that were in another lesson once: that lesson, their name, and where they are now.
+MOVED = [('theory', 'ears', 'talker_listener'), ('theory', 'mouth', 'talker_listener')]
 
 Data = dict[str, Any]
 
@@ -103,6 +105,7 @@ class Store:
             return _empty()
         if not _is_valid(data) or _levels(data) > MAX_LEVELS:
             raise ValueError('not a progress file')
+        _follow_moves(data['lessons'])
         return data  # type: ignore[no-any-return]
 
     def _keep_aside(self) -> str:
@@ -119,6 +122,14 @@ class Store:
 
 def _empty() -> Data:
     return {'version': VERSION, 'lessons': {}}
+
+
+def _follow_moves(lessons: Data) -> None:
+    """Put what was done in the lesson where an exercise was to the one where it is now."""
+    for before, name, now in MOVED:
+        entry = lessons.get(before, {}).get('exercises', {}).pop(name, None)
+        if entry is not None:
+            lessons.setdefault(now, {}).setdefault('exercises', {}).setdefault(name, entry)
 
 
 def _is_valid(data: object) -> bool:

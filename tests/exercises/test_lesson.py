@@ -48,6 +48,11 @@ def test_wrong_name_is_answered_with_the_nearest(lesson: Lesson) -> None:
     assert not hasattr(lesson, 'xyz') and not hasattr(lesson, '_ipython_display_')
 
 
+def test_an_exercise_of_another_lesson_is_found_there(lesson: Lesson) -> None:
+    with pytest.raises(NoSuchNameError, match='It is in lesson 02 Talker and listener'):
+        _ = lesson.ears
+
+
 def test_quiz_is_found_by_name(lesson: Lesson) -> None:
     assert lesson.quiz('rates').name == 'rates'
     with pytest.raises(LabError, match="Did you mean 'rates'"):

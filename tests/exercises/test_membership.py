@@ -88,12 +88,12 @@ def test_other_notebooks_of_a_member_share_too(folder: Path, script, home: Path)
         'from labkit.exercises.progress_store import progress_store\n'
         'from labkit.exercises.membership import follow_class, wait_until_sent\n'
         'follow_class("talker_listener")\n'
-        'progress_store.note_check("talker_listener", "four_a_second", "PASS")\n'
+        'progress_store.note_check("talker_listener", "every_two_seconds", "PASS")\n'
         'assert wait_until_sent(60)\n',
         LABKIT_HOME=str(home),
     )
     assert done.exit_code == 0, done.stderr
-    assert entries(folder, 'anna') == {'four_a_second': 1}
+    assert entries(folder, 'anna') == {'every_two_seconds': 1}
 
 
 @pytest.mark.parametrize('name', ['', ' anna', 'a/b', '..', '.anna', 'a\nb', 'a\u202eb', 'x' * 41])

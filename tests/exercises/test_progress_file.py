@@ -184,3 +184,22 @@ def test_a_pipe_instead_of_the_file_holds_up_nothing(store: Store) -> None:
     os.mkfifo(store.path)
     assert 'Not a regular file' in store.read()[1]
     assert 'Not a regular file' in ProgressStore(store).note_check('odds', 'count_up', 'PASS')
+
+
+def test_what_was_done_follows_an_exercise_into_another_lesson(store: Store) -> None:
+    old = {
+        'theory': {'exercises': {'ears': {'tries': 2}, 'mouth': {'tries': 1}}, 'questions': {}},
+        'talker_listener': {'exercises': {'mouth': {'tries': 5}, 'say_once': {'tries': 1}}},
+    }
+    store.path.write_text(json.dumps({'version': 1, 'lessons': old}))
+    data, note = store.read()
+    assert note == ''
+    assert data['lessons']['theory']['exercises'] == {}
+    now = data['lessons']['talker_listener']['exercises']
+    assert {name: entry['tries'] for name, entry in now.items()} == {
+        'say_once': 1,
+        'ears': 2,
+        'mouth': 5,
+    }
+    store.update(lambda data: None)
+    assert 'ears' not in json.loads(store.path.read_text())['lessons']['theory']['exercises']

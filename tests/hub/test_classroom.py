@@ -16,7 +16,7 @@ NAMES = ('anna', 'ben', 'maria')
 TRY = (
     'from labkit.exercises.progress_store import progress_store\n'
     'from labkit.exercises.membership import wait_until_sent\n'
-    'progress_store.note_check("talker_listener", "four_a_second", {!r})\n'
+    'progress_store.note_check("talker_listener", "every_two_seconds", {!r})\n'
     'print(wait_until_sent(60))'
 )
 
@@ -62,7 +62,7 @@ def test_a_class_joins_and_its_teacher_sees_it(notebooks: dict[str, Notebook], h
         assert 'True' in notebooks[name].run(TRY.format(outcome))
     shown = notebooks['maria'].run(board)
     assert 'Class: 2 share their progress, 2 at work, 0 stuck.' in shown, shown
-    assert 'four_a_second 1 passed 1 trying' in shown
+    assert 'every_two_seconds 1 passed 1 trying' in shown
     assert '1 more of the class share nothing.' in shown
     assert 'The names are those of their accounts.' in shown
     assert 'can not be used' not in shown and 'others can write' not in shown

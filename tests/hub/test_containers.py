@@ -32,7 +32,7 @@ from labkit.exercises.progress_store import progress_store
 from labkit.exercises.membership import wait_until_sent
 
 print(lab.join_class())
-progress_store.note_check('talker_listener', 'four_a_second', 'PASS')
+progress_store.note_check('talker_listener', 'every_two_seconds', 'PASS')
 lab.lesson('talker_listener')
 print(wait_until_sent(60))
 """
@@ -129,7 +129,7 @@ def test_a_class_in_containers_joins_and_its_teacher_sees_it(containers: Contain
     shown = containers.run(maria, sys.executable, '-c', board)
     assert 'Class: 3 share their progress, 3 at work, 0 stuck.' in shown.stdout, shown
     assert 'The names are those of their accounts.' in shown.stdout, shown.stdout
-    assert 'four_a_second 3 passed' in ' '.join(shown.stdout.split()), shown.stdout
+    assert 'every_two_seconds 3 passed' in ' '.join(shown.stdout.split()), shown.stdout
     # A learner who looks sees nobody else.
     alone = containers.run(anna, sys.executable, '-c', board)
     assert 'anna' in alone.stdout and 'ben_2' not in alone.stdout, alone

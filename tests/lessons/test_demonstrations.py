@@ -16,10 +16,9 @@ pytestmark = pytest.mark.slow('each demonstration, in kernels')
 # Cells that make nodes like those that an exercise asks for.
 DEMONSTRATIONS = {
     'start_here': ['first-node'],
-    'theory': ['eye-class', 'brain-class', 'legs-class'],
-    'talker_listener': ['talker-run', 'listener-run', 'two-talkers', 'not-spun', 'too-early'],
+    'talker_listener': ['talker-run', 'listener-class', 'two-talkers', 'not-spun', 'too-early'],
 }
-AGAIN = {'talker_listener': ['talker-run', 'listener-run', 'two-talkers']}
+AGAIN = {'talker_listener': ['talker-run', 'listener-class', 'two-talkers']}
 
 
 @pytest.mark.parametrize('name', DEMONSTRATIONS)

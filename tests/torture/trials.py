@@ -207,7 +207,7 @@ while not sum(topic.count for topic in lab.bag('day').topics):
     pass
 print('begun', flush=True)
 while True:
-    lesson.four_a_second.check()
+    lesson.every_two_seconds.check()
 """
 READ = """
 import labkit as lab
@@ -256,7 +256,7 @@ def full(bench: Bench) -> str:
     cells = {cell.id: cell for cell in _cells(bench.lessons()[0])}
     assert not kernel.run(RECORD.partition('recording =')[0]).error
     assert not kernel.run(FULL).error
-    check = kernel.run('lesson.four_a_second.check()')
+    check = kernel.run('lesson.every_two_seconds.check()')
     assert not check.error, check.traceback
     recording = kernel.run('lab.record("day", "/chatter")')
     assert recording.error.startswith('LabError'), recording

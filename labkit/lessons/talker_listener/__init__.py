@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
+from labkit.lessons.talker_listener.ears import ears
+from labkit.lessons.talker_listener.mouth import mouth
 from labkit.lessons.talker_listener.one_message import say_once
-from labkit.lessons.talker_listener.period import four_a_second
 from labkit.lessons.talker_listener.publisher import every_two_seconds
 from labkit.lessons.talker_listener.quiz import QUIZ, WARM_UP
 from labkit.lessons.talker_listener.subscriber import hear_chatter
@@ -17,12 +18,12 @@ LESSON = Lesson(
     '02_talker_listener.ipynb',
     title='Talker and listener',
     teaches='publishers, subscribers, timers, the logger; why spin',
-    exercises=[four_a_second, every_two_seconds, hear_chatter, say_once],
+    exercises=[every_two_seconds, hear_chatter, ears, mouth, say_once],
     quizzes=[WARM_UP, QUIZ],
     topics=['/mail', '/stamped', '/news', *ROBOT_TOPICS],
     given={
-        '/talker': 'talker-run listener-run',
-        '/listener': 'listener-run',
+        '/talker': 'talker-run listener-class',
+        '/listener': 'listener-class',
         '/talker_1': 'two-talkers',
         '/talker_2': 'two-talkers',
         '/turtlebot': 'circle',

@@ -1,11 +1,9 @@
-"""The exercises and the quiz of lesson 01."""
+"""The quiz of lesson 01."""
 
 from __future__ import annotations
 
 from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
-from labkit.lessons.theory.ears import ears
-from labkit.lessons.theory.mouth import mouth
 from labkit.lessons.theory.quiz import QUIZ
 
 __all__ = ['LESSON']
@@ -15,7 +13,6 @@ LESSON = Lesson(
     '01_theory.ipynb',
     title='What ROS is',
     teaches='the words and pictures of ROS; ROS 1 and ROS 2',
-    exercises=[ears, mouth],
     quizzes=[QUIZ],
     topics=['/sight', '/move', *ROBOT_TOPICS],
     given={

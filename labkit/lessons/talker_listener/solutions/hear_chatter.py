@@ -4,13 +4,13 @@ from std_msgs.msg import String
 import labkit as lab
 
 
-class Ear(Node):
+class Diary(Node):
     def __init__(self):
-        super().__init__('ear')
+        super().__init__('diary')
         self.subscription = self.create_subscription(String, 'chatter', self.on_message, 10)
 
     def on_message(self, msg):
         self.get_logger().info(f'I heard: "{msg.data}"')
 
 
-ear = lab.spin(Ear())
+diary = lab.spin(Diary())

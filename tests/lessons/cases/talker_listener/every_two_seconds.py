@@ -15,7 +15,7 @@ ANSWERS = [
     wrong(
         'on the topic of another exercise',
         'nothing of it is what this task asks for',
-        ("'chatter'", "'beacon'"),
+        ("'chatter'", "'door'"),
     ),
     wrong('capital letter', 'Capital and small letters differ in names'),
     wrong('another topic', 'names must be equal to the last letter'),

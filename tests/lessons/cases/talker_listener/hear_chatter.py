@@ -53,10 +53,10 @@ ANSWERS = [
     wrong(
         'only the first time',
         # The first one may be of the lesson's talker, before the check.
-        '/ear logged nothing',
+        '/diary logged nothing',
         (
-            "        super().__init__('ear')\n",
-            "        super().__init__('ear')\n        self.calls = 0\n",
+            "        super().__init__('diary')\n",
+            "        super().__init__('diary')\n        self.calls = 0\n",
         ),
         (
             '        self.get_logger().info(f\'I heard: "{msg.data}"\')\n',
@@ -68,8 +68,8 @@ ANSWERS = [
         'every other one',
         'Some messages are logged as they came, and this one is not.',
         (
-            "        super().__init__('ear')\n",
-            "        super().__init__('ear')\n        self.calls = 0\n",
+            "        super().__init__('diary')\n",
+            "        super().__init__('diary')\n        self.calls = 0\n",
         ),
         (
             '        self.get_logger().info(f\'I heard: "{msg.data}"\')\n',
@@ -88,10 +88,10 @@ ANSWERS = [
     ),
     wrong(
         'repeats its last line from a timer',
-        'one line of /ear for each message',
+        'one line of /diary for each message',
         (
-            "        super().__init__('ear')\n",
-            "        super().__init__('ear')\n        self.last = ''\n"
+            "        super().__init__('diary')\n",
+            "        super().__init__('diary')\n        self.last = ''\n"
             '        self.create_timer(4.0, self.repeat)\n',
         ),
         (
@@ -105,8 +105,8 @@ ANSWERS = [
         'logs when nothing has come',
         'A timer or a loop logs, too.',
         (
-            "        super().__init__('ear')\n",
-            "        super().__init__('ear')\n        self.create_timer(12.3, self.tell)\n",
+            "        super().__init__('diary')\n",
+            "        super().__init__('diary')\n        self.create_timer(12.3, self.tell)\n",
         ),
         (
             '        self.get_logger().info(f\'I heard: "{msg.data}"\')\n',
@@ -147,7 +147,7 @@ ANSWERS = [
     wrong(
         'a class, and no node of it',
         'Nothing runs before a node is made of it.',
-        ('\n\near = lab.spin(Ear())\n', ''),
+        ('\n\ndiary = lab.spin(Diary())\n', ''),
     ),
     wrong('a program that does not spin', 'Call rclpy.spin(node) in its program.', run='process'),
     wrong(
@@ -165,7 +165,7 @@ ANSWERS = [
     wrong(
         'not the same again',
         'Some messages are logged as they came, and this one is not.',
-        ("super().__init__('ear')\n", "super().__init__('ear')\n        self.last = None\n"),
+        ("super().__init__('diary')\n", "super().__init__('diary')\n        self.last = None\n"),
         (
             '        self.get_logger().info(',
             '        if msg.data == self.last:\n            return\n'
@@ -182,8 +182,8 @@ ANSWERS = [
         'the newest, every 0.4 s',
         'Some messages are logged as they came, and this one is not.',
         (
-            "super().__init__('ear')\n",
-            "super().__init__('ear')\n        self.newest = None\n"
+            "super().__init__('diary')\n",
+            "super().__init__('diary')\n        self.newest = None\n"
             '        self.create_timer(0.4, self.tell)\n',
         ),
         (
@@ -214,7 +214,7 @@ ANSWERS = [
     right(
         'a list and a timer, by a node with the name of another one',
         (
-            "        super().__init__('ear')\n",
+            "        super().__init__('diary')\n",
             "        super().__init__('listener')\n        self.heard = []\n",
         ),
         (

@@ -22,7 +22,7 @@ ears = Exercise(
         NobodyElse('/sound', EARS),
     ),
     hints=[
-        'The class Eye of this lesson is nearly an Ear. What differs: the topic.',
+        'The class Talker of this lesson is nearly an Ear. What differs: topic and period.',
         'Five times a second is a period of 0.2 s.',
         "One class, two nodes: lab.spin(Ear('left_ear')) and lab.spin(Ear('right_ear')).",
     ],

@@ -72,7 +72,7 @@ mouth = Exercise(
         ),
     ),
     hints=[
-        'The class Brain of this lesson subscribes and publishes. So does a mouth.',
+        'A node may have both: the publisher of Talker, and the subscription of Listener.',
         'The text that came in is msg.data; msg.data.upper() is the same in capitals.',
         'Publish in the callback: there the message is at hand.',
     ],

@@ -67,11 +67,11 @@ ANSWERS = [
     ),
     wrong(
         'answers another topic, too',
-        'What comes on /sight is answered, too.',
+        'What comes on /news is answered, too.',
         (
             "        self.create_subscription(String, 'thought', self.on_thought, 10)\n",
             "        self.create_subscription(String, 'thought', self.on_thought, 10)\n"
-            "        self.create_subscription(String, 'sight', self.on_thought, 10)\n",
+            "        self.create_subscription(String, 'news', self.on_thought, 10)\n",
         ),
     ),
     wrong(
