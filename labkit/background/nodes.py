@@ -267,6 +267,7 @@ def destroy_node(node: Node) -> BaseException | None:
         KeyboardInterrupt: The stop button was pressed. The node is destroyed all the same.
     """
     error: BaseException | None = None
+    waitables: list[Any] = []
     usable = node_exists(node)
     try:
         compat.end_type_descriptions(node)
@@ -282,8 +283,10 @@ def destroy_node(node: Node) -> BaseException | None:
     except BaseException as raised:  # by the learner's code, sys.exit() included
         error = raised if usable else None  # publishing, for one, fails once ROS is shut down
     finally:
-        # rclpy leaves action servers and clients alive.
-        for waitable in list(getattr(node, 'waitables', ())):
+        # rclpy leaves action servers and clients alive. Without super().__init__() there are none.
+        with suppress(AttributeError):
+            waitables = list(node.waitables)
+        for waitable in waitables:
             if isinstance(waitable, (ActionServer, ActionClient)):
                 with suppress(InvalidHandle, ValueError):
                     waitable.destroy()  # type: ignore[no-untyped-call]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 import pytest
@@ -227,6 +228,14 @@ def test_a_half_made_node_is_gone_when_its_cell_is_run_again(kernel):
     )
     gone = 'lab.wait_until(lambda: node_names(runtime.helper).count("/talker") == 1)'
     assert kernel.run(gone).error == ''
+
+
+def test_a_cell_that_forgot_to_set_its_node_up_can_be_mended(kernel):
+    kernel.run(SETUP)
+    forgot = re.sub(r'super\(\).__init__\(.*\)', 'pass', TALKER)
+    failed = kernel.run(forgot, cell_id='talker')
+    assert "no attribute '_Node__node'" in failed.error
+    assert kernel.run(TALKER, cell_id='talker').error == ''
 
 
 def test_wrong_values_in_messages_are_refused_at_once(kernel):
