@@ -21,6 +21,34 @@ def texts() -> dict[str, str]:
     return found
 
 
+# Words that are ordinary English, too, and so may stand in a lesson before the one of their own.
+ORDINARY = {
+    'client', 'constant', 'feedback', 'goal', 'package', 'publisher', 'record', 'result', 'server',
+    'subscriber', 'subscription',
+}  # fmt: skip
+
+
+def too_early(page: str) -> list[str]:
+    """Return where a word stands before it is explained, and nothing says where that will be."""
+    found = []
+    for path in sorted(NOTEBOOKS.glob('*.ipynb')):
+        for cell in json.loads(path.read_text('utf-8'))['cells']:
+            text = re.sub(
+                r'```.*?```|`[^`]*`|\[[^]]*\]\([^)]*\)',
+                '',
+                ''.join(cell['source']),
+                flags=re.DOTALL,
+            )
+            points_ahead = re.search(r'[Ll]ater lessons|\blesson \d\d\b', text)
+            if cell['cell_type'] != 'markdown' or points_ahead:
+                continue
+            for word, _, _, target in ROW.findall(page):
+                used = re.search(rf'\b{re.escape(word)}(s|es)?\b', text, re.IGNORECASE)
+                if used and path.name < target and word not in ORDINARY:
+                    found.append(f'{path.name}, cell {cell["id"]!r}: {word}')
+    return found
+
+
 def problems(page: str) -> list[str]:
     """Return what is wrong with the page."""
     rows, lessons = ROW.findall(page), texts()
@@ -44,8 +72,14 @@ def test_each_word_is_where_the_glossary_says():
     assert problems(page) == []
 
 
+def test_no_word_is_used_before_it_is_explained():
+    assert too_early(PAGE.read_text('utf-8')) == []
+
+
 def test_what_is_wrong_is_found():
     page = PAGE.read_text('utf-8')
+    later = page.replace('| spin | To take', '| spin | To').replace('[02](02_', '[09](09_')
+    assert "02_talker_listener.ipynb, cell 'spin': spin" in too_early(later)
     assert problems(page.replace('| spin |', '| spinn |')) == [
         'spinn: in bold in [], not in 02 02_talker_listener.ipynb alone'
     ]

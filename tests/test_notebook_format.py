@@ -46,6 +46,16 @@ UNSTEADY = {
     'a time stamp': r'\b\d{4}-\d\d-\d\d[T ]\d\d:\d\d|\b1[6-9]\d{8}(?:\d{3}|\d{9})?\b',
     'an address in memory': r'\b0x[0-9a-f]{6,}',
 }
+# Pages that lessons link to: those of this distribution, and a few others.
+SITES = (
+    'docs.ros.org/en/jazzy/',
+    'index.ros.org',
+    'robotics.stackexchange.com',
+    'emanual.robotis.com/docs/en/',
+    'docs.nav2.org/',
+    'moveit.picknik.ai/',
+    'control.ros.org/jazzy/',
+)
 # What a rule finds: id of the cell (or ''), what is wrong, what to do.
 Found = Iterator[tuple[str, str, str]]
 RULES: dict[str, Callable[[Lesson], Found]] = {}
@@ -154,8 +164,13 @@ def last_cell(lesson: Lesson) -> Found:
     for before, after in zip(promised, done, strict=False):
         if not set(re.findall(r'\w{4,}', before.lower())) & set(re.findall(r'\w+', after.lower())):
             yield cell.id, f'says {after!r}', f'Say that this is done: {before!r}.'
-    if lesson.next and f']({lesson.next.name})' not in cell.source:
-        yield cell.id, 'has no link to the next lesson', f'Link to {lesson.next.name}.'
+    tail = '`lab.progress()` shows how far you are.'
+    if lesson.next:
+        title = Lesson(lesson.next).cells[0].source.partition('\n')[0].removeprefix('# ')
+        tail += f' Next: [{title}]({lesson.next.name}).'
+    if not (cell.source.startswith('## What you can do now\n') and cell.source.endswith(tail)):
+        todo = f'Begin it with "## What you can do now", and end it with {tail!r}.'
+        yield cell.id, 'differs from the last cells of other lessons', todo
 
 
 @rule
@@ -175,9 +190,24 @@ def box(lesson: Lesson) -> Found:
 
 
 @rule
-def tasks(lesson: Lesson) -> Found:
+def quiz(lesson: Lesson) -> Found:
+    found = [cell.id for cell in lesson.cells]
+    if 'quiz' not in found:
+        yield '', 'has no cell "quiz"', 'Let it show the quiz of the lesson.'
+        return
+    place = found.index('quiz')
+    before = lesson.cells[place - 1]
+    if before.id != 'quiz-read' or not re.search(r'^## Quiz$', before.source, re.M):
+        yield before.id, 'stands before the quiz', 'Announce it in a cell "quiz-read": "## Quiz".'
+    for later in found[place:]:
+        if later.endswith('-task'):
+            yield later, 'comes after the quiz', 'Put the quiz behind the exercises.'
+
+
+@rule
+def short_bullets(lesson: Lesson) -> Found:
     for cell in lesson.text:
-        for bullet in bullets(cell.source) if cell.id.endswith('-task') else []:
+        for bullet in bullets(cell.source):
             count = len(without_code(bullet).split())
             if count > WORDS_IN_BULLET:
                 todo = f'Split it, or shorten it to {WORDS_IN_BULLET}.'
@@ -291,6 +321,17 @@ def steady(lesson: Lesson) -> Found:
 
 
 @rule
+def numbers(lesson: Lesson) -> Found:
+    """What is measured is shown: a reader can't tell a near miss from True."""
+    for cell in lesson.code:
+        texts = [out.get('text') or out.get('data', {}).get('text/plain') for out in cell.outputs]
+        for line in '\n'.join(text for text in texts if text).splitlines():
+            # `ros2 param get` says this of a parameter that is a boolean.
+            if re.search(r'(?:^|\W)(?:True|False)$', line) and 'Boolean value is' not in line:
+                yield cell.id, f'shows {line!r}', 'Show the number, or say it in words.'
+
+
+@rule
 def exemptions(lesson: Lesson) -> Found:
     for cell in lesson.code:
         reason = cell.metadata.get('labkit', {}).get('reason', '')
@@ -342,7 +383,7 @@ def links(lesson: Lesson) -> Found:
 
 def resolves(target: str, lesson: Lesson, cell: NotebookNode, anchors: set[str]) -> bool:
     if target.startswith('https://'):
-        return True
+        return target.removeprefix('https://').startswith(SITES)
     if target.startswith('#'):
         return target[1:] in anchors
     if target.startswith('attachment:'):

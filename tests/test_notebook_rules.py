@@ -35,7 +35,7 @@ LAST = """## What you can do now
 - You wrote a subscriber.
 - You watched the graph.
 
-Next: [what comes next](02_next.ipynb)"""
+`lab.progress()` shows how far you are. Next: [Talk and listen](02_next.ipynb)."""
 PROSE = 'A node sends its words to a topic, and whoever listens there hears them. ' * 6
 SETUP = "import labkit as lab\n\nlesson = lab.lesson('{}')"
 
@@ -59,7 +59,8 @@ def good(name: str) -> NotebookNode:
     for number in range(9):
         cells.append(new_markdown_cell(f'## Part {number}\n\n{PROSE}', id=f'part-{number}'))
         cells.append(new_code_cell(f'count = {number}\nprint(count)', id=f'cell-{number}'))
-    cells[-1].source = 'robot = lab.spin(lab.Turtlebot())\nprint(8)'
+    cells[-2].update(id='quiz-read', source=f'## Quiz\n\n{PROSE}')
+    cells[-1].update(id='quiz', source='robot = lab.spin(lab.Turtlebot())\nprint(8)')
     cells.append(new_markdown_cell(REAL, id='real-machine'))
     cells.append(new_markdown_cell(LAST, id='done'))
     meta = {'kernelspec': KERNELSPEC, 'language_info': {'name': 'python'}}
@@ -131,13 +132,18 @@ BAD = [
     ('setup_cell', text(1, SETUP.format('other')), "Name it 'talk'"),
     ('last_cell', text(-1, LAST.replace('- You watched', 'You watched')), 'has 2 bullets'),
     ('last_cell', text(-1, LAST.replace('the graph', 'a film')), 'this is done'),
-    ('last_cell', text(-1, LAST.replace('02_next', '03_other')), 'no link to the next lesson'),
-    ('box', lambda nb: nb.cells.pop(-2), "cell 'cell-8': is not the box"),
+    ('last_cell', text(-1, LAST.replace('02_next', '03_other')), 'differs from the last'),
+    ('last_cell', text(-1, LAST.replace('[Talk and', '[talk and')), 'differs from the last'),
+    ('last_cell', text(-1, LAST.replace('What you can do', 'Done')), 'differs from the last'),
+    ('box', lambda nb: nb.cells.pop(-2), "cell 'quiz': is not the box"),
     ('box', text(-2, REAL.replace('docs.ros.org', 'example.org')), 'is not the box'),
     ('box', text(-2, REAL.replace('export', '\n'.join('abc') + '\nexport')), 'has 7 lines'),
     ('box', text(-2, REAL.replace('SUBNET', 'LAN')), "does not say 'SUBNET'"),
     ('box', text(-2, REAL.replace('until Ctrl-C', 'for ever')), "does not say 'Ctrl-C'"),
-    ('tasks', a_task('- ' + 'word ' * 21), 'has a bullet of 21 words'),
+    ('quiz', lambda nb: nb.cells[-3].update(id='questions'), 'has no cell "quiz"'),
+    ('quiz', text(-4, PROSE), "cell 'quiz-read': stands before the quiz"),
+    ('quiz', lambda nb: nb.cells[-2].update(id='hello-task'), 'comes after the quiz'),
+    ('short_bullets', a_task('- ' + 'word ' * 21), 'has a bullet of 21 words'),
     ('moves', text(-3, 'print(8)'), 'has nothing that moves'),
     ('size', lambda nb: nb.cells.__delitem__(slice(2, 6)), 'has 18 cells. Make it 20'),
     ('size', lambda nb: [text(n, 'Few words.')(nb) for n in range(2, 20, 2)], 'words of prose'),
@@ -161,6 +167,8 @@ BAD = [
     ('steady', shows('[1763702321.5]: hello'), 'a time stamp'),
     ('steady', shows('<Talker object at 0x7f3a5c1d2e10>'), 'an address in memory'),
     ('steady', text(3, "open('/tmp/bag')"), 'names a path of one machine'),
+    ('numbers', shows('True'), "shows 'True'"),
+    ('numbers', displays(text__plain='in time: False'), "shows 'in time: False'"),
     ('exemptions', tagged('nbval-ignore-output'), 'without a reason'),
     ('exemptions', tagged('nbval-skip'), 'Every cell runs'),
     ('exemptions', more(3, '# NBVAL_IGNORE_OUTPUT'), 'Use a tag'),
@@ -171,6 +179,7 @@ BAD = [
     ('pictures', displays(image__png='', text__plain='<Figure size 64x48>'), 'without text'),
     ('links', more(2, 'See [it](03_missing.ipynb).'), 'is not there'),
     ('links', more(2, 'See [it](http://example.org).'), 'is not there'),
+    ('links', more(2, 'See [it](https://docs.ros.org/en/humble/x.html).'), 'is not there'),
     ('links', more(2, 'See [it](#Part-99).'), 'is not there'),
     ('links', more(2, 'See ![a graph](attachment:graph.png).'), 'is not there'),
     ('links', more(2, 'See [](02_next.ipynb).'), 'without words'),
@@ -192,11 +201,12 @@ def test_what_is_wrong_is_found(name: str, change, words: str, tmp_path: Path):
     [
         more(2, '```python\n# no title, and not simply!\n```'),
         more(2, '![A talker and a listener](02_next.ipynb "a picture")'),
-        more(2, '[Part 3](#Part-3), `a != b`, [docs](https://docs.ros.org/)'),
+        more(2, '[Part 3](#Part-3), `a != b`, [docs](https://docs.ros.org/en/jazzy/)'),
         more(2, '```mermaid\ngraph LR\naccDescr: a talker and a listener\n```'),
         more(2, '| ' + 'word ' * 200 + '|'),
         text(3, 'def slow():\n    time.sleep(1)'),
         text(3, '%ros2 topic list\n!ros2 topic list'),
+        shows('Boolean value is: False'),
         shows('/chatter, /tmp, work/talk.py and $COURSE/notebooks in 12 of 3000'),
         tagged('nbval-ignore-output', reason='It shows a measured time.'),
         displays(image__png='', text__plain='odom.x rises from 0 to 1'),
