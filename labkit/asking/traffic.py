@@ -12,6 +12,7 @@ never sees what overflows it. It does not subscribe while a cell runs, so that n
 
 from __future__ import annotations
 
+import functools
 import sys
 import threading
 import time
@@ -131,6 +132,7 @@ def _replace() -> None:
     Publisher.publish = wanted  # type: ignore[method-assign, assignment]
 
 
+@functools.wraps(Publisher.publish)
 def _publish(publisher: Publisher, msg: Any) -> None:
     began = time.time_ns()
     _original(publisher, msg)

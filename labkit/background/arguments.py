@@ -10,14 +10,26 @@ import ast
 import inspect
 import re
 import types
-from typing import Any
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
 
+from labkit.background import compat
 from labkit.background.tracebacks import argument_at_caller
-from labkit.errors import LabError, cell_name
+from labkit.errors import LabError, cell_name, quoted
 from labkit.rosgraph.interfaces import type_name
 
-__all__ = ['check_callback', 'check_response', 'check_sent', 'check_type']
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
+__all__ = [
+    *('check_args', 'check_callback', 'check_name', 'check_response', 'check_sent', 'check_type'),
+    'one_type',
+]
+
+_OTHER_TYPE = re.compile(
+    r'existing request topic name rq(/\S+?)(/_action/send_goal)?Request with incompatible type'
+)
 _EXAMPLES = {
     'message': 'String of std_msgs.msg',
     'service': 'Trigger of std_srvs.srv',
@@ -51,6 +63,49 @@ def check_type(function: str, kind: str, given: Any) -> None:
     else:
         seen = _shown(given)
     raise LabError(f'{function}() expects the class of {_a(kind)}, but got {seen}.', todo=todo)
+
+
+def check_name(function: str, given: Any, example: str) -> None:
+    """Refuse a name that is no text: rclpy quotes the signature of its own function in C."""
+    if not isinstance(given, str):
+        raise LabError(
+            f'{function}() expects a name, a text in quotes, but got {_shown(given)}.',
+            todo=f'Write it in its place, in quotes, such as {example!r}.',
+        )
+
+
+def check_args(function: str, name: str, given: Any) -> None:
+    """Refuse arguments for ROS in one text: rcl takes none of its letters, and says nothing."""
+    if isinstance(given, (str, bytes)):
+        raise LabError(
+            f'{function}({name}=...) expects a list of words, but got one text, {quoted(given)}.',
+            todo=f"Write a list: {name}=['--ros-args', '-r', 'chatter:=news']",
+        )
+
+
+@contextmanager
+def one_type(node: Node | None, asked: type) -> Iterator[None]:
+    """Say in a `with` block that a service or an action is there with another type.
+
+    Args:
+        node: A node to ask the graph with.
+        asked: The class of the service or action that is made in the block.
+    """
+    try:
+        yield
+    except (compat.RCLError, ValueError) as error:
+        found = _OTHER_TYPE.search(str(error))
+        if found is None or node is None:
+            raise
+        name, action = found[1], found[2] or ''
+        types = dict(node.get_service_names_and_types()).get(f'{name}{action}', ['another type'])
+        had = ' and '.join(each.removesuffix('_SendGoal') for each in types)
+        what = 'an action' if action else 'a service'
+        raise LabError(
+            f'{name} is {what} of {had} in this notebook already, and not of {type_name(asked)}. '
+            f'In one notebook, {what} has one type.',
+            todo=f'Use the same type at both ends, or another name than {name!r}.',
+        ) from error
 
 
 def check_callback(function: str, callback: Any, position: int, name: str = 'callback') -> None:

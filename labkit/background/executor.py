@@ -47,6 +47,8 @@ __all__ = ['BackgroundExecutor']
 END_SEC = 30.0
 # How long to wait for a callback that keeps a removed node from being released, s.
 RELEASE_SEC = 1.0
+# Whose a task is that a cell has made: in messages, in place of the name of a node.
+_EXECUTOR = 'the executor'
 
 
 class BackgroundExecutor(Executor):
@@ -189,7 +191,9 @@ class BackgroundExecutor(Executor):
             owner = running[0]
         else:
             first = next(iter(self._entries.values()))
-            owner = replace(first, cell=self._console.current_cell(), counts={}, budget=None)
+            cell = self._console.current_cell()
+            # Labkit's own node runs it, which is nobody's business.
+            owner = replace(first, name=_EXECUTOR, cell=cell, counts={}, took={})
         task = Task(callback, args, kwargs, executor=self)  # type: ignore[no-untyped-call]
         self._pending_tasks.add_function(task, owner)
         self._notify()

@@ -41,6 +41,7 @@ __all__ = [
     'find_half_made',
     'full_name',
     'half_made',
+    'has_begun',
     'helper_node',
     'made',
     'node_exists',
@@ -221,33 +222,41 @@ def find_half_made(error: BaseException) -> list[Node]:
     return found
 
 
-def check_node(node: object) -> None:
-    """Raise a LabError if `node` can't be spun."""
+def check_node(node: object, function: str = 'lab.spin') -> None:
+    """Raise a LabError if `node` can't be spun by a function."""
     if isinstance(node, type) and issubclass(node, Node):
         raise LabError(
-            f'lab.spin() expects a node, but got the class {node.__name__}.',
-            todo=f'Make a node of it: lab.spin({node.__name__}())',
+            f'{function}() expects a node, but got the class {node.__name__}.',
+            todo=f'Make a node of it: {function}({node.__name__}())',
         )
     if not isinstance(node, Node):
         raise LabError(
-            f'lab.spin() expects a node, but got {quoted(node)}.',
+            f'{function}() expects a node, but got {quoted(node)}.',
             todo='Pass an object of a class that is made on rclpy.node.Node.',
         )
     if not node_exists(node):
         raise _gone(node)
 
 
+def has_begun(node: Node) -> bool:
+    """Return whether the `__init__` of a node's class has called the one of `Node`."""
+    try:
+        Node.context.fget(node)  # type: ignore[attr-defined]
+    except AttributeError:
+        return False
+    return True
+
+
 def _gone(node: Node) -> LabError:
     """Return why a node does not exist."""
     name = type(node).__name__
-    try:
-        context: Any = Node.context.fget(node)  # type: ignore[attr-defined]
-    except AttributeError:
+    if not has_begun(node):
         return LabError(
             f'This {name} is not a node yet: its __init__ has not called the one of Node.',
             todo="Let super().__init__('name_of_the_node') be the first line of its __init__.",
         )
-    why = 'it was destroyed' if context.ok() else 'ROS was shut down since it was made'
+    is_up = node.context.ok()
+    why = 'it was destroyed' if is_up else 'ROS was shut down since it was made'
     return LabError(
         f'This {name} exists no more: {why}.',
         todo='Make it again; running its cell again does that.',

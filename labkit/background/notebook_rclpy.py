@@ -33,12 +33,20 @@ from rclpy.validate_node_name import validate_node_name
 from labkit import domain_ids, settings, stop_button
 from labkit.background import compat, exits
 from labkit.background.action_callbacks import guarded
-from labkit.background.arguments import check_callback, check_response, check_sent, check_type
+from labkit.background.arguments import (
+    check_args,
+    check_callback,
+    check_name,
+    check_response,
+    check_sent,
+    check_type,
+    one_type,
+)
 from labkit.background.domains import number_for_ros
 from labkit.background.foreground import Spin
-from labkit.background.nodes import Origin, existing_nodes, full_name, made
+from labkit.background.nodes import Origin, check_node, existing_nodes, full_name, made
 from labkit.background.pending_tasks import answered_by
-from labkit.background.program import Arguments, Program, renamed
+from labkit.background.program import Arguments, Program, look_at_files, renamed
 from labkit.errors import LabError, LabTimeout, first_few
 from labkit.rosgraph.matching import other_type_here
 from labkit.rosgraph.names import full_node_name, full_topic_name, is_hidden
@@ -162,6 +170,8 @@ class _NotebookSafe:
         domain_id: int | None = None,
         signal_handler_options: SignalHandlerOptions | None = None,
     ) -> None:
+        check_args('rclpy.init', 'args', args)
+        look_at_files(args or ())
         if context is not None and context is not get_default_context():
             none = rclpy.signals.SignalHandlerOptions.NO
             wanted = domain_id if domain_id is not None else domain_ids.read_domain_id() or 0
@@ -291,6 +301,7 @@ class _NotebookSafe:
         The stop button and what a callback raises come out of it. A node started by `lab.spin`
         then goes on running in the background; any other one stops.
         """
+        check_node(node, 'rclpy.spin')
         spin = Spin('rclpy.spin()', [node])
         if executor is not None:
             with self._lent(spin, executor):
@@ -302,6 +313,7 @@ class _NotebookSafe:
     def spin_once(
         self, node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None
     ) -> None:
+        check_node(node, 'rclpy.spin_once')
         spin = Spin('rclpy.spin_once()', [node])
         if executor is not None:
             with self._lent(spin, executor):
@@ -323,6 +335,7 @@ class _NotebookSafe:
         executor: Executor | None = None,
         timeout_sec: float | None = None,
     ) -> None:
+        check_node(node, 'rclpy.spin_until_future_complete')
         spin = Spin('rclpy.spin_until_future_complete()', [node])
         if executor is not None:
             with self._lent(spin, executor):
@@ -444,10 +457,18 @@ class _NotebookSafe:
         return bool(client.server_is_ready())
 
     def make_action_client(
-        self, client: Any, node: Node, action_type: Any, *args: Any, **kwargs: Any
+        self,
+        client: Any,
+        node: Node,
+        action_type: Any,
+        action_name: str,
+        *args: Any,
+        **kwargs: Any,
     ) -> None:
         check_type('ActionClient', 'action', action_type)
-        _make('make_action_client', client, node, action_type, *args, **kwargs)
+        check_name('ActionClient', action_name, 'count')
+        with one_type(self._background.helper, action_type):
+            _make('make_action_client', client, node, action_type, action_name, *args, **kwargs)
 
     def make_action_server(
         self,
@@ -460,9 +481,11 @@ class _NotebookSafe:
         **kwargs: Any,
     ) -> None:
         check_type('ActionServer', 'action', action_type)
+        check_name('ActionServer', action_name, 'count')
         check_callback('ActionServer', execute_callback, 3, 'execute_callback')
         given = node, action_type, action_name, execute_callback
-        _make('make_action_server', server, *given, *args, **kwargs)
+        with one_type(self._background.helper, action_type):
+            _make('make_action_server', server, *given, *args, **kwargs)
 
     def execute_with(self, server: Any, execute_callback: Callable[..., Any]) -> None:
         """Show what the callback of an action server raises, as for all other callbacks."""
@@ -490,14 +513,16 @@ class _NotebookSafe:
 
     def make_node(self, node: Node, node_name: str, *args: Any, **kwargs: Any) -> None:
         _refuse_hiding(type(node))
-        if isinstance(node_name, str):
-            # rcl validates the name too, but then adds a warning about its own clean-up.
-            validate_node_name(node_name)
+        check_name('Node', node_name, 'talker')
+        # rcl validates the name too, but then adds a warning about its own clean-up.
+        validate_node_name(node_name)
         context = kwargs.get('context')
         if context is None:
             self._background.start()
         program = None
+        check_args('Node', 'cli_args', kwargs.get('cli_args'))
         own: tuple[str, ...] = tuple(kwargs.get('cli_args') or ())
+        look_at_files(own)
         shared: tuple[str, ...] = ()
         if context in (None, get_default_context()):
             program = self._running_program()
@@ -523,6 +548,7 @@ class _NotebookSafe:
         self, node: Node, msg_type: Any, topic: str, *args: Any, **kwargs: Any
     ) -> Any:
         check_type('create_publisher', 'message', msg_type)
+        check_name('create_publisher', topic, 'chatter')
         self._refuse_second_type(node, msg_type, topic)
         return _make('create_publisher', node, msg_type, topic, *args, **kwargs)
 
@@ -530,20 +556,30 @@ class _NotebookSafe:
         self, node: Node, msg_type: Any, topic: str, callback: Any, *args: Any, **kwargs: Any
     ) -> Any:
         check_type('create_subscription', 'message', msg_type)
+        check_name('create_subscription', topic, 'chatter')
         check_callback('create_subscription', callback, 2)
         self._refuse_second_type(node, msg_type, topic)
-        return _make('create_subscription', node, msg_type, topic, callback, *args, **kwargs)
+        began = time.monotonic()
+        found = _make('create_subscription', node, msg_type, topic, callback, *args, **kwargs)
+        found._labkit_since = began
+        return found
 
-    def create_client(self, node: Node, srv_type: Any, *args: Any, **kwargs: Any) -> Any:
+    def create_client(
+        self, node: Node, srv_type: Any, srv_name: str, *args: Any, **kwargs: Any
+    ) -> Any:
         check_type('create_client', 'service', srv_type)
-        return _make('create_client', node, srv_type, *args, **kwargs)
+        check_name('create_client', srv_name, 'reset')
+        with one_type(self._background.helper, srv_type):
+            return _make('create_client', node, srv_type, srv_name, *args, **kwargs)
 
     def create_service(
         self, node: Node, srv_type: Any, srv_name: str, callback: Any, *args: Any, **kwargs: Any
     ) -> Any:
         check_type('create_service', 'service', srv_type)
+        check_name('create_service', srv_name, 'reset')
         check_callback('create_service', callback, 2)
-        return _make('create_service', node, srv_type, srv_name, callback, *args, **kwargs)
+        with one_type(self._background.helper, srv_type):
+            return _make('create_service', node, srv_type, srv_name, callback, *args, **kwargs)
 
     def create_timer(
         self, node: Node, timer_period_sec: float, callback: Any, *args: Any, **kwargs: Any

@@ -19,10 +19,10 @@ from rclpy.context import Context
 from rclpy.node import Node
 
 from labkit.background.nodes import existing_nodes
-from labkit.errors import LabError
+from labkit.errors import LabError, quoted
 from labkit.rosgraph.yaml_loading import load_yaml_file
 
-__all__ = ['Arguments', 'Program', 'renamed']
+__all__ = ['Arguments', 'Program', 'look_at_files', 'renamed']
 
 _FOR_NODES = ('-r', '--remap', '-p', '--param', '--params-file')
 _FOR_PROCESS = ('-e', '--enclave', '--log-config-file', '--log-file-name')
@@ -73,7 +73,7 @@ class Arguments:
         return found
 
 
-def _look_at_files(args: Sequence[str]) -> None:
+def look_at_files(args: Sequence[str]) -> None:
     """Raise LabError for a parameter file that cannot be read: rcl hangs over a pipe."""
     for option, path in pairwise(args):
         if option != '--params-file' or not os.path.exists(path):
@@ -83,8 +83,7 @@ def _look_at_files(args: Sequence[str]) -> None:
         except (OSError, ValueError) as error:
             why = error.strerror if isinstance(error, OSError) else error
             raise LabError(
-                f'rclpy.init(args=...) names a parameter file, {path!r}, that cannot be read: '
-                f'{why}.',
+                f'The arguments name a parameter file that cannot be read, {quoted(path)}: {why}.',
                 todo='Name a YAML file with parameters.',
             ) from error
 
@@ -102,13 +101,11 @@ class Program:
         left_in: The one of a node of its own that has called it in a callback, None before.
 
     Raises:
-        LabError: A parameter file cannot be read.
         RuntimeError: rcl does not understand the arguments.
     """
 
     def __init__(self, args: Sequence[str] | None, request_id: str, started_at: float) -> None:
         if args:
-            _look_at_files(args)
             # rcl judges them where it makes a context of them.
             judge = Context()
             judge.init(list(args), initialize_logging=False, domain_id=0)

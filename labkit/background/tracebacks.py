@@ -61,8 +61,9 @@ _IN_A_LOOP = """
 A cell runs in an event loop already. Write there, outside of any function, await and the
 coroutine: await spin_for_a_while(node) instead of asyncio.run(spin_for_a_while(node))."""
 _DESTROYED = """
-This {kind} exists no more: it was destroyed, as all parts of a node are when its cell is run
-again, or when ROS is stopped. Use the new one, and let no callback or thread keep the old one."""
+This {kind} exists no more: it was destroyed, as all parts of a node are with their node: by
+destroy_node(), when its cell is run again, or when ROS is stopped. Use one that exists, and let no
+callback or thread keep the old one."""
 # Generated modules of interfaces: std_msgs/msg/_int16.py
 _INTERFACES = tuple(f'{os.sep}{kind}{os.sep}_' for kind in ('msg', 'srv', 'action'))
 

@@ -89,7 +89,63 @@ REFUSED = [
         'send_goal_async() expects an object of Fibonacci.Goal, but got 3.',
         '',
     ),
+    ('rclpy.spin(Wrong)', 'rclpy.spin() expects a node, but got the class Wrong', 'spin(Wrong())'),
+    ('rclpy.spin_once(None)', 'rclpy.spin_once() expects a node, but got None.', ''),
+    (
+        'rclpy.spin_until_future_complete(Wrong, None)',
+        'rclpy.spin_until_future_complete() expects a node, but got the class Wrong',
+        '',
+    ),
+    ('Node(String)', 'Node() expects a name, a text in quotes, but got <class', "as 'talker'"),
+    ('rclpy.create_node(5)', 'Node() expects a name, a text in quotes, but got 5.', ''),
+    (
+        "wrong.create_publisher(String, 10, 'x')",
+        'create_publisher() expects a name, a text in quotes, but got 10.',
+        "Write it in its place, in quotes, such as 'chatter'.",
+    ),
+    ('wrong.create_subscription(String, String, print, 10)', 'but got <class', 'in its place'),
+    ('wrong.create_client(Trigger, Trigger)', 'create_client() expects a name', "'reset'"),
+    ('wrong.create_service(Trigger, wrong.add, "x")', 'create_service() expects', ''),
+    ('ActionClient(wrong, Fibonacci, None)', 'ActionClient() expects a name', ''),
+    ('ActionServer(wrong, Fibonacci, 3, print)', 'ActionServer() expects a name', ''),
+    (
+        "rclpy.init(args='--ros-args -r a:=b')",
+        "rclpy.init(args=...) expects a list of words, but got one text, '--ros-args -r a:=b'.",
+        "args=['--ros-args', '-r', 'chatter:=news']",
+    ),
+    ("Node('x', cli_args='--ros-args')", 'Node(cli_args=...) expects a list of words', ''),
 ]
+
+
+OTHER_TYPES = """
+from std_srvs.srv import Empty
+from test_msgs.action import NestedMessage
+wrong.create_service(Trigger, 'fire', wrong.add)
+server = ActionServer(wrong, Fibonacci, 'count', wrong.tick)
+"""
+
+
+@pytest.mark.parametrize(
+    ('code', 'words'),
+    [
+        (
+            "wrong.create_client(Empty, 'fire')",
+            '/fire is a service of std_srvs/srv/Trigger in this notebook already, and not of std_',
+        ),
+        ("wrong.create_service(Empty, 'fire', wrong.add)", '/fire is a service of std_srvs/srv/T'),
+        (
+            "ActionClient(wrong, NestedMessage, 'count')",
+            '/count is an action of test_msgs/action/Fibonacci in this notebook already',
+        ),
+        ("ActionServer(wrong, NestedMessage, 'count', wrong.tick)", '/count is an action of test'),
+    ],
+)
+def test_another_type_is_refused_in_a_sentence(kernel, code, words):
+    kernel.run(SETUP)
+    kernel.run(OTHER_TYPES)
+    result = kernel.run(code)
+    assert result.error.startswith(f'LabError: {words}')
+    assert f'line 1: {code}' in result.traceback
 
 
 def test_they_are_refused_in_a_sentence_and_the_line(kernel):
@@ -205,6 +261,7 @@ def test_errors_about_arguments_have_the_names_of_rclpy(kernel):
         ('wrong.create_publisher(String)', 'Node.create_publisher() missing 2 required'),
         ("ActionServer(wrong, Fibonacci, 'x')", 'ActionServer.__init__() missing 1 required'),
         ('wrong.create_timer(1.0)', 'Node.create_timer() missing 1 required'),
+        ("wrong.create_publisher(String, 'x', 10).publish()", 'Publisher.publish() missing 1'),
     ]:
         result = kernel.run(code)
         assert words in result.error

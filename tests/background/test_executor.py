@@ -35,6 +35,15 @@ def test_whatever_a_callback_raises_is_shown_and_spinning_goes_on(kernel):
     ).error
 
 
+def test_what_a_task_of_a_cell_raises_has_no_name_of_labkits(kernel):
+    kernel.run(SETUP + 'def fail():\n    raise ValueError("lost")\n')
+    kernel.run('ticker = lab.spin(Ticker(lambda node: None))')
+    cell = kernel.run('ticker.executor.create_task(fail);')
+    said = kernel.wait_for_output(cell.msg_id, 'ValueError: lost')
+    assert 'The callback fail of the executor failed.' in said
+    assert '_labkit' not in said
+
+
 @pytest.mark.parametrize(
     ('leave', 'shown'),
     [('sys.exit(3)', 'SystemExit: 3'), ('exit_now()', "KeyboardInterrupt: 'enough'")],

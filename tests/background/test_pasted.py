@@ -333,8 +333,12 @@ def test_arguments_of_init_replace_a_node_of_the_name_that_they_give(kernel):
 def test_arguments_that_do_not_hold_are_refused(kernel, args, words):
     kernel.run(SERVER)
     kernel.run('import os; os.mkfifo("pipe.yaml"); open("deep.yaml", "w").write("[" * 100_000)')
-    result = kernel.run(f'rclpy.init(args={["--ros-args", *args]!r})')
+    given = ['--ros-args', *args]
+    result = kernel.run(f'rclpy.init(args={given!r})')
     assert words in result.error
+    if args[0] == '--params-file':
+        result = kernel.run(f"Node('reader', cli_args={given!r})")
+        assert words in result.error
     assert kernel.run(CLIENT.format(end='rclpy.shutdown()')).text == '1 True True\nFalse\n'
 
 
