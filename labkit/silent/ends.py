@@ -233,10 +233,13 @@ def look_at_history(scene: Scene) -> Iterator[Fault]:
     for node in scene.nodes:
         for sub in node.subscriptions:
             pubs = sent.get(sub.topic, [])
-            known = pubs and len(pubs) == scene.publishers.get(sub.topic)
-            # What does not match has lost nothing in a queue: `look_at_pairs` tells it.
-            if known and not any(qos_mismatch(pub.qos, sub.qos) for _, pub in pubs):
-                yield from _got(scene, node, sub, pubs)
+            if not pubs or len(pubs) != scene.publishers.get(sub.topic):
+                continue
+            found = list(_got(scene, node, sub, pubs))
+            # What does not match has lost nothing in a queue: `look_at_pairs` tells it. Two
+            # profiles take long to compare, and there is something to tell hardly ever.
+            if found and not any(qos_mismatch(pub.qos, sub.qos) for _, pub in pubs):
+                yield from found
 
 
 def _got(

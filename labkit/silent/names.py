@@ -149,14 +149,15 @@ def _apart(scene: Scene, what: Kind, end: Endpoint, other: Endpoint) -> Fault:
 
 def _likeness(end: Endpoint, other: Endpoint) -> Kind | None:
     """Return in which way the names of two ends are alike, None if they are not."""
-    for one, two in ((end, other), (other, end)):
+    both = ((end, other), (other, end))
+    for one, two in both:
         if one.topic == f'{one.node}/{_last(one.topic)}' and _last(one.topic) == _last(two.topic):
             return PRIVATE
         space = _space(one.node)
         if space and not one.topic.startswith(space) and two.topic == f'{space[:-1]}{one.topic}':
             return ABSOLUTE
-        if one.topic.endswith(two.topic):
-            return NAMESPACE
+    if any(one.topic.endswith(two.topic) for one, two in both):
+        return NAMESPACE
     return _HOW.get(alike(end.topic, other.topic))
 
 

@@ -6,7 +6,6 @@ It subscribes to nothing, and asks no node of the learner for anything but its a
 from __future__ import annotations
 
 import time
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -17,7 +16,7 @@ from weakref import WeakKeyDictionary
 from rclpy.exceptions import InvalidHandle
 
 from labkit.asking.silence import offers_service
-from labkit.asking.traffic import sent_by
+from labkit.asking.traffic import Sent, sent_by
 from labkit.background import compat
 from labkit.background.nodes import callback_name, existing_nodes, full_name, made
 from labkit.background.runtime import runtime
@@ -33,6 +32,7 @@ from labkit.silent.scene import (
     ParameterFile,
     Publisher,
     Rule,
+    Running,
     Scene,
     Sleeper,
     Subscription,
@@ -73,12 +73,14 @@ class Reader:
         self._graph = Graph((), ())
         self._heard: WeakKeyDictionary[Any, _Heard] = WeakKeyDictionary()
         self._clocks: WeakKeyDictionary[Any, tuple[int, float]] = WeakKeyDictionary()
+        self._since = time.monotonic()
 
     def forget(self) -> None:
         """Begin anew: what has happened up to now counts for nothing."""
         self._mark = None
         self._heard.clear()
         self._clocks.clear()
+        self._since = time.monotonic()
 
     def read(self) -> Scene:
         """Return the scene, with the same graph as at the last call if nothing has changed."""
@@ -107,10 +109,11 @@ class Reader:
             {topic: count for topic, (count, _) in counts.items()},
             tuple(own),
             tuple(_sleepers(nodes)),
+            _running(),
             time.monotonic(),
         )
 
-    def _node(self, node: Node, running: object, sent: Mapping[str, int]) -> OwnNode:
+    def _node(self, node: Node, running: object, sent: Mapping[str, list[Sent]]) -> OwnNode:
         """Return a node of this process; only its requests while its cell is making it."""
         entry = runtime.entry_of(node)
         origin = made.origins.get(node)
@@ -162,15 +165,21 @@ class Reader:
         return back
 
     def _subscriptions(
-        self, node: Node, entry: NodeEntry | None, sent: Mapping[str, int]
+        self, node: Node, entry: NodeEntry | None, sent: Mapping[str, list[Sent]]
     ) -> Iterator[Subscription]:
         for sub in node.subscriptions:
             heard = entry.counts.get(sub, 0) if entry is not None else 0
-            ahead = sent.get(sub.topic_name, 0) - heard
+            all_sent = sent.get(sub.topic_name, [])
+            ahead = sum(each.count for each in all_sent) - heard
             known = self._heard.get(sub)
             if known is None or known.entry is not entry or ahead < known.ahead:
                 since = known.since if known is not None else time.monotonic()
-                known = self._heard[sub] = _Heard(entry, ahead, since)
+                before = ahead
+                made_at = getattr(sub, '_labkit_since', 0.0)
+                if known is None and made_at > self._since:
+                    # What has begun to publish later owes it all messages.
+                    before = sum(each.count for each in all_sent if each.first < made_at)
+                known = self._heard[sub] = _Heard(entry, min(ahead, before), since)
             yield Subscription(
                 sub.topic_name,
                 type_name(sub.msg_type),
@@ -183,13 +192,13 @@ class Reader:
             )
 
 
-def _sent(nodes: Sequence[Node]) -> Counter[str]:
-    """Return the number of messages that nodes have published, by topic."""
-    sent: Counter[str] = Counter()
+def _sent(nodes: Sequence[Node]) -> dict[str, list[Sent]]:
+    """Return what the publishers of nodes have published, by topic."""
+    sent: dict[str, list[Sent]] = {}
     for node in nodes:
         with suppress(InvalidHandle):
             for publisher in node.publishers:
-                sent[publisher.topic_name] += sent_by(publisher).count
+                sent.setdefault(publisher.topic_name, []).append(sent_by(publisher))
     return sent
 
 
@@ -240,12 +249,20 @@ def _long_calls(entry: NodeEntry | None) -> Iterator[LongCall]:
     if entry is None:
         return
     running = runtime.executor.running_for()
-    stuck = running is not None and running[0] is entry and running[2] >= LONG_SEC
-    if running is not None and stuck:
-        yield LongCall(running[1], running[2], is_running=True)
-    for callback, seconds in tuple(entry.took.items()):
-        if seconds >= LONG_SEC and not (running and stuck and running[1] == callback):
+    took = dict(entry.took)
+    if running is not None and running[0] is entry:
+        took[running[1]] = max(running[2], took.get(running[1], 0.0))
+    for callback, seconds in took.items():
+        if seconds >= LONG_SEC:
             yield LongCall(callback, seconds)
+
+
+def _running() -> Running | None:
+    running = runtime.executor.running_for()
+    if running is None or is_hidden(running[0].name):
+        return None
+    entry, callback, seconds = running
+    return Running(entry.name, callback, seconds, entry.cell)
 
 
 def _sleepers(nodes: Sequence[Node]) -> Iterator[Sleeper]:
@@ -262,6 +279,8 @@ def _sleepers(nodes: Sequence[Node]) -> Iterator[Sleeper]:
 def _values_of(args: Sequence[str], *flags: str) -> Iterator[str]:
     """Yield the values of an option among the arguments for ROS."""
     inside = False
+    if len(args) < 2:
+        return  # most nodes have none, and all are read once a second
     for word, value in zip(args, [*args[1:], ''], strict=False):
         if word in ('--ros-args', '--'):
             inside = word == '--ros-args'

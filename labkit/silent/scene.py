@@ -16,6 +16,7 @@ __all__ = [
     'ParameterFile',
     'Publisher',
     'Rule',
+    'Running',
     'Scene',
     'Sleeper',
     'Subscription',
@@ -98,11 +99,20 @@ class Client:
 
 @dataclass(frozen=True)
 class LongCall:
-    """A callback that took long, or that is running still: its name, and the seconds."""
+    """A callback that took long: its name, and the seconds."""
 
     callback: str
     seconds: float
-    is_running: bool = False
+
+
+@dataclass(frozen=True)
+class Running:
+    """The callback that is running: its node, which may have ended, its name, and the seconds."""
+
+    node: str
+    callback: str
+    seconds: float
+    cell: Any = None
 
 
 @dataclass(frozen=True)
@@ -199,6 +209,7 @@ class Scene:
         publishers: For each topic, the number of its publishers, hidden ones too.
         nodes: The nodes of this process.
         sleepers: What threads wait for though nobody spins the node.
+        running: The callback that is running, None if none is.
         now: `time.monotonic()`.
     """
 
@@ -206,6 +217,7 @@ class Scene:
     publishers: Mapping[str, int]
     nodes: tuple[OwnNode, ...] = ()
     sleepers: tuple[Sleeper, ...] = ()
+    running: Running | None = None
     now: float = 0.0
 
     def own(self, name: str) -> OwnNode | None:

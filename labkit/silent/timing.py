@@ -75,8 +75,8 @@ LONG = kind(
 STUCK = kind(
     'time.stuck-callback',
     'Nothing happens any more: a callback does not return',
-    'End it with the stop button, lab.remove(node) or a restart of the kernel, and let the '
-    'callback return: no endless loop, no wait for another callback.',
+    'If it never returns, restart the kernel (menu Kernel): neither the stop button nor '
+    'lab.remove(node) ends a callback. Let it return: no endless loop, no wait for another one.',
     'the callback returns',
 )
 
@@ -187,18 +187,22 @@ def look_at_timers(scene: Scene) -> Iterator[Fault]:
 
 def look_at_callbacks(scene: Scene) -> Iterator[Fault]:
     """Find callbacks that keep others from running."""
+    stuck = scene.running if scene.running and scene.running.seconds >= 2 * LONG_SEC else None
+    if stuck is not None:
+        yield Fault(
+            STUCK,
+            (stuck.node,),
+            stuck.callback,
+            f'{stuck.callback} of {stuck.node} has been running for {stuck.seconds:.0f} s; until '
+            'it returns, no other callback of this process runs.',
+            # The cell of its node; if that was made again, the cell which did.
+            cell=None if scene.own(stuck.node) else stuck.cell,
+        )
     for node in scene.nodes:
         for call in node.long_calls:
-            if call.is_running and call.seconds >= 2 * LONG_SEC:
-                yield Fault(
-                    STUCK,
-                    (node.name,),
-                    call.callback,
-                    f'{call.callback} of {node.name} has been running for '
-                    f'{call.seconds:.0f} s; until it returns, no other callback of this process '
-                    'runs.',
-                )
-            elif call.seconds >= LONG_SEC and _keeps_others(scene, node, call.callback):
+            if stuck and (stuck.node, stuck.callback) == (node.name, call.callback):
+                continue
+            if call.seconds >= LONG_SEC and _keeps_others(scene, node, call.callback):
                 yield Fault(
                     LONG,
                     (node.name,),

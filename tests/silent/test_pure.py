@@ -86,6 +86,19 @@ def test_a_name_under_which_a_message_has_come_is_right() -> None:
         assert [fault.kind.id for fault in look_at_names(scene)] == ids
 
 
+def test_a_slash_in_front_at_either_end_is_told() -> None:
+    one = Endpoint('/robot1/driver', '/odom', 'std_msgs/msg/String', QoSProfile(depth=1), b'')
+    two = replace(one, node='/robot1/base', topic='/robot1/odom')
+    for deaf, loud in ((one, two), (two, one)):
+        topics = (
+            GraphTopic(deaf.topic, (deaf.msg_type,), (), (deaf,)),
+            GraphTopic(loud.topic, (loud.msg_type,), (loud,), ()),
+        )
+        (fault,) = look_at_names(Scene(Graph((), topics), {}))
+        assert fault.kind.id == 'names.absolute'
+        assert f'{one.node} names /odom with a slash in front.' in str(fault)
+
+
 def test_node_that_nobody_spins() -> None:
     timer = Timer(1.0, 'tick', None)
     node = OwnNode('/sleepy', '/', is_spun=False, timers=(timer,))

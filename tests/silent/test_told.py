@@ -103,6 +103,33 @@ def test_a_rate_that_nobody_spins_is_told_while_it_hangs(notebook: Kernel) -> No
     notebook.wait_until_gone(cell, said)
 
 
+STUCK = """
+import threading
+free = threading.Event()
+stuck = lab.spin(Node('stuck'))
+stuck.create_timer(0.01, lambda: free.wait())
+"""
+
+
+@pytest.mark.slow('waits in real time')
+def test_a_stuck_callback_is_told_for_as_long_as_it_keeps_all_others(notebook: Kernel) -> None:
+    said = 'of /stuck has been running for'
+    made = notebook.run(STUCK)
+    shown = notebook.wait_for_output(made.msg_id, said)
+    assert 'neither the stop button nor lab.remove(node) ends a callback' in shown
+    # The cell is mended and run again: the callback of the earlier node runs on.
+    again = notebook.run("stuck = lab.spin(Node('stuck'))")
+    notebook.wait_for_output(again.msg_id, said)
+    notebook.run('lab.remove(stuck)')
+    seen = notebook.run(
+        'from labkit.silent.watch import watch\nprint([one.kind.id for one in watch.look()])'
+    )
+    assert 'time.stuck-callback' in seen.text
+    notebook.run('free.set()')
+    notebook.wait_until_gone(made.msg_id, said)
+    notebook.wait_until_gone(again.msg_id, said)
+
+
 def test_it_is_told_wherever_one_looks(notebook: Kernel) -> None:
     notebook.run('t = Twist(); t.angular.z = 90.0')
     notebook.run("p = lab.spin(Node('driver')).create_publisher(Twist, 'cmd_vel', 10)")
@@ -154,6 +181,13 @@ with runtime.executor.between_callbacks():
 lab.wait_until(lambda: len(heard) == 2)
 """,
 ]
+
+
+def test_a_burst_right_after_the_subscription_was_made_is_told(notebook: Kernel) -> None:
+    made = notebook.run(''.join(BURST))
+    assert not made.error, made.traceback
+    shown = notebook.wait_for_output(made.msg_id, 'more came at a time than its queue holds, 2.')
+    assert '/ear has missed' in shown
 
 
 def test_it_is_the_last_output_of_a_cell_where_outputs_are_compared(

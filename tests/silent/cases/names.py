@@ -6,7 +6,7 @@ CASES = {
         "deaf('listener', '/robot2/chatter2'); loud('talker', 'chatter2', namespace='robot1')",
     ),
     'names.absolute': (
-        "deaf('driver', '/odom', namespace='robot1'); loud('base', 'odom', namespace='robot1')",
+        "deaf('driver', 'odom', namespace='robot1'); loud('base', '/odom', namespace='robot1')",
         "deaf('driver', 'odom', namespace='robot1'); loud('base', 'odom', namespace='robot1')",
     ),
     'names.private': (
