@@ -45,8 +45,10 @@ _UNAVAILABLE = {
         'np.uint8).reshape(msg.height, msg.width, -1)',
         _REAL.format('cv-bridge'),
     ),
-    'launch': ('what launch files are written with. Here, lab.launch starts such a file', ''),
-    'launch_ros': ('what launch files are written with. Here, lab.launch starts such a file', ''),
+    **dict.fromkeys(
+        ('launch', 'launch_ros', 'launch_xml', 'launch_yaml', 'launch_testing', 'launch_pytest'),
+        ('what launch files are written with. Here, lab.launch starts such a file', ''),
+    ),
     'rospy': (
         'ROS 1, which has another interface. Lesson 01 has a table of what is what in rclpy',
         'ROS 1 is not supported any more.',
@@ -73,7 +75,46 @@ _UNAVAILABLE = {
         _REAL.format('moveit-configs-utils'),
     ),
     'sensor_msgs_py': ('a reader of point clouds', _REAL.format('sensor-msgs-py')),
-    'ros2cli': ('the program ros2. Here, %ros2 has its words', ''),
+    **dict.fromkeys(
+        ('ros2cli', 'ros2run', 'ros2launch', 'ros2topic', 'ros2node', 'ros2param', 'ros2bag'),
+        ('the program ros2. Here, %ros2 has its words', ''),
+    ),
+    **{
+        name: ('a part of tf2, the frames', _REAL.format(name.replace('_', '-')))
+        for name in ('tf2_py', 'tf2_kdl', 'tf2_sensor_msgs', 'tf2_tools')
+    },
+    **{
+        name: ('MoveIt, which plans how an arm moves', _REAL.format('moveit-py'))
+        for name in ('moveit', 'moveit_py')
+    },
+    'rosidl_runtime_py': (
+        'what finds a class by its name, and turns messages into text. Here, import the class '
+        'itself, and print the message',
+        _REAL.format('rosidl-runtime-py'),
+    ),
+    **{
+        name: (what, _REAL.format(name.replace('_', '-')))
+        for name, what in (
+            ('controller_manager', 'a part of ros2_control'),
+            ('diagnostic_updater', 'what tells the state of a device'),
+            ('image_geometry', 'the geometry of a camera'),
+            ('image_transport_py', 'what sends images in compressed form'),
+            ('laser_geometry', 'a converter of laser scans to point clouds'),
+            ('xacro', 'a language in which robots are described'),
+        )
+    },
+    'urdf_parser_py': ('a reader of descriptions of robots', _REAL.format('urdfdom-py')),
+    **dict.fromkeys(
+        ('rqt_gui', 'rqt_gui_py', 'rqt_py_common', 'python_qt_binding'),
+        ('the windows of rqt. Here, lab.graph, lab.monitor and lab.plot', ''),
+    ),
+    'actionlib': ('the actions of ROS 1; in ROS 2 they are in rclpy.action', ''),
+    'dynamic_reconfigure': ('a part of ROS 1; in ROS 2, a node has parameters', ''),
+    'moveit_commander': ('the MoveIt of ROS 1', ''),
+    **dict.fromkeys(
+        ('rosnode', 'rosparam', 'rosservice', 'rostopic', 'rosgraph', 'roslaunch', 'ros_numpy'),
+        ('a part of ROS 1, which has another interface', ''),
+    ),
 }
 # By their names, packages of types.
 _OF_TYPES = re.compile(r'\w+_(msgs|interfaces|srvs|actions)')
