@@ -85,6 +85,11 @@ def find(path: Path) -> Found:
         ) from error
     except OSError as error:
         raise LabError(f'{quoted(str(path))} can not be read: {error}.') from error
+    if path.exists():
+        raise LabError(
+            f'{quoted(str(path))} is no bag: it is neither a folder nor a regular file.',
+            todo='Pass the name of the folder that the bag is in.',
+        )
     raise _missing(path)
 
 

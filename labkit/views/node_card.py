@@ -32,14 +32,17 @@ def register() -> None:
 
 def node_card(node: Node) -> Card:
     """Return a node as a card: `ros2 node info` in short."""
-    from labkit.background.nodes import full_name, state_of
+    from labkit.background.nodes import full_name, has_begun, state_of
     from labkit.background.runtime import runtime
     from labkit.rosgraph.listings import ends_of_node
     from labkit.silent.watch import about
 
     name = full_name(node)
     if not name:
-        return Card('quiet', 'NODE', type(node).__name__, text='It has ended.')
+        text = 'It has ended.'
+        if not has_begun(node):
+            text = 'It is not a node yet: its __init__ has not called the one of Node.'
+        return Card('quiet', 'NODE', type(node).__name__, text=text)
     ends = ends_of_node(node, name)
     rows = [
         ('Publishes', _lines(ends.publishers)),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import random
 import re
 import shutil
@@ -56,6 +57,9 @@ def test_a_folder_that_is_no_bag(tmp_path: Path, messages: list[Stored]) -> None
     (tmp_path / 'other' / 'notes.txt').write_text('hello')
     assert 'holds no metadata.yaml' in complaint(tmp_path / 'other').message
     assert 'is no bag' in complaint(tmp_path / 'other' / 'notes.txt').message
+    os.mkfifo(tmp_path / 'pipe.mcap')
+    said = complaint(tmp_path / 'pipe.mcap').message
+    assert said.endswith('is no bag: it is neither a folder nor a regular file.')
 
 
 @pytest.mark.parametrize('inside', [False, True])

@@ -61,6 +61,9 @@ def test_node_that_is_not_spun_or_has_ended_says_so(
     assert data['text/plain'] == 'NODE: /idle\n  It is not spun: `lab.spin(node)` runs it.'
     data = show('lab.remove(node)\nnode')
     assert data['text/plain'] == 'NODE: Node\n  It has ended.'
+    data = show('class Half(Node):\n    def __init__(self):\n        pass\nHalf()')
+    said = 'It is not a node yet: its __init__ has not called the one of Node.'
+    assert data['text/plain'] == f'NODE: Half\n  {said}'
 
 
 def test_other_forms_stay(show: Callable[[str], dict[str, str]]) -> None:
