@@ -80,8 +80,7 @@ def parameters_in(path: str, node_name: str, *, wildcard: bool = True) -> dict[s
     """
     try:
         values = _values_in(path, node_name, wildcard)
-        make: Any = NodeParameter
-        return {key: make(key, value=value).to_parameter_msg() for key, value in values.items()}
+        return {key: _message(key, value) for key, value in values.items()}
     except OSError as error:
         raise LabError(f'{path} can not be read: {error.strerror}') from error
     except (AttributeError, TypeError, ValueError) as error:
@@ -89,6 +88,15 @@ def parameters_in(path: str, node_name: str, *, wildcard: bool = True) -> dict[s
             f'{path} is no file of parameters: {error}',
             todo=f'ros2 param dump {node_name} shows what such a file looks like.',
         ) from error
+
+
+def _message(name: str, value: Any) -> Parameter:
+    make: Any = NodeParameter
+    try:
+        found: Parameter = make(name, value=value).to_parameter_msg()
+    except AssertionError as error:  # an integer of more than 64 bits
+        raise ValueError(f'{name} can not be {quoted(value)}. {error}') from error
+    return found
 
 
 def _values_in(path: str, node_name: str, wildcard: bool) -> dict[str, Any]:

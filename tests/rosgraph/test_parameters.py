@@ -100,6 +100,10 @@ def test_the_nearest_name_in_a_file_is_told(tmp_path):
         ('hello', 'is no file of parameters'),
         ('{', 'is no file of parameters'),
         ('/lamp: {ros__parameters: 5}', 'is no file of parameters'),
+        (
+            f'/lamp: {{ros__parameters: {{speed: {"9" * 400}}}}}',
+            r'no file of parameters: speed can not be 9+ \.\.\. 9+\. .* must be an integer in',
+        ),
         ('/lamp: {speed: 5}', 'YAML file is not a valid ROS parameter file for node /lamp'),
     ],
 )
