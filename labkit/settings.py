@@ -15,6 +15,7 @@ from pathlib import Path
 from labkit import domain_ids
 
 __all__ = [
+    'LATE_SEC',
     'LEARNER',
     'LONG_SEC',
     'RECORDING',
@@ -39,6 +40,8 @@ after_start: list[Callable[[], None]] = []
 
 # A callback that takes so long is felt by people, s.
 LONG_SEC = 1.0
+# One that is shorter is not looked at: it is as likely the machine that was busy, s.
+LATE_SEC = 0.2
 
 is_ros2_command = False
 """Whether this process is `ros2` of a terminal: it is on the graph as the real one is."""

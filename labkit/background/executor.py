@@ -348,7 +348,7 @@ class BackgroundExecutor(Executor):
                 error = self._begin(work, entry)
             self._running = None
             took = time.monotonic() - self._running_since
-            if took >= settings.LONG_SEC or entry.took:
+            if took >= settings.LATE_SEC or entry.took:
                 entry.took[callback_name(what)] = took
             # The error of a node or action that was removed meanwhile is only that it was.
             if error is not None and not self._was_removed(entry, what, error):

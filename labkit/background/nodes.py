@@ -64,7 +64,7 @@ class NodeEntry:
         cell: The execution of the cell that started it.
         counts: Number of callbacks run for each timer, subscription and so on.
         budget: Number of callbacks left before the node leaves the executor, None for no limit.
-        took: Seconds that callbacks took the last time, by name, once one of them has taken long.
+        took: Seconds that callbacks took the last time, by name, once one has taken `LATE_SEC`.
         spins: The foreground spins of it, the last one of which gets what its callbacks raise.
         lasts: Whether it stays when these have ended.
     """

@@ -24,7 +24,7 @@ from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.names import is_hidden
 from labkit.rosgraph.snapshot import Graph, is_whole, read_graph
 from labkit.rosgraph.yaml_loading import load_yaml_file
-from labkit.settings import LONG_SEC
+from labkit.settings import LATE_SEC
 from labkit.silent.scene import (
     Client,
     LongCall,
@@ -253,7 +253,7 @@ def _long_calls(entry: NodeEntry | None) -> Iterator[LongCall]:
     if running is not None and running[0] is entry:
         took[running[1]] = max(running[2], took.get(running[1], 0.0))
     for callback, seconds in took.items():
-        if seconds >= LONG_SEC:
+        if seconds >= LATE_SEC:
             yield LongCall(callback, seconds)
 
 

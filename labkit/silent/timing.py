@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from labkit.settings import LONG_SEC
+from labkit.settings import LATE_SEC, LONG_SEC
 from labkit.silent.kinds import Fault, kind
-from labkit.silent.scene import OwnNode, Scene
+from labkit.silent.scene import LongCall, OwnNode, Scene
 
 __all__ = ['look_at_callbacks', 'look_at_clocks', 'look_at_timers']
 
@@ -71,6 +71,12 @@ LONG = kind(
     'Return sooner: no sleep, no endless loop. A timer that is called again and again does one '
     'step each time; work that takes long belongs in a thread.',
     'no other callback of this process is due meanwhile',
+)
+OVERRUN = kind(
+    'time.overrun',
+    'The timer fires less often than its period says: its callback takes longer',
+    'Return sooner, or give the timer a period that is longer than its callback takes.',
+    'the callback returns within the period, or the clock is simulated',
 )
 STUCK = kind(
     'time.stuck-callback',
@@ -210,6 +216,22 @@ def look_at_callbacks(scene: Scene) -> Iterator[Fault]:
                     f'{call.callback} of {node.name} takes {call.seconds:.1f} s; meanwhile '
                     'nothing else runs.',
                 )
+            elif (period := _overrun(node, call)) is not None:
+                yield Fault(
+                    OVERRUN,
+                    (node.name,),
+                    call.callback,
+                    f'{call.callback} of {node.name} takes {call.seconds:.2g} s, but its timer '
+                    f'has a period of {period:g} s, and fires no sooner than it has returned.',
+                )
+
+
+def _overrun(node: OwnNode, call: LongCall) -> float | None:
+    """Return the period of the timer whose callback takes longer than that, None if none does."""
+    timers = [timer for timer in node.timers if timer.callback == call.callback]
+    if node.sim_time or len(timers) != 1 or timers[0].is_canceled:
+        return None  # of two timers with callbacks of one name, it is not known which it was
+    return timers[0].period if max(timers[0].period, LATE_SEC) < call.seconds else None
 
 
 def _keeps_others(scene: Scene, node: OwnNode, callback: str) -> bool:

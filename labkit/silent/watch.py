@@ -31,6 +31,7 @@ from labkit.silent.kinds import Fault, in_words
 from labkit.silent.messages import checks_of, stamp_of
 from labkit.silent.reading import Reader
 from labkit.silent.scene import Scene
+from labkit.silent.timing import OVERRUN
 
 if TYPE_CHECKING:
     from labkit.rosgraph.snapshot import Graph
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
 __all__ = ['Watch', 'about', 'faults', 'seen_about', 'watch']
 
 EVERY_SEC = 1.0
+# What a queue did not hold, and how long a callback takes: a matter of how busy the machine is.
+_BY_CHANCE = (DEPTH, OVERRUN)
 _STYLE = (
     'border-left:0.4em solid var(--jp-warn-color1, #ef6c00);padding:0.3em 1em;margin:0.3em 0;'
     'max-width:60em;color:var(--jp-content-font-color1, inherit)'
@@ -115,8 +118,7 @@ class Watch:
             self._show_new()
 
     def _show_new(self) -> None:
-        # What a queue did not hold is a matter of how busy the machine is.
-        found = [fault for fault in self.look() if fault.is_aloud and fault.kind is not DEPTH]
+        found = [f for f in self.look() if f.is_aloud and f.kind not in _BY_CHANCE]
         if any(fault not in self._last for fault in found):
             time.sleep(EVERY_SEC)
             now = self.look()

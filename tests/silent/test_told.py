@@ -181,6 +181,10 @@ with runtime.executor.between_callbacks():
 lab.wait_until(lambda: len(heard) == 2)
 """,
 ]
+OVERRUN = """
+ear.create_timer(0.05, lambda: time.sleep(0.25))
+lab.wait_until(lambda: runtime.entry_of(ear).took)
+"""
 
 
 def test_a_burst_right_after_the_subscription_was_made_is_told(notebook: Kernel) -> None:
@@ -204,8 +208,8 @@ def test_it_is_the_last_output_of_a_cell_where_outputs_are_compared(
     assert sentence in kernel.run(code).text
     # What is mended in the same cell is not shown, and no thread looks.
     assert not kernel.run(f'{code}\nlab.remove(c)').text
-    # Nor is a full queue: a busy machine fills one.
-    for cell in BURST:
+    # Nor is a full queue, or a late timer: a busy machine makes them.
+    for cell in (*BURST, OVERRUN):
         ran = kernel.run(cell)
         assert not ran.error, ran.traceback
         assert not ran.text

@@ -19,6 +19,10 @@ _LONG = (
     'n.create_timer(0.01, tick)\n'
     'e = runtime.entry_of(n)\nlab.wait_until(lambda: e.took or {seconds} < 1 and e.counts)'
 )
+_OVERRUN = (
+    "n = node('sleeper')\ndef tick(): time.sleep(0.25)\nn.create_timer({period}, tick)\n"
+    'lab.wait_until(lambda: runtime.entry_of(n).took)'
+)
 
 CASES = {
     'time.no-clock': (
@@ -48,6 +52,7 @@ CASES = {
         _LONG.format(seconds=1.1, more='m.create_timer(0.5, heard)'),
         _LONG.format(seconds=0.01, more='m.create_timer(0.5, heard)'),
     ),
+    'time.overrun': (_OVERRUN.format(period=0.05), _OVERRUN.format(period=1)),
     'time.stuck-callback': (
         "free = threading.Event(); n = node('stuck'); begun = threading.Event()\n"
         'def tick(): begun.set(); free.wait()\n'
