@@ -317,7 +317,7 @@ def test_it_is_built_tested_and_run_without_labkit(source, kernel, lab_env, doma
     )
     heard = bash(
         'source install/setup.bash; ros2 run talk talker & '
-        'ros2 topic echo --once --timeout 60 /chatter; kill -INT $!; wait $!'
+        'ros2 topic echo --once --timeout 60 /chatter std_msgs/msg/String; kill -INT $!; wait $!'
     )
     # Where the talker is the slower one to start, a line before says that nobody publishes yet.
     assert "data: 'Hello World: " in heard.stdout, heard
