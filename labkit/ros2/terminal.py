@@ -41,8 +41,9 @@ def run(words: list[str]) -> int:
     try:
         choose_domain()
     except LabError as error:
-        print(error, file=sys.stderr)
-        return 2
+        if not _asks_nobody(words):
+            print(error, file=sys.stderr)
+            return 2
     from labkit.ros2.shell import execute
 
     settings.is_ros2_command = True
@@ -91,6 +92,11 @@ def choose_domain() -> None:
         )
     for domain_id in notebooks:
         domain_ids.set_domain(domain_id)
+
+
+def _asks_nobody(words: list[str]) -> bool:
+    """Tell whether a command reads only files, so that any domain will do."""
+    return words[:1] in ([], ['pkg'], ['interface']) or bool({'-h', '--help'} & {*words})
 
 
 def _profile(domains: Iterable[int]) -> str:

@@ -102,11 +102,12 @@ COMMAND = [sys.executable, '-m', 'labkit.ros2', 'pkg', 'prefix', 'nowhere']
 HOW = 'ros2 pkg list shows all that are installed.'
 
 
-def test_a_pipe_is_for_a_script_and_a_terminal_for_a_person(lab_env):
-    done = subprocess.run(COMMAND, env=lab_env, capture_output=True, text=True)
+def test_a_pipe_is_for_a_script_and_a_terminal_for_a_person(domain, lab_env):
+    env = {**lab_env, **domain}
+    done = subprocess.run(COMMAND, env=env, capture_output=True, text=True)
     assert (done.returncode, done.stdout, done.stderr) == (1, '', 'Package not found\n')
     ours, theirs = os.openpty()
-    done = subprocess.run(COMMAND, env=lab_env, stdout=theirs, stderr=subprocess.PIPE, text=True)
+    done = subprocess.run(COMMAND, env=env, stdout=theirs, stderr=subprocess.PIPE, text=True)
     os.close(ours)
     os.close(theirs)
     assert done.returncode == 1 and HOW in done.stderr

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from labkit import domain_ids
+from labkit import domain_ids, settings
 from labkit.background import domains
 from labkit.errors import LabError
 from labkit.ros2 import terminal
@@ -115,6 +115,17 @@ def test_domain_of_the_one_running_notebook(monkeypatch):
     monkeypatch.setenv('ROS_DOMAIN_ID', '3')
     terminal.choose_domain()
     assert os.environ['ROS_DOMAIN_ID'] == '3'
+
+
+def test_what_reads_files_needs_no_domain(monkeypatch, capsys):
+    monkeypatch.delenv('ROS_DOMAIN_ID', raising=False)
+    monkeypatch.setattr(settings, 'is_ros2_command', False)
+    monkeypatch.setattr(terminal, 'real_ros2', lambda: None)
+    monkeypatch.setattr(domains, 'claimed_domains', lambda: {7: 'a.ipynb', 9: 'b.ipynb'})
+    assert terminal.run(['topic', 'list']) == 2
+    assert 'Choose one' in capsys.readouterr().err
+    assert terminal.run(['pkg', 'prefix', 'std_msgs']) == 0
+    assert capsys.readouterr().out == f'{sys.prefix}\n'
 
 
 def test_a_kernel_claims_its_domain_by_the_name_of_its_notebook(start_kernel):
