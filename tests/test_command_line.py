@@ -214,6 +214,7 @@ def test_coverage_of_processes_too(course: Course) -> None:
     assert (course.venv / 'cache' / 'coverage' / 'index.html').is_file()
 
 
+@pytest.mark.slow('runs a small suite')
 def test_run_without_a_test_is_a_failure(course: Course) -> None:
     course.make_complete()
     done = course.run('test', '-k', 'nothing_has_this_name', '-n', '1')

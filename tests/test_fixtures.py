@@ -83,6 +83,7 @@ def test_expected_to_fail():
 """
 
 
+@pytest.mark.slow('runs pytest')
 @pytest.mark.parametrize(('required', 'exit_code'), [('', 0), ('0', 0), ('1', 1)])
 def test_a_skip_is_a_failure_where_all_is_required(
     tmp_path: Path, lab_env: dict[str, str], required: str, exit_code: int

@@ -70,6 +70,7 @@ def walk_own(node: ast.AST) -> Iterator[ast.AST]:
             yield from walk_own(child)
 
 
+@pytest.mark.slow('calls each public name')
 def test_what_always_raises_says_so() -> None:
     silent = []
     for path in sorted(ROOT.rglob('*.py')):

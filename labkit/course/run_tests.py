@@ -35,11 +35,12 @@ _FAST_TESTS = (
 )
 # The limit judges nothing. It ends a test that hangs.
 _PYTEST = ('pytest', '--nbval', '--timeout=900', '-p', 'tests.gate')
-# One worker more than processors: many tests mostly wait. With two for each the load is ten and
-# more, and there tests flake. A notebook runs in one worker from top to bottom, so that its cells
-# share a kernel. tests/conftest.py decides which files come first.
+# Two workers for each processor: many tests mostly wait. (Of the gate on two processors, three
+# took 13 min 16 s and left a quarter of them idle, four 12 min 17 s.) A notebook runs in one
+# worker from top to bottom, so that its cells share a kernel. tests/conftest.py decides which
+# files come first.
 _PROCESSORS = len(os.sched_getaffinity(0)) if hasattr(os, 'sched_getaffinity') else 2
-_PARALLEL = ('-n', str(_PROCESSORS + 1), '--dist', 'loadscope', '--no-loadscope-reorder')
+_PARALLEL = ('-n', str(2 * _PROCESSORS), '--dist', 'loadscope', '--no-loadscope-reorder')
 _GATE = ('-m', 'not slow and not quarantined')
 # More than that is no test that flakes: something is broken, and a second try would hide how much.
 _MOST_FLAKES = 12

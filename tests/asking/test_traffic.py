@@ -165,6 +165,7 @@ def test_publishers_of_other_processes_are_heard_between_cells(run_beside):
     assert run('print(counter._heard)') == '{}'
 
 
+@pytest.mark.slow('starts other processes')
 def test_what_another_process_hears_is_what_it_was_sent(run_beside):
     run = run_beside
     run('others = [start("other")]\ncounter.open()\nsay(3)\nnew = dict(passed())')

@@ -98,6 +98,7 @@ print(asker.client.send_goal(Fibonacci.Goal(order=1)).status, counter.goals)
     ), result.traceback
 
 
+@pytest.mark.slow('waits for what does not return')
 def test_a_goal_under_way_ends_with_its_node(kernel):
     kernel.run(NODES)
     kernel.run(START)
@@ -255,6 +256,7 @@ def test_a_client_that_is_destroyed_when_something_waits_for_it_is_no_error(scri
     assert (result.stdout, result.stderr) == ('True\nTrue\n', '')
 
 
+@pytest.mark.slow('waits for what does not return')
 def test_ros_stops_while_an_action_executes(kernel):
     kernel.run(NODES)
     kernel.run(

@@ -101,6 +101,7 @@ def test_bad_domain_is_said_in_the_cell_and_nothing_is_started(
     assert kernel.run('import os\nos.environ["ROS_DOMAIN_ID"] = ""\nlab.start()').error == ''
 
 
+@pytest.mark.slow('several kernels')
 def test_variable_wins_over_a_domain_of_its_own(
     start_kernel: Callable[..., object], script: Callable[..., object]
 ) -> None:

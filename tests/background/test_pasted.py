@@ -318,6 +318,7 @@ def test_arguments_of_init_replace_a_node_of_the_name_that_they_give(kernel):
     assert kernel.run('%ros2 node list').text == '/other\n/server\n'
 
 
+@pytest.mark.slow('a kernel for each argument')
 @pytest.mark.parametrize(
     ('args', 'words'),
     [

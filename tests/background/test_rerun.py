@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 TALKER = """
 import labkit as lab
 from rclpy.node import Node
@@ -65,6 +67,7 @@ print([info.node_name for info in talker.get_publishers_info_by_topic('/chatter'
     assert kernel.run(code).text == "['talker']\n"
 
 
+@pytest.mark.slow('waits for what does not return')
 def test_removing_a_node_whose_callback_does_not_return_ends_soon(kernel):
     kernel.run(TALKER)
     code = """

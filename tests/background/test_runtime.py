@@ -254,6 +254,7 @@ def test_message_classes_loaded_before_labkit_check_their_fields_too(kernel):
     assert 'AssertionError' in kernel.run('import labkit\nInt16(data=40000)').error
 
 
+@pytest.mark.slow('waits in real time')
 def test_headless_output_of_callbacks_is_cut_where_the_wait_ended(
     start_kernel: Callable[..., object],
 ):

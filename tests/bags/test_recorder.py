@@ -239,6 +239,7 @@ def test_wrong_arguments_are_told(arguments: dict[str, Any], words: str) -> None
     assert not Path('drive').exists()
 
 
+@pytest.mark.slow('waits for messages that do not come')
 def test_why_nothing_comes_is_told(talker: Node) -> None:
     publisher = talker.create_publisher(String, '/chatter', 10)
     other = Node('other')

@@ -83,6 +83,7 @@ def test_the_kernel_is_killed(tmp_path: Path, lab_env: dict[str, str], storage: 
         assert last is not None and int(last.message.data.split()[0]) == numbers[-1]
 
 
+@pytest.mark.slow('records until something ends it')
 @BOTH
 def test_the_disk_fills_up(tmp_path: Path, script: Callable[..., Any], storage: str) -> None:
     done = script(SCRIPT + FULL.format(storage=storage))
@@ -136,6 +137,7 @@ with lab.record({str(tmp_path / 'drive')!r}, '/chatter') as recording:
         assert bag.note == ''
 
 
+@pytest.mark.slow('records until something ends it')
 def test_a_kernel_that_is_shut_down_leaves_a_whole_bag(tmp_path: Path, kernel: Any) -> None:
     kernel.run(SCRIPT)
     path = str(tmp_path / 'drive')

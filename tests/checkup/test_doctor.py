@@ -58,6 +58,7 @@ def test_headless_report_is_the_same_on_any_healthy_machine(
     assert elsewhere.text.strip() == first['text/plain']
 
 
+@pytest.mark.slow('the doctor looks for other processes')
 def test_headless_doctor_lets_no_output_of_callbacks_through(
     start_kernel: Callable[..., object],
 ) -> None:
@@ -156,6 +157,7 @@ def run_as_cell(kernel, cell_id: str, code: str) -> None:
     assert not kernel.finish(message['header']['msg_id']).error
 
 
+@pytest.mark.slow('the doctor looks for other processes')
 def test_a_robot_that_its_timeout_has_stopped_is_no_fault_and_told(kernel) -> None:
     kernel.run(SETUP)
     kernel.run('robot = lab.spin(lab.Turtlebot(command_timeout=0.2))')
@@ -184,6 +186,7 @@ def test_nodes_that_nobody_spins(kernel) -> None:
     assert look(kernel).exit_code == 0
 
 
+@pytest.mark.slow('the doctor looks for other processes')
 def test_node_that_an_edited_cell_left_behind(kernel) -> None:
     kernel.run(SETUP)
     run_as_cell(kernel, 'start', 'lab.spin(Node("talker"))')
@@ -229,6 +232,7 @@ def test_double_in_another_process(start_kernel: Callable[..., object], domain_i
     assert look(kernel).exit_code == 0
 
 
+@pytest.mark.slow('the doctor looks for other processes')
 def test_domain_that_was_changed_after_the_start(kernel, domain_id: str) -> None:
     kernel.run(SETUP + f'import os\nlab.start()\nos.environ["ROS_DOMAIN_ID"] = "{domain_id}"')
     seen = look(kernel)

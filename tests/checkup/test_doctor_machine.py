@@ -130,6 +130,7 @@ def bare_env(lab_env: dict[str, str]) -> dict[str, str]:
     return {name: value for name, value in lab_env.items() if name not in lost}
 
 
+@pytest.mark.slow('makes an environment')
 def test_other_environment_with_all_packages_is_healthy(
     environment: Environment, bare_env: dict[str, str]
 ) -> None:

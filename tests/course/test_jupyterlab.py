@@ -112,6 +112,7 @@ def test_page_with_all_lessons_opens_once_a_learner_has_begun(ready: Course) -> 
     assert '[00 Start here](00_start_here.ipynb)' in page
 
 
+@pytest.mark.slow('starts JupyterLab')
 def test_port_in_use(ready: Course) -> None:
     with socket.socket() as taken:
         taken.bind(('127.0.0.1', 0))

@@ -123,6 +123,7 @@ def test_the_kernel_does_not_depend_on_who_starts_it(
     assert lines == ['1', reach, 'None', '24', 'None', 'None', 'None', home, session]
 
 
+@pytest.mark.slow('runs notebooks')
 @pytest.mark.parametrize(
     ('source', 'tag', 'words'),
     [
@@ -189,6 +190,7 @@ def test_earlier_cells_run_first(folder: Path):
         assert shown(run.execute(3)) == '[1, 2]'
 
 
+@pytest.mark.slow('runs notebooks')
 def test_nothing_is_left_running(folder: Path):
     source = """
         import os, subprocess, tempfile

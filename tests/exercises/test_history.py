@@ -196,6 +196,7 @@ class Late(Node):
         self.publisher.publish(Int16(data=1))
 
 
+@pytest.mark.slow('several checks')
 @pytest.mark.parametrize('before', [0, 1])
 @pytest.mark.parametrize(('more', 'seen'), [(0, ''), (4, 'in between')])
 def test_node_that_was_held_up_makes_up_for_that_alone(

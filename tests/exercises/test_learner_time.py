@@ -177,6 +177,7 @@ WORKS = [
 ]
 
 
+@pytest.mark.slow('two checks of half a minute for each')
 @pytest.mark.parametrize('work', WORKS)
 def test_a_thread_that_waits_is_seen_exactly(lab: ModuleType, work: Any) -> None:
     with thread(work):
@@ -236,6 +237,7 @@ def test_code_that_is_not_the_learners_has_the_computers_time(lab: ModuleType) -
     assert began.seconds < 10
 
 
+@pytest.mark.slow('two checks of half a minute for each')
 @pytest.mark.parametrize('left', [1e-12, 1e-10, 4e-10, 1e-9])
 def test_a_wait_for_less_than_a_nanosecond_lasts_some_time(lab: ModuleType, left: float) -> None:
     """A sum of two floats leaves as much: a wait that lasted no time would never end."""

@@ -63,6 +63,7 @@ def test_functions_that_go_by_another_time_are_named(space: dict[str, Any]) -> N
     assert other_times(vars(sys.modules[__name__])) == []
 
 
+@pytest.mark.slow('several checks')
 def test_a_verdict_says_what_it_could_not_see(
     lab: ModuleType, space: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -58,6 +58,7 @@ def test_a_check_without_a_task_answers_at_once(kernel: Any) -> None:
     assert 'FAIL: ones' in kernel.run('lesson.ones.check()').text
 
 
+@pytest.mark.slow('a check that is held up')
 def test_the_answer_takes_the_place_of_the_waiting(kernel: Any) -> None:
     kernel.run(SETUP)
     kernel.run(TASK.format(value=1))

@@ -60,6 +60,7 @@ def test_other_notebook_is_named(start_kernel: Callable[..., Any]) -> None:
     assert '/mine in this notebook' in found.text
 
 
+@pytest.mark.slow('starts other processes')
 def test_script_that_was_just_started_is_waited_for(start_kernel: Callable[..., Any]) -> None:
     claim = claim_domain()
     kernel = start_kernel(

@@ -67,6 +67,7 @@ def test_a_class_that_is_never_used_is_named(kernel: Any) -> None:
     assert 'the class Ones' not in kernel.run('lesson.ones.check()').text
 
 
+@pytest.mark.slow('several kernels')
 def test_a_node_with_a_name_that_the_lesson_uses_is_the_learners(kernel: Any) -> None:
     kernel.run('import labkit as lab; lesson = lab.lesson("odds")')
     kernel.run('from rclpy.node import Node\nfrom std_msgs.msg import Int16')
@@ -101,6 +102,7 @@ SPIN_IN_THREAD = (
 )
 
 
+@pytest.mark.slow('several kernels')
 @pytest.mark.parametrize(
     ('how', 'said', 'spin'),
     [

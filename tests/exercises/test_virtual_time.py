@@ -221,6 +221,7 @@ def test_a_timer_without_a_period_floods(lab: ModuleType) -> None:
     assert see({'/odds': INT16}, {'/counter'}).flooded
 
 
+@pytest.mark.slow('several checks')
 def test_output_is_counted_and_not_shown(kernel: Any) -> None:
     kernel.run(
         'import labkit as lab\nfrom rclpy.node import Node\n'
@@ -470,6 +471,7 @@ def check_works(lab: ModuleType) -> Verdict:
     return exercise.examine()
 
 
+@pytest.mark.slow('several checks')
 @pytest.mark.parametrize('work', WORKS)
 def test_a_callback_that_takes_longer_than_the_period_of_its_timer_is_told_so(
     lab: ModuleType, work: str
@@ -481,6 +483,7 @@ def test_a_callback_that_takes_longer_than_the_period_of_its_timer_is_told_so(
     assert 'its timer is due every 0.25 s' in verdict.why
 
 
+@pytest.mark.slow('several checks')
 @pytest.mark.parametrize('work', WORKS)
 def test_an_executor_of_the_learners_own_has_no_more_time(lab: ModuleType, work: str) -> None:
     executor = SingleThreadedExecutor()

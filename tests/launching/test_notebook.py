@@ -71,6 +71,7 @@ def test_a_fault_is_an_error_of_the_cell(kernel, tmp_path):
     assert 'launch' not in kernel.run('import sys\nprint("launch" in sys.modules)').text
 
 
+@pytest.mark.slow('waits for what does not end')
 def test_a_file_that_never_comes_to_its_end_is_ended(kernel, tmp_path):
     path = write(tmp_path, {'long.launch.py': 'while True:\n    pass\n'})
     kernel.run('import labkit as lab\nfrom labkit.launching import launched')

@@ -109,6 +109,7 @@ def test_same_drive_gives_the_same_path_on_a_calm_and_on_a_busy_machine(script: 
             assert numbers[0] == pytest.approx(numbers[1], abs=1e-6)
 
 
+@pytest.mark.slow('several checks')
 def test_robot_is_in_real_time_again_after_the_check(script: Script) -> None:
     code = """
 from geometry_msgs.msg import Twist
@@ -174,6 +175,7 @@ idle.create_timer(0.1, lambda: zeros.publish(Twist()))
 }
 
 
+@pytest.mark.slow('several checks')
 @pytest.mark.parametrize('other', STANDING)
 def test_what_else_drives_by_a_timer_stands_still_meanwhile(script: Script, other: str) -> None:
     done = script(START + bot.answer.code + STANDING[other] + CHECK.format(name='bot'))

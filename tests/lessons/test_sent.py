@@ -219,6 +219,7 @@ def test_cells_of_the_exercises_run_after_a_restart(notebook: Any) -> None:
         assert check(notebook, name).startswith('NOT ATTEMPTED')
 
 
+@pytest.mark.slow('works through a lesson')
 def test_commands_without_percent_are_told_so(notebook: Any) -> None:
     bare = ''.join(ONE.format(number) for number in (1, 3, 5)).replace('%', '')
     for cell in (bare, ONE.format(1) + bare, f'$ {bare}', f'number = 1\n{bare}'):

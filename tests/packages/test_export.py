@@ -243,6 +243,7 @@ def test_a_folder_that_is_there(notebook, kernel):
     assert (own / 'setup.py').exists()
 
 
+@pytest.mark.slow('exports several packages')
 def test_a_folder_of_another_name_that_has_the_package(notebook, kernel):
     notebook(TALKER, EXPORT.format('Talker'))
     src = kernel.folder / 'src'

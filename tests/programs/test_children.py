@@ -47,6 +47,7 @@ STARTED = {
 }
 
 
+@pytest.mark.slow('starts other processes')
 @pytest.mark.parametrize('how', STARTED)
 def test_a_child_is_seen_starting_and_can_be_interrupted(
     start_kernel: Any, env: dict[str, str], how: str

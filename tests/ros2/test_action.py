@@ -169,6 +169,7 @@ def test_what_is_wrong_with_a_goal_is_said_before_it_is_sent(ros2):
         assert (answer.code, answer.out) == (1, '')
 
 
+@pytest.mark.slow('starts other processes')
 def test_the_stop_button_cancels_a_goal(start_kernel, counter, domain):
     kernel = start_kernel(**domain)
     kernel.run('import labkit as lab\n%load_ext labkit.ros2')

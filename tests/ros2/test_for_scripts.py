@@ -122,6 +122,7 @@ def test_a_cell_explains_whatever_runs_the_command(start_kernel):
         assert HOW in kernel.run(cell).text, cell
 
 
+@pytest.mark.slow('starts other processes')
 @pytest.mark.usefixtures('robot')
 def test_it_is_on_the_graph_as_the_real_one(domain, lab_env):
     def run(*words: str) -> str:

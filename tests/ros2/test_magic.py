@@ -114,6 +114,7 @@ def test_endless_lines_are_refused_where_nobody_can_stop_them(start_kernel):
     assert len(result.text.splitlines()) == 2
 
 
+@pytest.mark.slow('starts other processes')
 def test_a_cell_shows_no_more_than_it_can_bear(kernel, cell):
     cell("""
 class Fast(Node):
@@ -153,6 +154,7 @@ TABS = {
 }
 
 
+@pytest.mark.slow('starts other processes')
 def test_tab_key(kernel, cell):
     for code, words in TABS.items():
         assert complete(kernel, code) == words
@@ -244,6 +246,7 @@ def test_exclamation_mark_finds_the_ros2_of_the_environment(start_kernel, domain
     assert said.split() == ['/talker']
 
 
+@pytest.mark.slow('starts other processes')
 def test_stopped_process_has_left_the_graph(lab_kernel):
     lab_kernel.run(RUN.format('talker'))
     assert lab_kernel.run('processes().stop()\n%ros2 node list').text == ''
@@ -265,6 +268,7 @@ print(supervisor, child)
 """
 
 
+@pytest.mark.slow('starts other processes')
 @pytest.mark.parametrize('how', ['kill the kernel', 'shut down', 'kill the supervisor'])
 def test_processes_end_with_the_kernel_whatever_ends_it(lab_kernel, how):
     assert not lab_kernel.run(RUN.format('talker')).error

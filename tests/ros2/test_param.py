@@ -120,6 +120,7 @@ def test_write(ros2, tmp_path):
     assert {answer.code for answer in (out_of_range, kind, wrong_file, no_file)} == {1}
 
 
+@pytest.mark.slow('starts other processes')
 def test_wrong_names(ros2):
     node, name, described, hidden = ros2(
         'param list /lump',

@@ -200,6 +200,7 @@ def test_every_line_ends_with_a_code_and_no_traceback(capsys, start, words):
     assert 'Traceback' not in capsys.readouterr().err
 
 
+@pytest.mark.slow('thousands of lines')
 @settings(
     max_examples=1_000, deadline=None, database=None, suppress_health_check=list(HealthCheck)
 )

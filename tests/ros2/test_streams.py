@@ -23,6 +23,7 @@ def test_echo_shows_messages_as_yaml(ros2):
     assert second == first + 1
 
 
+@pytest.mark.slow('starts other processes')
 def test_echo_shows_less_or_in_another_form(ros2):
     short, words, full, flow, csv, no_text, info, info_csv, raw = ros2(
         'topic echo /scan --once --field ranges --truncate-length 3',
@@ -57,6 +58,7 @@ def test_echo_cuts_long_arrays(ros2):
     assert "- '...'" in message.lines
 
 
+@pytest.mark.slow('starts other processes')
 def test_echo_says_what_is_wrong(ros2):
     field, kind, topic, silent, quiet = ros2(
         'topic echo /odom --field pose.pose.postion',
@@ -130,6 +132,7 @@ sys.exit(run_line('topic echo /late --once --timeout 30'))
 """
 
 
+@pytest.mark.slow('starts other processes')
 def test_echo_waits_for_a_topic_that_does_not_exist_yet(script, domain):
     result = script(LATE, **domain)
     assert result.stdout == (
@@ -200,6 +203,7 @@ def test_pub_reaches_a_node_of_another_process(ros2):
     assert answers[-1].out == 'data: 1,3,5,5\n---\n'
 
 
+@pytest.mark.slow('starts other processes')
 def test_pub_waits_for_subscribers_and_says_so(ros2):
     waiting, near, alone, several, default, pointless = ros2(
         'topic pub -w 1 --max-wait-time-secs 0.3 --once /nobody std_msgs/msg/Int16',

@@ -39,6 +39,7 @@ def test_one_command_after_the_other(domain, lab_env):
     assert err.startswith("Unknown topic '/nowhere'\n")
 
 
+@pytest.mark.slow('starts other processes')
 @pytest.mark.usefixtures('robot')
 def test_ctrl_c_ends_a_stream(domain, lab_env):
     process = start('topic', 'echo', '/chatter', env={**lab_env, **domain})
@@ -61,6 +62,7 @@ def test_a_pipe_that_ends_early(domain, lab_env):
     process.stderr.close()
 
 
+@pytest.mark.slow('starts other processes')
 def test_run_stays_in_front(domain, lab_env):
     env = {**lab_env, **domain, 'PYTHONUNBUFFERED': '1'}
     process = start('run', 'demo_nodes_py', 'talker', env=env, start_new_session=True)

@@ -152,6 +152,7 @@ def run(script, code, *kind):
     return result.stdout
 
 
+@pytest.mark.slow('starts other processes')
 def test_forged_names_neither_stop_the_graph_nor_run(script):
     said = run(script, VICTIM)
     topics, nodes, text, picture = json.loads(said.splitlines()[-1])
@@ -161,6 +162,7 @@ def test_forged_names_neither_stop_the_graph_nor_run(script):
     assert '&lt;img' in picture and '<img' not in picture
 
 
+@pytest.mark.slow('starts other processes')
 @pytest.mark.parametrize('kind', ['empty', 'bytes'])
 def test_a_name_that_keeps_ros_from_all_others_is_told(script, kind):
     assert 'announces a name that is empty or no text' in run(script, REFUSED, kind)

@@ -273,6 +273,7 @@ def test_wrong_python_is_named(course: Course, version: str) -> None:
     assert f'with {fitting}, Python' in done.stdout
 
 
+@pytest.mark.slow('makes environments')
 def test_python_without_ensurepip(course: Course) -> None:
     code = '(sys.modules.update(ensurepip=None), labkit.setup.environment.make_environment())'
     assert 'sudo apt install python3.' in sentence(course.python(code, PATH=BARE_PATH))

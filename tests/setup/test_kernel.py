@@ -144,6 +144,7 @@ def test_its_packages_stay_its_own(kernel: Kernel) -> None:
     assert kernel.run(f'{ENTER}\nimport sys\nprint(sys.path.count({str(ROOT)!r}))')[1] == '1\n'
 
 
+@pytest.mark.slow('a kernel of another environment')
 def test_what_a_node_says_belongs_to_its_cell(kernel: Kernel) -> None:
     cell, _, kinds = kernel.run(TALKER)
     assert 'error' not in kinds

@@ -253,6 +253,7 @@ def test_the_domain_of_the_notebook_itself_and_the_same_twice(started: None, sha
             pass
 
 
+@pytest.mark.slow('starts other processes')
 def test_waiting_in_vain_says_what_to_look_at(
     start_kernel: Start, started: None, shared: int
 ) -> None:

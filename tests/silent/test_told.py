@@ -94,6 +94,7 @@ def test_each_is_told_under_its_cell_and_gone_when_it_is_mended(notebook: Kernel
         notebook.run('lab.stop()\nlab.start()')
 
 
+@pytest.mark.slow('waits in real time')
 def test_a_rate_that_nobody_spins_is_told_while_it_hangs(notebook: Kernel) -> None:
     cell = notebook.start("n = Node('sleepy')\nn.create_rate(10).sleep()")
     said = 'sleep() of a rate waits for /sleepy, which nobody spins: for ever.'
@@ -149,6 +150,7 @@ def test_it_is_told_wherever_one_looks(notebook: Kernel) -> None:
     assert 'All is well' in notebook.run('print(lab.doctor())').text
 
 
+@pytest.mark.slow('waits in real time')
 def test_the_doctor_hides_no_fault_behind_another(notebook: Kernel) -> None:
     made = notebook.run("""
 from rclpy.qos import qos_profile_sensor_data
@@ -187,6 +189,7 @@ lab.wait_until(lambda: runtime.entry_of(ear).took)
 """
 
 
+@pytest.mark.slow('waits in real time')
 def test_a_burst_right_after_the_subscription_was_made_is_told(notebook: Kernel) -> None:
     made = notebook.run(''.join(BURST))
     assert not made.error, made.traceback

@@ -178,6 +178,7 @@ def test_it_drives_in_real_time_and_stops_when_commands_stop(stage: Stage) -> No
     assert not driver.warnings
 
 
+@pytest.mark.slow('waits in real time')
 def test_real_time_keeps_the_rates(stage: Stage) -> None:
     stage.robot()
     driver = stage.driver()

@@ -76,6 +76,7 @@ def test_words_and_picture_of_a_robot(kernel):
     assert 'polyline' in picture_of(shown(kernel.run('view')))
 
 
+@pytest.mark.slow('waits in real time')
 def test_before_a_robot_is_heard_it_says_what_to_do(kernel):
     kernel.run('import labkit as lab')
     data = shown(kernel.run('lab.arena()'))
@@ -252,6 +253,7 @@ def test_robot_that_was_put_elsewhere_has_a_new_trail(kernel):
     assert float(kernel.run('print(max(x for x, _ in view.scenes[""].trail))').text) < -0.8
 
 
+@pytest.mark.slow('waits in real time')
 def test_a_bump_is_told_until_the_robot_drives_on(kernel):
     kernel.run(ROBOT)
     kernel.run(f'view = lab.arena()\n{SPY}\ndisplay(view)\nrobot.place(x=2.2)')
@@ -300,6 +302,7 @@ def test_page_that_comes_later_learns_what_was_seen_before(kernel):
     assert told == '[True, False]\n'
 
 
+@pytest.mark.slow('waits in real time')
 def test_says_why_nothing_comes(kernel):
     kernel.run(ROBOT)
     # In one process, a publisher of another type would keep it from subscribing.

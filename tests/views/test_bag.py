@@ -66,6 +66,7 @@ def test_words_tell_topics_counts_rates_and_times(tmp_path, storage):
         assert 400 < width <= 800 and 400 < height <= 1000
 
 
+@pytest.mark.slow('reads bags in kernels of their own')
 def test_for_programs_nothing_depends_on_the_time(tmp_path, drive, start_kernel):
     kernel = start_kernel(LABKIT_HEADLESS='1')
     result = kernel.run(f'import labkit as lab\nlab.bag({str(drive)!r}, {X!r})')

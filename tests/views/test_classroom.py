@@ -60,6 +60,7 @@ def test_it_looks_while_it_is_seen_and_in_a_thread_of_its_own(stage):
     assert stage('print("has ended" in page.known["ended"])') == 'True'
 
 
+@pytest.mark.slow('waits for what does not answer')
 def test_a_folder_that_does_not_answer_holds_up_nothing(stage):
     stage('view = Classroom(look, names=True)\npage = Page(view)')
     stage('lab.wait_until(lambda: page.known["figures"][0] > 2, timeout_sec=60)')

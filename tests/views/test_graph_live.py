@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 STAGE = """
 import labkit as lab
 from labkit.asking import traffic
@@ -49,6 +51,7 @@ class Page:
 """
 
 
+@pytest.mark.slow('waits in real time')
 def test_follows_what_comes_and_goes(run):
     run('view = lab.graph()\npage = Page(view)')
     assert run('print(page.known["svg"] == "", page.known["changed"])') == 'True False'
@@ -94,6 +97,7 @@ def test_tells_of_each_part_what_it_is(run):
     ]
 
 
+@pytest.mark.slow('waits in real time')
 def test_tells_which_messages_pass_and_how_often(run):
     run('talker = lab.spin(Talker())\nlab.spin(Listener())\npage = Page(lab.graph())')
     run('talker.say(5)')

@@ -147,6 +147,7 @@ def test_page_gets_the_newest_picture_and_each_once(run):
     assert run('print([bool(b) for _, b in sent][0])') == 'True'
 
 
+@pytest.mark.slow('waits in real time')
 def test_page_is_told_what_is_wrong(run):
     run(f"view = lab.image('/eye')\n{SPY}\ndisplay(view)\nsay('seen')\nshoot('yuv422')")
     run(

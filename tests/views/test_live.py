@@ -76,6 +76,7 @@ def test_listens_while_a_page_shows_it(run, code, topics):
         assert run('print(load() == before)') == str('close' in leave)
 
 
+@pytest.mark.slow('waits in real time')
 @each_view
 def test_page_that_has_crashed_leaves_nothing(run, code, topics):
     run('live_page.GONE_SEC = live_page.CATCH_UP_SEC = 0.2')
@@ -93,6 +94,7 @@ def test_view_that_no_page_ever_shows_leaves_nothing(run):
     run('await wait_for_load(before)')
 
 
+@pytest.mark.slow('waits in real time')
 @each_view
 def test_page_hears_that_the_kernel_is_there(run, code, topics):
     # Though there is nothing to say of a topic without messages.

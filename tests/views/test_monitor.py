@@ -110,6 +110,7 @@ def test_other_type_than_asked_for(run):
     run('page.wait(lambda known: known.get("values"))')
 
 
+@pytest.mark.slow('waits in real time')
 @pytest.mark.parametrize(
     ('qos', 'words'),
     [
@@ -141,6 +142,7 @@ def test_qos_that_does_not_match_is_told(run):
     assert run('print(page.known["count"])') == '0'
 
 
+@pytest.mark.slow('waits in real time')
 def test_publisher_that_says_nothing(run):
     run('talker = lab.spin(Talker(period=None))\npage = Page(lab.monitor("/odds"))')
     run('page.wait(lambda known: "nothing came from it" in known["note"])')
@@ -241,6 +243,7 @@ def test_still_text_of_a_robot_has_no_time(run_still):
     assert 'ranges: [2.532, ' in run_still('print(lab.monitor("/scan"))').text
 
 
+@pytest.mark.slow('waits in real time')
 def test_still_text_says_why_nothing_comes(run_still):
     run_still('talker = lab.spin(Talker())')
     text = run_still('print(lab.monitor("/odds", msg_type=String))').text
@@ -261,6 +264,7 @@ def test_wrong_words_are_answered(run):
         assert words in caught
 
 
+@pytest.mark.slow('waits in real time')
 def test_hears_other_processes(start_kernel):
     claim = claim_domain()
     env = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'ROS_DOMAIN_ID': str(claim.domain_id)}

@@ -137,6 +137,7 @@ def test_all_of_a_thousand_messages_a_second_are_taken(run):
     run('lab.wait_until(lambda: plot.numbers()[-1] == talker.count % 1000)')
 
 
+@pytest.mark.slow('waits in real time')
 def test_still_form_is_the_same_each_time(run_still):
     text = run_still('print(lab.plot("/odds.data"))').text
     assert text.startswith('Nobody publishes on /odds.')

@@ -55,6 +55,7 @@ wait_for((0.0, 0.0))
     assert pilot('print(pilot.published, pilot.count == len(heard))') == '(0.0, 0.0) True'
 
 
+@pytest.mark.slow('waits in real time')
 def test_while_no_key_is_held_it_publishes_nothing(pilot):
     pilot("""
 ticks = []

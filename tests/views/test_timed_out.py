@@ -50,6 +50,7 @@ def test_the_card_tells_it(run) -> None:
     assert 'It runs in the background.\n' in stepped
 
 
+@pytest.mark.slow('waits in real time')
 def test_the_arena_tells_it(run) -> None:
     run('stop()')
     assert f'heading 0°. It {WHY} Nearest obstacle' in run('print(lab.arena())')
@@ -71,6 +72,7 @@ def test_the_monitor_tells_it(run, topic: str) -> None:
     assert 'stands' not in run('print(lab.monitor("/robot1/scan"))')
 
 
+@pytest.mark.slow('waits in real time')
 def test_without_a_page_the_monitor_tells_it_too(run_still) -> None:
     run_still('stop()')
     assert run_still('print(lab.monitor("/robot1/odom"))').text.endswith(f'The robot {WHY}\n')
