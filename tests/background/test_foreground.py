@@ -409,7 +409,6 @@ def test_the_last_cell_of_a_program_that_exits_says_so_only_of_a_spin(kernel):
     assert 'use %tb to see' in kernel.run('sys.exit(4)').traceback
 
 
-@pytest.mark.slow('a kernel for each way')
 @pytest.mark.parametrize('how', QUICK)
 def test_a_handler_of_the_learners_own_hears_the_stop_button(kernel, how):
     kernel.run(SETUP)

@@ -157,7 +157,6 @@ def run_as_cell(kernel, cell_id: str, code: str) -> None:
     assert not kernel.finish(message['header']['msg_id']).error
 
 
-@pytest.mark.slow('the doctor looks for other processes')
 def test_a_robot_that_its_timeout_has_stopped_is_no_fault_and_told(kernel) -> None:
     kernel.run(SETUP)
     kernel.run('robot = lab.spin(lab.Turtlebot(command_timeout=0.2))')

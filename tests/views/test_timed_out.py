@@ -50,7 +50,6 @@ def test_the_card_tells_it(run) -> None:
     assert 'It runs in the background.\n' in stepped
 
 
-@pytest.mark.slow('waits in real time')
 def test_the_arena_tells_it(run) -> None:
     run('stop()')
     assert f'heading 0°. It {WHY} Nearest obstacle' in run('print(lab.arena())')
