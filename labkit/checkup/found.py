@@ -16,7 +16,8 @@ class Found(LabError):
     """Faults that were found together.
 
     Args:
-        faults: What was seen and what to do, the one to be mended first at the beginning.
+        faults: What was seen and what to do, the one to be mended first at the beginning; '' where
+            there is nothing to do.
 
     Attributes:
         lines: What was seen, and below it what to do; once for faults that are mended alike.
@@ -27,6 +28,9 @@ class Found(LabError):
         for text, todo in faults:
             seen.setdefault(todo, []).append(text)
         self.lines = tuple(
-            line for todo, texts in seen.items() for line in (*texts, f'{TODO}{todo}')
+            line
+            for todo, texts in seen.items()
+            for line in (*texts, *[f'{TODO}{todo}'] * bool(todo))
         )
-        super().__init__(' '.join(text for text, _ in faults), todo=' '.join(seen))
+        todo = ' '.join(filter(None, seen))
+        super().__init__(' '.join(text for text, _ in faults), todo=todo)

@@ -203,10 +203,11 @@ def nodes() -> str:
         return 'none'
     entries = [entry for entry in runtime.nodes() if not is_hidden(entry.name)]
     found = [*_unspun(runtime), *_left_behind(entries), *_doubles(runtime, entries)]
-    _raise_for_faults('parameters', 'remap', 'life', besides=found)
+    states = _states(entries)
+    _raise_for_faults('parameters', 'remap', 'life', besides=found, also=states)
     if not entries:
         return 'none'
-    return '. '.join([first_few([entry.name for entry in entries]), *_states(entries)])
+    return '. '.join([first_few([entry.name for entry in entries]), *states])
 
 
 def _states(entries: list[NodeEntry]) -> list[str]:
@@ -347,7 +348,10 @@ def callbacks() -> str:
 
 
 def _raise_for_faults(
-    *groups: str, besides: Sequence[tuple[str, str]] = (), said: Collection[str] = ()
+    *groups: str,
+    besides: Sequence[tuple[str, str]] = (),
+    said: Collection[str] = (),
+    also: Sequence[str] = (),
 ) -> None:
     """Raise a LabError if there are silent faults of some groups of kinds.
 
@@ -355,6 +359,7 @@ def _raise_for_faults(
         groups: The groups.
         besides: What else was found, with what to do.
         said: Topics of which it was said that their ends do not match.
+        also: What is no fault, and is told beside one.
     """
     from labkit.silent.watch import faults
 
@@ -371,7 +376,7 @@ def _raise_for_faults(
         ),
     ]
     if told:
-        raise Found(told)
+        raise Found([*told, *((text, '') for text in also)])
 
 
 def _runtime() -> Runtime | None:

@@ -168,6 +168,10 @@ def test_a_robot_that_its_timeout_has_stopped_is_no_fault_and_told(kernel) -> No
     lines = ' '.join(kernel.run('print(lab.doctor())').text.split())
     assert '/turtlebot. /turtlebot stands: no command for 0.2 s; its time limit' in lines
     assert look(kernel).exit_code == 0
+    # It is told beside a fault, too.
+    kernel.run('idle = Node("idle")')
+    nodes = look(kernel).red['Nodes']
+    assert '/idle was made' in nodes and '/turtlebot stands: no command' in nodes
 
 
 def test_nodes_that_nobody_spins(kernel) -> None:
