@@ -311,10 +311,6 @@ class Kernel:
             kind, content = message['msg_type'], message['content']
             if kind == 'clear_output':
                 outputs.clear()
-            if kind == 'update_display_data' and updated:
-                for output in outputs:
-                    if output.get('transient') == content['transient']:
-                        output['data'] = content['data']
             if kind not in ('stream', 'display_data', 'execute_result', 'error'):
                 continue
             last = outputs[-1] if outputs else {}
@@ -322,7 +318,18 @@ class Kernel:
                 last['text'] += content['text']
             else:
                 outputs.append({'output_type': kind, **content})
+        for content in self._updates() if updated else ():
+            for output in outputs:
+                if output.get('transient') == content['transient']:
+                    output['data'] = content['data']
         return outputs
+
+    def _updates(self) -> list[dict[str, Any]]:
+        """Return the updates of what is displayed, oldest first: any cell may cause one."""
+        with self._news:
+            messages = [message for sent in self._messages.values() for message in sent]
+        found = [m for m in messages if m['msg_type'] == 'update_display_data']
+        return [m['content'] for m in sorted(found, key=lambda m: m['header']['date'])]
 
     def wait_for_output(self, msg_id: str, text: str, timeout: float = TIMEOUT_SEC) -> str:
         """Wait until `text` appears under a cell; return all that is shown there.

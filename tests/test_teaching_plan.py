@@ -49,6 +49,7 @@ def test_time_of_a_lesson_is_that_of_its_words_and_exercises(number: str) -> Non
     reading = len(' '.join(texts).split()) / WORDS_A_MINUTE
     least = reading + len(lesson.exercises) * exercise_minutes(number)
     assert least <= minutes_of(number) <= least + RUNNING
+    assert lesson.minutes == minutes_of(number)
 
 
 def test_each_of_five_sessions_is_long_enough() -> None:

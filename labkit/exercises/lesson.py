@@ -37,6 +37,7 @@ class Lesson:
         notebook: File name of the notebook, such as `'04_odds.ipynb'`.
         title: The heading of the notebook.
         teaches: Its subject in a few words, as in the README.
+        minutes: How long it takes, as its first cell says.
         exercises: The exercises in the order of the notebook.
         quizzes: The quizzes in the order of the notebook.
         topics: Further topics that the lesson's own cells use.
@@ -54,6 +55,7 @@ class Lesson:
         *,
         title: str = '',
         teaches: str = '',
+        minutes: int = 0,
         exercises: Sequence[Exercise] = (),
         quizzes: Sequence[Quiz] = (),
         topics: Sequence[str] = (),
@@ -63,6 +65,7 @@ class Lesson:
         self.notebook = notebook
         self.title = title
         self.teaches = teaches
+        self.minutes = minutes
         self._refuse_names('exercises', exercises)
         self._refuse_names('quizzes', quizzes)
         self._exercises = {exercise.name: exercise for exercise in exercises}

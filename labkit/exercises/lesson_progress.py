@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from datetime import date, datetime, timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from labkit.exercises.exercise import Exercise
     from labkit.exercises.lesson import Lesson
 
-__all__ = ['entries', 'next_steps', 'onward', 'row_of']
+__all__ = ['days', 'days_in_a_row', 'entries', 'next_steps', 'onward', 'row_of']
 
 Data = Mapping[str, Any]
 
@@ -50,7 +51,7 @@ def row_of(lesson: Lesson, data: Data, notebook: str = '') -> Row:
         Item(entry['kind'], entry['name'], entry['state'], f'{file}#cell-id={cell_id}')
         for entry, cell_id in zip(entries(lesson, data), cells, strict=True)
     ]
-    return Row(lesson.heading, items, file, lesson.teaches)
+    return Row(lesson.heading, items, file, lesson.teaches, lesson.minutes)
 
 
 def next_steps(exercise: Exercise, data: Data) -> tuple[Row, list[tuple[str, str]]]:
@@ -91,6 +92,36 @@ def onward(data: Data) -> list[tuple[str, str]]:
             if item.state != 'done':
                 return [(f'{lesson.heading}, {item.name}', item.href)]
     return []
+
+
+def days(data: Data) -> list[date]:
+    """Return the days on which something was tried first or last, or solved; in local time."""
+    times = {
+        text_of(entry.get(key))
+        for lesson in data['lessons'].values()
+        for kind in ('exercises', 'questions')
+        for entry in lesson.get(kind, {}).values()
+        for key in ('first_try', 'last_try', 'passed_at')
+    }
+    return sorted({day for day in map(_local_day, times) if day is not None})
+
+
+def days_in_a_row(worked: Sequence[date], today: date) -> int:
+    """Return on how many days in a row a learner has worked, up to today or yesterday."""
+    day, known = today, set(worked)
+    if day not in known:
+        day -= timedelta(days=1)
+    count = 0
+    while day - timedelta(days=count) in known:
+        count += 1
+    return count
+
+
+def _local_day(time: str) -> date | None:
+    try:
+        return datetime.fromisoformat(time).astimezone().date()
+    except (ValueError, OverflowError, OSError):
+        return None  # not a time: somebody has changed the file
 
 
 def _next_lesson(lesson: Lesson) -> list[tuple[str, str]]:

@@ -57,12 +57,14 @@ class Row:
         items: Its exercises and questions.
         href: Link to it, `''` if unknown.
         teaches: What it teaches.
+        minutes: How long it takes, 0 if unknown.
     """
 
     title: str
     items: Sequence[Item]
     href: str = ''
     teaches: str = ''
+    minutes: int = 0
 
     def counts(self) -> str:
         """Return the completed items in words: `'1 of 3 exercises, 0 of 8 questions'`."""
@@ -70,6 +72,10 @@ class Row:
             f'{_done(group)} of {len(group)} {kind}' + 's' * (len(group) != 1)
             for kind, group in self.groups()
         )
+
+    def time(self, before: str = '') -> str:
+        """Return how long it takes in words, with `before` in front; '' if unknown."""
+        return f'{before}{self.minutes} min' if self.minutes else ''
 
     def groups(self) -> list[tuple[str, list[Item]]]:
         """Return the items by kind, without empty kinds."""
@@ -103,13 +109,20 @@ def text_form(rows: Sequence[Row], note: str = '') -> str:
     return '\n'.join([*lines, *filter(None, [note])])
 
 
-def picture(rows: Sequence[Row], note: str = '', onward: Sequence[tuple[str, str]] = ()) -> str:
+def picture(
+    rows: Sequence[Row],
+    note: str = '',
+    onward: Sequence[tuple[str, str]] = (),
+    *,
+    above: str = '',
+) -> str:
     """Return progress as HTML: in total, and by lesson.
 
     Args:
         rows: The lessons.
         note: A remark below the table.
         onward: Links to what comes next: pairs of text and target.
+        above: HTML above the table.
     """
     everything = _everything(rows)
     share = percent(everything.items)
@@ -117,12 +130,13 @@ def picture(rows: Sequence[Row], note: str = '', onward: Sequence[tuple[str, str
         f'<div style="{_FONT};max-width:80em">',
         f'<p style="margin:0 0 0.6em">{_bar(share, 12)} <strong>{share} %</strong> '
         f'{everything.counts() or "no exercises here"} done</p>',
+        above,
         *(f'<p style="margin:0 0 0.6em">Go on: {link(*place)}</p>' for place in onward),
         '<table style="border-collapse:collapse;font-size:inherit;margin:0">',
         '<thead><tr>',
         *(
             f'<th scope="col" style="{_CELL.format(more="font-weight:bold")}">{name}</th>'
-            for name in ('Lesson', 'Done', 'Exercises', 'Quiz')
+            for name in ('Lesson', 'Time', 'Done', 'Exercises', 'Quiz')
         ),
         '</tr></thead><tbody>',
         *map(_line, rows),
@@ -163,6 +177,7 @@ def _line(row: Row) -> str:
     start = f'<th scope="row" style="{_CELL.format(more="font-weight:normal")}">'
     return (
         f'<tr style="background:none">{start}{link(row.title, row.href)}</th>'
+        f'<td style="{tight}">{row.time()}</td>'
         f'<td style="{tight}">{cells[0]}</td>'
         f'<td style="{_CELL.format(more="")}">{cells[1]}</td>'
         f'<td style="{tight}">{cells[2]}</td></tr>'

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import csv
 import io
+from datetime import date
 from pathlib import Path
 
 import pytest
@@ -11,10 +12,12 @@ from labkit.exercises import lesson as lesson_module
 from labkit.exercises import progress as progress_module
 from labkit.exercises.exercise import Exercise
 from labkit.exercises.lesson import Lesson, load
+from labkit.exercises.lesson_progress import days, days_in_a_row
 from labkit.exercises.progress import main, progress
 from labkit.exercises.progress_store import progress_store
 from labkit.exercises.questions import Choice, right, wrong
 from labkit.exercises.quiz import Quiz
+from tests.conftest import Kernel
 
 
 def exercise(name: str) -> Exercise:
@@ -84,3 +87,35 @@ def test_hints_come_in_steps_and_then_end(lesson: Lesson) -> None:
     assert 'Second.' in repr(lesson.one.hint())
     assert 'lesson.one.solution()' in repr(lesson.one.hint())
     assert 'First.' in repr(lesson.one.hint(1))
+
+
+def test_days_in_a_row_end_today_or_yesterday(lesson: Lesson) -> None:
+    def worked(*numbers: int) -> list[date]:
+        return [date(2026, 3, number) for number in numbers]
+
+    today = date(2026, 3, 9)
+    assert days_in_a_row([], today) == 0
+    assert days_in_a_row(worked(7, 8, 9), today) == 3
+    assert days_in_a_row(worked(5, 7, 8), today) == 2
+    assert days_in_a_row(worked(5, 6, 7), today) == 0
+    data = {'lessons': {'odds': {'exercises': {'one': {'last_try': 'yesterday', 'tries': 1}}}}}
+    assert days(data) == []
+    progress_store.note_check('odds', 'one', 'PASS')
+    assert days(progress_store.store.read()[0]) == list(progress().days) != []
+
+
+def test_certificate_is_there_when_all_exercises_are_solved(lesson: Lesson) -> None:
+    progress_store.note_check('odds', 'one', 'PASS')
+    assert 'Certificate' not in progress()._repr_html_()
+    progress_store.note_check('odds', 'two', 'PASS')
+    assert 'Certificate: all exercises' in progress()._repr_html_()
+
+
+def test_progress_that_is_shown_follows_what_is_solved(kernel: Kernel) -> None:
+    shown = kernel.run('import labkit as lab\nlab.progress()', cell_id='progress')
+    assert 'tried' not in shown.text
+    kernel.run(
+        'from labkit.exercises.progress_store import progress_store\n'
+        "progress_store.note_check('odds', 'ones', 'FAIL')"
+    )
+    kernel.wait_for_output(shown.msg_id, 'tried  ones')

@@ -1,9 +1,11 @@
 from __future__ import annotations
 
+from datetime import date
 from xml.etree import ElementTree
 
 import pytest
 
+from labkit.views.course_map import course_map, earned, linked_map
 from labkit.views.passed_card import PassedCard
 from labkit.views.progress_picture import Item, Row, percent, picture, text_form
 
@@ -15,6 +17,7 @@ ROWS = [
             Item('question', 'q.1', 'tried'),
         ],
         '01_a.ipynb',
+        minutes=35,
     ),
     Row('02 long', [Item('question', f'q.{n}', 'open') for n in range(60)]),
     Row('03 empty', []),
@@ -48,9 +51,9 @@ def test_each_lesson_has_a_line_with_its_share() -> None:
     lines = list(page_of(picture(ROWS)).iter('tr'))[1:]
     cells = [[' '.join(''.join(c.itertext()).split()) for c in line] for line in lines]
     assert cells == [
-        ['01 a & b', '50 %', '✔ <one>', '0 of 1'],
-        ['02 long', '0 %', '', '0 of 60'],
-        ['03 empty', '0 %', '', ''],
+        ['01 a & b', '35 min', '50 %', '✔ <one>', '0 of 1'],
+        ['02 long', '', '0 %', '', '0 of 60'],
+        ['03 empty', '', '0 %', '', ''],
     ]
 
 
@@ -94,3 +97,33 @@ def test_card_of_a_solved_exercise() -> None:
     assert '✔ one ○ two 1 of 2 exercises of this lesson' in text
     hrefs = [a.attrib['href'] for a in page.iter('a')]
     assert hrefs == ['x#1', 'x#2', 'x#2']
+
+
+def test_map_has_a_station_for_each_lesson_and_the_robot_where_one_is() -> None:
+    done = Row('03 all', [Item('exercise', 'x', 'done')], '03_all.ipynb')
+    rows = [ROWS[0], ROWS[1], done, *ROWS, *ROWS]
+    page = page_of(course_map(rows, '03_all.ipynb'))
+    stations = [part for part in page if part.tag.endswith('}g')]
+    assert len(stations) == len(rows)
+    with_robot = [s for s in stations if any(part.tag.endswith('}g') for part in s)]
+    assert with_robot == [stations[2]]
+    # One ring is the way, the second one what is done of it.
+    rings = [len([c for c in s.iter() if c.tag.endswith('}circle')]) for s in stations]
+    assert rings == [2, 1, 2, 2, 1, 1, 2, 1, 1]
+    roads = [part.attrib['stroke'] for part in page if part.tag.endswith('}path')]
+    assert len(roads) == len(rows) - 1
+    assert [number for number, colour in enumerate(roads) if 'success' in colour] == [2]
+
+
+def test_map_opens_a_lesson_by_a_click_and_leaves_the_keyboard_to_the_table() -> None:
+    page = page_of(linked_map(ROWS))
+    link = page.find('a')
+    assert link is not None and len(page.findall('a')) == 1
+    assert link.attrib['href'] == '01_a.ipynb' and link.attrib['tabindex'] == '-1'
+    assert link.attrib['title'] == '01 a & b: 50 %, 35 min'
+
+
+def test_certificate_says_what_was_done_and_when() -> None:
+    page = page_of(earned(ROWS, date(2026, 3, 3), date(2026, 5, 9)))
+    text = ' '.join(' '.join(page.itertext()).split())
+    assert '1 of 1 exercise, 0 of 61 questions, from 3 March 2026 to 9 May 2026.' in text

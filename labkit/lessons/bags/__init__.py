@@ -15,6 +15,7 @@ LESSON = Lesson(
     'bags',
     '10_bags.ipynb',
     title='Bags',
+    minutes=75,
     teaches=(
         'record a drive, look inside, plot it, play it back; a node cannot tell a bag from a robot'
     ),

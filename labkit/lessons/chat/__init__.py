@@ -16,6 +16,7 @@ LESSON = Lesson(
     'chat',
     '06_chat.ipynb',
     title='Chat',
+    minutes=75,
     teaches=(
         "typed text, everybody's messages; share one topic with other computers; replies "
         'without an end'

@@ -16,6 +16,7 @@ LESSON = Lesson(
     'command_line',
     '03_command_line.ipynb',
     title='The command line',
+    minutes=60,
     teaches=(
         '`ros2` topics, nodes, messages and parameters from the command line; ROS 1 in ROS 2 words'
     ),

@@ -16,6 +16,7 @@ LESSON = Lesson(
     'interfaces_and_actions',
     '12_interfaces_and_actions.ipynb',
     title='Interfaces and actions',
+    minutes=100,
     teaches=(
         'work that takes long: goal, feedback, result, cancel; types of your own, built '
         'by colcon (this part needs a C++ compiler)'

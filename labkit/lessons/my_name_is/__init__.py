@@ -16,6 +16,7 @@ LESSON = Lesson(
     'my_name_is',
     '05_my_name_is.ipynb',
     title='My name is',
+    minutes=60,
     teaches='a chain of nodes, in one process and in several',
     exercises=[two_stages, own_process, third_stage, two_names],
     quizzes=[WARM_UP, QUIZ],

@@ -16,6 +16,7 @@ LESSON = Lesson(
     'names_and_launch',
     '13_names_and_launch.ipynb',
     title='Names and launch files',
+    minutes=100,
     teaches=(
         'namespaces, remapping, parameter files; many nodes started by one file, in XML, YAML and '
         'Python; what ends with what'

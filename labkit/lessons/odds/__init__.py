@@ -18,6 +18,7 @@ LESSON = Lesson(
     'odds',
     '04_odds.ipynb',
     title='Odd numbers',
+    minutes=70,
     teaches='numbers on topics, types and their limits, queues; finding a silent fault',
     exercises=[ones, count_up, stay_within, evens, find_gate],
     quizzes=[WARM_UP, QUIZ],

@@ -15,6 +15,7 @@ LESSON = Lesson(
     'package',
     '11_package.ipynb',
     title='From notebook to package',
+    minutes=85,
     teaches=(
         'make a package, build it with colcon, run it from a terminal, break and repair '
         'it; turn the class of a notebook into a package'

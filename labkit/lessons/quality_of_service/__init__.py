@@ -18,6 +18,7 @@ LESSON = Lesson(
     'quality_of_service',
     '08_quality_of_service.ipynb',
     title='Quality of service',
+    minutes=80,
     teaches=(
         'depth, reliability, durability, lifespan, deadline; two ends that do not match, '
         'and where ROS tells'

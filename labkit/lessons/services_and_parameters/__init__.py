@@ -16,6 +16,7 @@ LESSON = Lesson(
     'services_and_parameters',
     '09_services_and_parameters.ipynb',
     title='Services and parameters',
+    minutes=80,
     teaches=(
         'ask and answer, a callback that waits for itself; settings of a running node, '
         'and refusing bad ones'

@@ -14,7 +14,7 @@ first_node = Exercise(
     task='Start a node called `hello_robot`.',
     clauses=(
         Named('/hello_robot'),
-        Runs('the node runs: it is spun, as `lab.spin` does it', node='/hello_robot'),
+        Runs('the node runs, as with `lab.spin`', node='/hello_robot'),
     ),
     hints=[
         'The cell `first-node` further up starts a node called first_node. Which line does it?',
@@ -67,6 +67,7 @@ LESSON = Lesson(
     'start_here',
     '00_start_here.ipynb',
     title='Start here',
+    minutes=20,
     teaches='how a lesson works; your first message; a robot to drive',
     exercises=[first_node],
     quizzes=[_QUIZ],

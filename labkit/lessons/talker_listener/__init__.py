@@ -17,6 +17,7 @@ LESSON = Lesson(
     'talker_listener',
     '02_talker_listener.ipynb',
     title='Talker and listener',
+    minutes=70,
     teaches='publishers, subscribers, timers, the logger; why spin',
     exercises=[every_two_seconds, hear_chatter, ears, mouth, say_once],
     quizzes=[WARM_UP, QUIZ],

@@ -12,6 +12,7 @@ LESSON = Lesson(
     'theory',
     '01_theory.ipynb',
     title='What ROS is',
+    minutes=35,
     teaches='the words and pictures of ROS; ROS 1 and ROS 2',
     quizzes=[QUIZ],
     topics=['/sight', '/move', *ROBOT_TOPICS],

@@ -17,6 +17,7 @@ LESSON = Lesson(
     'turtlebot',
     '07_turtlebot.ipynb',
     title='The turtlebot',
+    minutes=120,
     teaches='a robot on real topics: drive it, read its odometry, write its controller',
     exercises=[wall, bot, go_to, square, stop],
     quizzes=[WARM_UP, QUIZ],

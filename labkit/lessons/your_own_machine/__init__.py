@@ -13,6 +13,7 @@ LESSON = Lesson(
     'your_own_machine',
     '16_your_own_machine.ipynb',
     title='Your own machine',
+    minutes=60,
     teaches=(
         'Ubuntu, apt and distributions; rosdep; your package by git and as an archive; what '
         'Gazebo, RViz, Nav2, MoveIt and ros2_control are; two computers'
