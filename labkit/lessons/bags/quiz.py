@@ -26,7 +26,7 @@ WARM_UP = Quiz(
         wrong('transient local', 'That is durability. The scanner keeps nothing for later.'),
     ),
     Choice(
-        '`Turtlebot(lockstep=0.1)` hears nothing for ten seconds. How far does its time advance?',
+        '`Turtlebot(lockstep=0.1)` gets no command for ten seconds. How far does its time go?',
         right('not at all', 'Its time goes by commands, 0.1 s for each one.'),
         wrong('by ten seconds', 'So does the clock of this machine, which it does not follow.'),
         wrong('by 0.1 s', 'That is how far one command takes it.'),

@@ -11,7 +11,7 @@ from labkit.exercises.draws import draw_names, draw_texts, in_a_row
 __all__ = ['hearer']
 
 TOPIC, STRING = '/hall', 'std_msgs/msg/String'
-NAMELESS = Words('for a message without one, such as `Hello`, log `somebody says Hello`')
+NAMELESS = Words('for a message without a name, such as `Hello`, log `somebody says Hello`')
 ALONE = Words(f'log one line for each message, {WITHIN}, and no other line')
 
 
@@ -91,7 +91,7 @@ hearer = Exercise(
             TOPIC,
             STRING,
             'for `Bo: Hello`, log a line with `Bo says Hello`: a name ends at the first colon '
-            'before a space',
+            'that a space follows',
             _draw,
             line=_line,
             mistakes=MISTAKES,

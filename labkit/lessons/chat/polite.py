@@ -12,7 +12,7 @@ __all__ = ['polite']
 
 TOPIC, STRING = '/lounge', 'std_msgs/msg/String'
 ME = 'Ada'
-NOTHING = Words(f'publish nothing for all other messages, nor for what {ME} has said herself')
+NOTHING = Words(f'publish nothing for any other message, nor for what {ME} herself has said')
 
 
 def _greet(message: str) -> str:
@@ -102,8 +102,8 @@ polite = Exercise(
             TOPIC,
             TOPIC,
             STRING,
-            f'when a name says `Hello` for the first time on `{TOPIC}`, publish `{ME}: Hello, ` '
-            f'and that name, {WITHIN}',
+            f'when somebody says `Hello` for the first time on `{TOPIC}`, publish `{ME}: Hello, ` '
+            f'and their name, {WITHIN}',
             answer=_politely,
             draw=_draw,
             mistakes=MISTAKES,

@@ -52,7 +52,7 @@ QUIZ = Quiz(
         'in the network?',
         'ROS_AUTOMATIC_DISCOVERY_RANGE',
         'LOCALHOST is this computer, SUBNET is the network around it.',
-        'It stands in the table beside the words of ROS 1.',
+        'It stands in the table of variables.',
         wrong={
             'ROS_DOMAIN_ID': 'That is the number that nodes have in common.',
             'ROS_MASTER_URI': 'That belongs to ROS 1: the address at which roscore runs.',

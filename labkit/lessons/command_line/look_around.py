@@ -250,7 +250,7 @@ HARBOUR = Quiz(
         explain=_no_listeners,
     ),
     Number(
-        'Which value has the parameter range_km of /lighthouse?',
+        'What is the value of the parameter range_km of /lighthouse?',
         lambda: _parameter('range_km'),
         'param get asks the node itself: each node holds its own parameters.',
         'Use ros2 param get /lighthouse range_km.',

@@ -34,7 +34,7 @@ WARM_UP = Quiz(
 QUIZ = Quiz(
     'commands',
     Choice(
-        'Older lessons ask for three or four terminals. Why?',
+        'Other courses ask for three or four terminals. Why?',
         right(
             'A command that goes on keeps its terminal until it ends.',
             'echo, hz, pub without --once and every node go on. Here & sends a command to the '

@@ -163,8 +163,8 @@ countdown = Exercise(
         ),
         Pursues(
             NAME,
-            f'a goal that is canceled ends after at most {MORE} more number, with the numbers so '
-            'far; the next succeeds',
+            f'a canceled goal ends as canceled, after at most {MORE} more number, with the '
+            'numbers so far; the next succeeds',
             _draw_canceled,
             _cancels,
             LONGEST_SEC,

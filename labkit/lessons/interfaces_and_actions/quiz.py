@@ -50,14 +50,14 @@ QUIZ = Quiz(
         'A client cancels a goal, and the cancel_callback of the server accepts that. Who stops '
         'the work?',
         right(
-            'execute_callback, when it looks at is_cancel_requested',
+            'execute(), when it looks at is_cancel_requested',
             'Accepting stops nothing by itself. The loop has to look, and end the goal.',
         ),
         wrong('ROS, at once', 'ROS cannot stop Python code half way, and does not try to.'),
         wrong('the client', 'The client asks. What is done is done by the server.'),
     ),
     Choice(
-        'A server with one thread calls time.sleep() in execute_callback. Why can no goal of it '
+        'A server with one thread calls time.sleep() in execute(). Why can no goal of it '
         'be canceled?',
         right(
             'While it sleeps, no other callback runs, so nobody takes the request',
@@ -76,7 +76,7 @@ QUIZ = Quiz(
         wrong('nobody before the result is there', 'Feedback is what comes before the result.'),
     ),
     Choice(
-        'execute_callback returns a result, and has called neither succeed() nor canceled(). How '
+        'execute() returns a result, and has called neither succeed() nor canceled(). How '
         'does the goal end?',
         right('aborted', 'A goal that nobody ends counts as failed.'),
         wrong('succeeded', 'The server has to say so: goal_handle.succeed().'),

@@ -44,7 +44,7 @@ class _TalksIfWanted(Clause[System]):
     @property
     def text(self) -> str:
         """What is asked for."""
-        return '`talk` says whether a talker runs in that namespace, too, by default not'
+        return '`talk`, `true` or `false` (the default), says whether a talker runs there, too'
 
     def judge(self, system: System) -> str:
         """Raise Fail if it is there and not wanted, or the other way round."""
@@ -77,7 +77,7 @@ arguments = Exercise(
         HasParameters(
             '/{robot}/driver',
             {'speed': '{speed}'},
-            '`speed` is the `speed` of the driver, by default 0.1',
+            'the argument `speed` is that of the driver, by default 0.1',
             DECLARED,
         ),
         _TalksIfWanted(),

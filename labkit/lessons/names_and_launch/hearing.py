@@ -59,7 +59,8 @@ class _HearsTheOther(Clause[System]):
     @property
     def text(self) -> str:
         """What is asked for."""
-        return f'`/{self.robot}/listener` hears the talker of {PAIRS[self.robot]}, and no other'
+        other = PAIRS[self.robot]
+        return f'`/{self.robot}/listener` receives from the talker of {other}, and no other'
 
     def judge(self, system: System) -> str:
         """Raise Fail if it hears another one, or nobody."""

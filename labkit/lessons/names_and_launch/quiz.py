@@ -54,7 +54,7 @@ QUIZ = Quiz(
         'namespaces robot1 and robot2. What happens?',
         right(
             'Both use /cmd_vel, and a command drives both robots',
-            'An absolute name takes no namespace. Leave the slash away in code.',
+            'An absolute name takes no namespace. Leave out the slash in code.',
         ),
         wrong('Each has a cmd_vel of its own', 'That it would be with the relative cmd_vel.'),
         wrong('The second one is refused', 'Many may publish and subscribe on one topic.'),

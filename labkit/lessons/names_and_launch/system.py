@@ -32,12 +32,12 @@ system = Exercise(
             '/tower/listener',
             '/tower/news',
             'chatter',
-            'a listener runs as `/tower/listener`, and hears `/tower/news`',
+            'a listener runs as `/tower/listener`, and subscribes to `/tower/news`',
         ),
         HasParameters(
             '/robot1/driver',
             {'speed': 0.15, 'turn': 0.5},
-            'a driver runs as `/robot1/driver`, with a `speed` of 0.15 and the usual `turn`',
+            'a driver runs as `/robot1/driver`, with a `speed` of 0.15 and its declared `turn`',
             DECLARED,
         ),
         OnlyNodes(

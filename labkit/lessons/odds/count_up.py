@@ -98,7 +98,7 @@ def _variant(*, first: int = 1, step: int = 2, hz: float = 5.0) -> Exercise:
             Publishes(TOPIC, hz, INT16),
             Messages(
                 TOPIC,
-                f'the odd numbers {words}, one a message',
+                f'the odd numbers {words}, one in each message',
                 lambda stream: _judge(stream, first, step, words),
                 mistakes=MISTAKES,
             ),

@@ -283,8 +283,8 @@ stay_within = Exercise(
         _Run(TOPIC, 10.0, INT16),
         Messages(
             TOPIC,
-            f'the numbers are {FIRST}, {FIRST + 2}, {FIRST + 4}, ..., {LARGEST}, one a message; '
-            f'{LARGEST - 2} as the last one is right, too',
+            f'the numbers are {FIRST}, {FIRST + 2}, {FIRST + 4}, ..., {LARGEST}, one in each '
+            f'message; {LARGEST - 2} as the last one is right, too',
             _up_to_the_limit,
             mistakes=MISTAKES,
         ),

@@ -20,7 +20,7 @@ door = Exercise(
         Matches(
             TOPIC,
             NODE,
-            '`/lock` hears the node, and `/lock` stays as it is',
+            '`/lock` receives what the node publishes, and stays as it is',
             start='Run the cell with start_lock().',
             subscribes=True,
             is_as_given=is_untouched,

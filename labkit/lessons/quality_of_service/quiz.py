@@ -80,7 +80,7 @@ QUIZ = Quiz(
     ),
     Choice(
         'A map is published once, when it is ready. Which durability lets a node that starts '
-        'later hear it?',
+        'later receive it?',
         right(
             'transient local, at both ends',
             'The publisher keeps the map, and the subscription asks for what was kept.',
@@ -120,7 +120,7 @@ QUIZ = Quiz(
         ),
     ),
     Choice(
-        'A subscription hears nothing, and there is no error. What do you look at first?',
+        'A subscription receives nothing, and there is no error. What do you look at first?',
         right(
             'The graph: lab.graph() or lab.doctor(), or ros2 topic info --verbose.',
             'It has both ends and their profiles, and says whether they match.',

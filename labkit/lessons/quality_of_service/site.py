@@ -34,8 +34,8 @@ site = Exercise(
         ),
         Latched(
             '/site',
-            'a later subscriber to `/site` that asks for transient local hears the newest name at '
-            'once, and no older one',
+            'a later subscriber to `/site` that asks for transient local receives the newest name '
+            'at once, and no older one',
         ),
     ),
     hints=[

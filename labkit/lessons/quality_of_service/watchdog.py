@@ -81,8 +81,8 @@ ALL_CLEAR = Mistake(
 
 _HEARS = Subscribes(HEART, EMPTY)
 _BARKS = Words(
-    f'after {SILENCE_SEC} s without a heartbeat (up to {EARLY_SEC} s less), publish a text on '
-    f'`{ALARM}` (`{STRING}`), once or more'
+    f'after {SILENCE_SEC} s without a heartbeat ({SILENCE_SEC - EARLY_SEC:.1f} s will do), '
+    f'publish a text on `{ALARM}` (`{STRING}`), once or more'
 )
 _IN_TIME = Words(f'the first alarm comes within {WITHIN_SEC:g} s after the last heartbeat')
 _RESTS = Words(f'publish nothing on `{ALARM}` while heartbeats come')

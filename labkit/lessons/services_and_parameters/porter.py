@@ -108,8 +108,8 @@ class _Calls(GraphClause):
     """The service is called once for each message, with its value."""
 
     text = (
-        f'for each message on `{WISH}` (`{BOOL}`), call `{SERVICE}` once, with its `data` as '
-        '`data` of the request'
+        f"for each message on `{WISH}` (`{BOOL}`), call `{SERVICE}` once, with the message's "
+        '`data` as that of the request'
     )
     recognises = (NO_CALL, CALLS_MORE, CALLS_SOME, SAME_REQUEST, OPPOSITE)
 

@@ -38,7 +38,7 @@ QUIZ = Quiz(
         'fits best?',
         right(
             'a service',
-            'One request, one response, and the client learns that it was heard.',
+            'One request, one response, and the client learns that it was answered.',
         ),
         wrong(
             'a topic',

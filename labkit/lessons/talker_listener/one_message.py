@@ -81,7 +81,7 @@ class _SaysIt(GraphClause):
 class _SilentBefore(GraphClause):
     """As long as nobody listens, the node says nothing."""
 
-    text = 'publish nothing before that'
+    text = 'publish nothing before that subscription'
 
     def find(self, evidence: Evidence) -> None:
         """Let time pass while nobody listens, and then listen."""
@@ -118,7 +118,7 @@ class _SilentBefore(GraphClause):
 class _SilentAfter(GraphClause):
     """Once it is said, the node says nothing more."""
 
-    text = 'publish nothing after that'
+    text = 'publish nothing after that message'
 
     def judge(self, evidence: Evidence) -> str:
         """Judge what else came."""

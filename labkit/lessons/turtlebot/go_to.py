@@ -223,7 +223,7 @@ go_to = Exercise(
         Asked('turn towards its `x` and `y` on the shorter way', _turns),
         Asked(RATE, look_at_rate),
         Asked(
-            f'stop within {SECONDS:.0f} s, with `x` and `y` up to {NEAR} m off ({BRAKING} m more '
+            f'stop within {SECONDS:.0f} s, at most {NEAR} m from it ({BRAKING} m more '
             'for braking)',
             _arrives,
         ),

@@ -92,7 +92,7 @@ class _SaysStop(GraphClause):
 
     @property
     def text(self) -> str:
-        return 'the last command says stop (all 0.0), whatever ends the node'
+        return 'the last command says stop (all 0.0), however the node ends'
 
     def judge(self, evidence: Evidence) -> str:
         probe = evidence.probe

@@ -26,9 +26,9 @@ WARM_UP = Quiz(
         },
     ),
     Choice(
-        'Two computers, both with `ROS_DOMAIN_ID=7`, stand in one network. Who can hear whom?',
+        'Two computers, both with `ROS_DOMAIN_ID=7`, stand in one network. Who finds whom?',
         right(
-            'Each hears the other',
+            'Each finds the other',
             'They have one domain, and ROS by itself looks as far as the local network.',
         ),
         wrong('Nobody: 7 is for one computer', 'A domain may span as many as you like.'),
@@ -72,7 +72,7 @@ QUIZ = Quiz(
         wrong('It names it in package.xml', 'rosdep never writes to your files.'),
     ),
     Several(
-        'What belongs into git?',
+        'What belongs in git?',
         right('src', 'It is what you wrote, and nobody can make it anew.'),
         right('.gitignore', 'So the others leave out the same folders.'),
         wrong('build', 'colcon makes it anew.'),
