@@ -120,7 +120,7 @@ def test_title_and_what_is_taught_are_those_of_notebook_and_readme() -> None:
         cells = json.loads((ROOT / 'notebooks' / lesson.notebook).read_text())['cells']
         assert cells[0]['source'][0].strip() == f'# {lesson.title}'
         link = f'[{lesson.heading}](notebooks/{lesson.notebook})'
-        assert f'| {link} | {lesson.teaches} |' in readme
+        assert f'| {link} | {lesson.teaches} | {lesson.minutes} |' in readme
 
 
 def test_verdict_says_where_the_learner_is(course: list[Lesson], lab: ModuleType) -> None:
