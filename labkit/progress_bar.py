@@ -8,16 +8,27 @@ from typing import Any
 
 from labkit import settings
 
-__all__ = ['ProgressBar']
+__all__ = ['ProgressBar', 'note_output']
 
 SHOWN_AFTER_SEC = 1.0
 EVERY_SEC = 0.2
+
+# When a cell has shown something last, and the bar that is shown: there is one at a time.
+_last_output = 0.0
+_shown: ProgressBar | None = None
+
+
+def note_output() -> None:
+    """Note that something has appeared under a cell: what speaks needs no bar yet."""
+    global _last_output
+    _last_output = time.monotonic()
 
 
 class ProgressBar:
     """A progress bar under the running cell, removed when the work is done.
 
-    Whether it appears depends on time, so only a learner in front of a notebook sees one.
+    It appears where nothing else has for a second, and none appears beside one that is shown. That
+    depends on time, so only a learner in front of a notebook sees one.
 
     Args:
         label: The activity, such as `'Checking'`.
@@ -39,18 +50,24 @@ class ProgressBar:
         now = time.monotonic()
         if not self._wanted or now < self._due:
             return
+        global _shown
+        if _shown is not self and (_shown or now < _last_output + SHOWN_AFTER_SEC):
+            return
         self._due = now + EVERY_SEC
         content = self._content(done, f'{self._label}: {words}')
         if self._handle is None:
             from IPython.display import display
 
             self._handle = display(content, raw=True, display_id=True)  # type: ignore[no-untyped-call]
+            _shown = self
         else:
             self._handle.update(content, raw=True)
 
     def close(self) -> None:
         """Remove the bar."""
+        global _shown
         if self._handle is not None:
+            _shown = None
             self._handle.update({'text/plain': '', 'text/html': ''}, raw=True)
             self._handle = None
 

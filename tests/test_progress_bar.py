@@ -28,3 +28,31 @@ def test_what_is_done_at_once_needs_no_bar(kernel: Any) -> None:
 def test_nobody_who_compares_outputs_sees_it(start_kernel: Any) -> None:
     kernel = start_kernel(LABKIT_HEADLESS='1')
     assert kernel.run(BAR).outputs == []
+
+
+WAIT = """
+import labkit as lab
+from labkit import progress_bar
+progress_bar.SHOWN_AFTER_SEC = progress_bar.EVERY_SEC = 0.0
+ready = []
+lab.wait_until(lambda: ready, timeout_sec=None)
+"""
+
+
+def test_a_cell_that_waits_says_so(kernel: Any) -> None:
+    waits = kernel.start(WAIT)
+    assert 'Waiting: 0 s' in kernel.wait_for_output(waits, 'Waiting')
+    kernel.interrupt()
+    kernel.finish(waits)
+    kernel.wait_until_gone(waits, 'Waiting')
+
+
+def test_where_something_is_shown_no_bar_appears_beside_it(kernel: Any) -> None:
+    kernel.run(BAR.replace("bar.show(0.25, '<b> 7 s')", ''))
+    code = (
+        'progress_bar.SHOWN_AFTER_SEC = 60.0\nprogress_bar.note_output()\nbar._due = 0\n'
+        "bar.show(0.5, 'late')\nprogress_bar.SHOWN_AFTER_SEC = 0.0\nbar.show(0.5, 'now')\n"
+        "other = progress_bar.ProgressBar('Waiting')\nother.show(0.5, 'inside of it')"
+    )
+    (shown,) = kernel.run(code).outputs
+    assert shown['data']['text/plain'] == 'Checking: now'

@@ -22,7 +22,7 @@ from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Any, TextIO
 
-from labkit import settings
+from labkit import progress_bar, settings
 from labkit.background import compat, tracebacks
 from labkit.background.log_box import LogBox
 from labkit.background.tracebacks import short_traceback
@@ -291,6 +291,7 @@ class Console:
         print(f'{words}\n{seen.text}', file=sys.stderr)
 
     def _write_bounded(self, cell: Cell, stream: TextIO, text: str) -> None:
+        progress_bar.note_output()
         if cell.parent and settings.audience().live:
             cell.box = cell.box or LogBox(cell.parent, MAX_LINES)
             cell.box.add(text)

@@ -1,8 +1,9 @@
-"""Lets the waits of kernels and scripts under test last: their default limit is for learners.
+"""Lets the waits of kernels and scripts under test last, and without a bar below them.
 
 Python imports this at its start where the folder is on its path, see `patiently` in
 tests/conftest.py. A test waits for what will come, and on a busy machine that may take longer than
-the default. A test of the limit itself names one.
+the default of learners; and whether a bar appears depends on the machine, too. A test of the limit
+names one, and a test of the bar says when it appears.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ WAITS = {
     'labkit.programs.child_processes': ('Process.wait_for_lines',),
 }
 
+BARS = 'labkit.progress_bar'
+
 
 class Patient:
     """Changes the defaults when one of these modules has been loaded."""
@@ -34,7 +37,7 @@ class Patient:
     def find_spec(
         name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        if name not in WAITS:
+        if name not in WAITS and name != BARS:
             return None
         spec = PathFinder.find_spec(name, path, target)
         assert spec is not None and spec.loader is not None
@@ -42,7 +45,9 @@ class Patient:
 
         def exec_module(module: ModuleType) -> None:
             load(module)
-            for function in WAITS[name]:
+            if name == BARS:
+                vars(module)['SHOWN_AFTER_SEC'] = float('inf')
+            for function in WAITS.get(name, ()):
                 attrgetter(function)(module).__kwdefaults__['timeout_sec'] = LIMIT_SEC
 
         spec.loader.exec_module = exec_module  # type: ignore[method-assign]

@@ -27,7 +27,7 @@ def test_words(command: list[str], words: str) -> None:
 @pytest.mark.slow('waits in real time')
 def test_a_line_lives_while_commands_run_and_is_gone_afterwards(start_kernel):
     kernel = start_kernel()
-    kernel.run('import labkit as lab')
+    kernel.run('from labkit import progress_bar\nprogress_bar.SHOWN_AFTER_SEC = 0.0')
     cell = kernel.start('%%bash\nsleep 4 | cat')
     assert 'Running: sleep, ' in kernel.wait_for_output(cell, 'sleep, ')
     result = kernel.finish(cell)
