@@ -30,7 +30,7 @@ from tests.browser.jupyter import ROOT, JupyterLab
 from tests.browser.page import VIEWPORT, Notebook, open_browser, open_notebook
 
 # JupyterLab's settings of the course, also where labkit is not installed.
-_SETTINGS = {'JUPYTER_CONFIG_PATH': str(ROOT / 'labkit' / 'data' / 'etc' / 'jupyter')}
+SETTINGS = {'JUPYTER_CONFIG_PATH': str(ROOT / 'labkit' / 'data' / 'etc' / 'jupyter')}
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -50,7 +50,7 @@ def main(argv: list[str] | None = None) -> int:
     name = found[0].stem
     with (
         tempfile.TemporaryDirectory(prefix='labkit-', ignore_cleanup_errors=True) as folder,
-        JupyterLab(Path(folder), _SETTINGS) as lab,
+        JupyterLab(Path(folder), SETTINGS) as lab,
         open_browser(options.width, options.height) as browser,
     ):
         if given.suffix == '.ipynb':
