@@ -22,7 +22,10 @@ function ticks(low, high, most) {
 }
 
 function short(number) {
-  return Number.isFinite(number) ? `${Number(number.toPrecision(4))}` : '–';
+  const text = number.toPrecision(4);
+  // The greatest numbers are infinite when they are rounded up.
+  if (Number.isFinite(Number(text))) return `${Number(text)}`;
+  return Number.isFinite(number) ? text : '–';
 }
 
 // What an axis shows of these lines.
@@ -184,9 +187,11 @@ class Legend {
       const greatest = finite.reduce((a, b) => Math.max(a, b), -Infinity);
       // As exact as the greatest of them asks for, so that they can be compared.
       const size = Math.log10(Math.max(Math.abs(least), Math.abs(greatest)) || 1);
-      const digits = Math.min(12, Math.max(0, 3 - Math.floor(size)));
+      const digits = Math.max(0, 3 - Math.floor(size));
       [finite.at(-1), least, greatest].forEach((number, column) => {
-        const text = Number.isFinite(number) ? `${Number(number.toFixed(digits))}` : '–';
+        // toFixed() takes at most 100 digits, and rounds nothing from 1e21 on.
+        const rounds = Number.isFinite(number) && digits <= 100 && size < 21;
+        const text = rounds ? `${Number(number.toFixed(digits))}` : short(number ?? NaN);
         setText(this.cells[row][column], text);
       });
     });

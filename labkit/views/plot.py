@@ -29,8 +29,8 @@ __all__ = ['Plot', 'plot']
 COLUMNS = 800
 # Most unsent samples of a field; if the timer is late, the oldest are dropped.
 MAX_WAITING = 20_000
-# Longest window, s.
-MAX_SEC = 3600.0
+# Shortest and longest window, s.
+MIN_SEC, MAX_SEC = 0.1, 3600.0
 
 
 class Series:
@@ -217,9 +217,10 @@ def plot(*fields: str, seconds: float = 10.0, count: int = 10) -> Plot:
             f'lab.plot() takes 1 to {len(COLOURS)} fields, but got {len(fields)}.',
             todo="Write for example: lab.plot('/odom.twist.twist.linear.x')",
         )
-    if not isinstance(seconds, (int, float)) or not 0 < seconds <= MAX_SEC:
+    if not isinstance(seconds, (int, float)) or not MIN_SEC <= seconds <= MAX_SEC:
         raise LabError(
-            f'seconds must be a number above 0, up to {MAX_SEC:.0f}, but it is {quoted(seconds)}.'
+            f'seconds must be a number from {MIN_SEC} to {MAX_SEC:.0f}, but it is '
+            f'{quoted(seconds)}.'
         )
     if not isinstance(count, int) or not 1 <= count <= MAX_WAITING:
         raise LabError(

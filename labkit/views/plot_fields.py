@@ -17,7 +17,7 @@ from labkit.rosgraph.serialized import number_reader
 
 __all__ = ['Source', 'number_paths', 'parse', 'reader', 'resolve', 'unit_of']
 
-_PART = re.compile(r'(?P<name>[A-Za-z]\w*)(?:\[(?P<index>\d+)\])?')
+_PART = re.compile(r'(?P<name>[A-Za-z]\w*)(?:\[(?P<index>\d{1,9})\])?')
 # Basic types of interface files that are not numbers.
 _NO_NUMBERS = ('octet', 'wchar')
 

@@ -43,12 +43,18 @@ class Line:
 def in_words(values: Sequence[float], unit: str) -> str:
     """Return the first, the last, the least and the greatest of numbers as text."""
     unit = f' {unit}' if unit else ''
-    numbers = [float(f'{value:.4g}') + 0.0 for value in values]
-    finite = [number for number in numbers if math.isfinite(number)]
-    text = f'first {numbers[0]:g}{unit}, last {numbers[-1]:g}{unit}'
+    finite = [value for value in values if math.isfinite(value)]
+    text = f'first {_short(values[0])}{unit}, last {_short(values[-1])}{unit}'
     if finite:
-        text += f', least {min(finite):g}{unit}, greatest {max(finite):g}{unit}'
+        text += f', least {_short(min(finite))}{unit}, greatest {_short(max(finite))}{unit}'
     return text
+
+
+def _short(value: float) -> str:
+    text = f'{value:.4g}'
+    number = float(text) + 0.0  # no -0
+    # The greatest numbers are infinite when they are rounded up.
+    return text if math.isinf(number) else f'{number:g}'
 
 
 def limits(values: Sequence[float]) -> tuple[float, float]:

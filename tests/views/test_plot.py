@@ -11,7 +11,7 @@ import pytest
 
 from labkit.errors import LabError
 from labkit.views.plot_fields import number_paths, parse, resolve, unit_of
-from labkit.views.plot_picture import COLOURS, DASHES, Line, limits, thin, ticks, to_svg
+from labkit.views.plot_picture import COLOURS, DASHES, Line, in_words, limits, thin, ticks, to_svg
 from tests.views.test_monitor import STAGE as COMMON_STAGE
 
 STAGE = f"""{COMMON_STAGE}
@@ -171,6 +171,9 @@ def test_wrong_words_are_answered(kernel, run):
         ('lab.plot("/odom.pose.pose.position.X")', "Did you mean '/odom.pose.pose.position.x'?"),
         ('lab.plot("/odom.header.frame_id")', 'is a text. Only numbers can be drawn'),
         ('lab.plot("/odom.pose.pose.position.x", seconds=0)', 'seconds must be a number'),
+        ('lab.plot("/odom.pose.pose.position.x", seconds=5e-324)', 'from 0.1 to 3600'),
+        ('lab.plot("/odom.pose.pose.position.x", seconds=10**400)', 'from 0.1 to 3600'),
+        (f'lab.plot("/scan.ranges[{"9" * 5000}]")', 'names no field of a message'),
         ('lab.plot("/odom.pose.pose.position.x", count=0)', 'count must be a whole number'),
     ):
         result = kernel.run(code)
@@ -327,3 +330,13 @@ def test_greatest_and_least_numbers_have_a_picture(values):
     heights = [float(place.split()[1].split('h')[0]) for place in lines[-1][1:].split('L')]
     assert len(heights) == len(values) and all(0 <= height <= 300 for height in heights)
     assert 2 <= len(ticks(*limits(values))) <= 12
+
+
+def test_words_have_the_greatest_and_the_least_numbers():
+    most = sys.float_info.max
+    assert in_words([1.0, most], 'm') == 'first 1 m, last 1.798e+308 m, least 1 m, ' + (
+        'greatest 1.798e+308 m'
+    )
+    assert in_words([-0.0, 12345.0, 5e-324, math.inf, math.nan], '') == (
+        'first 0, last nan, least 0, greatest 12340'
+    )
