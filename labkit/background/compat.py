@@ -17,6 +17,7 @@ from rclpy.event_handler import EventHandler
 from rclpy.exceptions import InvalidHandle
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.task import Future
+from rclpy.time_source import TimeSource
 
 if TYPE_CHECKING:
     from rclpy.action.client import ActionClient, ClientGoalHandle
@@ -51,6 +52,7 @@ __all__ = [
     'new_wait_set',
     'node_of_action',
     'own_guards',
+    'parameter_values',
     'parameters_of',
     'pending_requests',
     'running_request',
@@ -227,6 +229,18 @@ def node_of_action(server: ActionServer) -> Node:
 def parameters_of(node: Node) -> tuple[list[str], list[str]]:
     """Return the names of the parameters that a node was given, and of those it has declared."""
     return list(node._parameter_overrides), list(node._parameters)
+
+
+def parameter_values(node: Node) -> dict[str, Any]:
+    """Return the values of the parameters that a node has declared."""
+    return {name: parameter.value for name, parameter in dict(node._parameters).items()}
+
+
+def has_parameter_callbacks(node: Node) -> bool:
+    """Return whether a node has callbacks for parameters, besides the one of its clock."""
+    found = [*node._pre_set_parameters_callbacks, *node._on_set_parameters_callbacks]
+    found += node._post_set_parameters_callbacks
+    return any(not isinstance(getattr(each, '__self__', None), TimeSource) for each in found)
 
 
 def pending_requests(client: Client) -> int:

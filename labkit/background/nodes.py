@@ -6,7 +6,7 @@ import gc
 import threading
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -63,6 +63,7 @@ class NodeEntry:
         name: Its full name, such as `/talker`.
         cell: The execution of the cell that started it.
         counts: Number of callbacks run for each timer, subscription and so on.
+        parameters: The values of its parameters when it was started.
         budget: Number of callbacks left before the node leaves the executor, None for no limit.
         took: Seconds that callbacks took the last time, by name, once one has taken `LATE_SEC`.
         spins: The foreground spins of it, the last one of which gets what its callbacks raise.
@@ -73,6 +74,7 @@ class NodeEntry:
     name: str
     cell: Cell
     counts: dict[Any, int] = field(default_factory=dict)
+    parameters: Mapping[str, Any] = field(default_factory=dict)
     budget: int | None = None
     took: dict[str, float] = field(default_factory=dict)
     spins: list[Spin] = field(default_factory=list)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from rclpy.node import Node
 
 from labkit import stop_button
+from labkit.background import compat
 from labkit.background.console import Cell, Console
 from labkit.background.executor import BackgroundExecutor
 from labkit.background.nodes import (
@@ -58,7 +59,9 @@ class Registry:
     ) -> NodeEntry:
         """Put a node on an executor, see `Runtime.add`."""
         name = node.get_fully_qualified_name()
-        entry = NodeEntry(node, name, self._console.current_cell(), budget=budget)
+        begun = compat.parameter_values(node)
+        cell = self._console.current_cell()
+        entry = NodeEntry(node, name, cell, parameters=begun, budget=budget)
         while True:
             with self._lock:
                 earlier = self._entries.setdefault(name, entry)

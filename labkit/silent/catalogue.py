@@ -9,7 +9,12 @@ from labkit.silent.kinds import KINDS, Fault
 from labkit.silent.life import look_at_calls, look_at_ends, look_at_spinning
 from labkit.silent.messages import look_at_messages
 from labkit.silent.names import look_at_kinds, look_at_names, look_at_nodes
-from labkit.silent.parameters import look_at_files, look_at_parameters, look_at_rules
+from labkit.silent.parameters import (
+    look_at_files,
+    look_at_parameters,
+    look_at_readers,
+    look_at_rules,
+)
 from labkit.silent.scene import Scene
 from labkit.silent.timing import look_at_callbacks, look_at_clocks, look_at_timers
 
@@ -25,7 +30,7 @@ AT_GRAPH: tuple[Look, ...] = (
 AT_NODES: tuple[Look, ...] = (
     *(look_at_history, look_at_parameters, look_at_files, look_at_rules, look_at_clocks),
     *(look_at_timers, look_at_callbacks, look_at_spinning, look_at_calls, look_at_ends),
-    look_at_messages,
+    *(look_at_readers, look_at_messages),
 )
 """What is looked at each time: it is about this process alone."""
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from labkit.errors import first_few, nearest
+from labkit.errors import first_few, nearest, quoted
 from labkit.rosgraph.names import EVERY_NODE_HAS, EVERY_NODE_OFFERS
 from labkit.silent.kinds import Fault, kind
 from labkit.silent.names import alike, nearest_of
 from labkit.silent.scene import OwnNode, ParameterFile, Rule, Scene
 
-__all__ = ['look_at_files', 'look_at_parameters', 'look_at_rules', 'matches']
+__all__ = ['look_at_files', 'look_at_parameters', 'look_at_readers', 'look_at_rules', 'matches']
 
 UNDECLARED = kind(
     'parameters.undeclared',
@@ -56,6 +56,15 @@ OTHER_NODE = kind(
     'a node of that name is there',
 )
 
+READ_ONCE = kind(
+    'parameters.read-once',
+    'ros2 param set has no effect: the node has read the parameter once, in __init__',
+    'Read it where it is used, self.get_parameter(name).value, or change what depends on it in a '
+    'callback: self.add_post_set_parameters_callback(self.on_change).',
+    'a method, a callback or a function of the notebook reads parameters, too, or a callback '
+    'takes new values',
+)
+
 _OF_EVERY_NODE = {'use_sim_time', 'start_type_description_service'}
 
 
@@ -80,6 +89,21 @@ def look_at_parameters(scene: Scene) -> Iterator[Fault]:
                 f'{node.name} is given the parameter {name!r}, which it never declares: it {has}.',
                 hint + UNDECLARED.todo,
             )
+
+
+def look_at_readers(scene: Scene) -> Iterator[Fault]:
+    """Find parameters that were set in vain: their node does not read them again."""
+    for node in scene.nodes:
+        for name, before, now in node.unread:
+            if name not in _OF_EVERY_NODE and not name.startswith('qos_overrides.'):
+                yield Fault(
+                    READ_ONCE,
+                    (node.name,),
+                    name,
+                    f'The parameter {name!r} of {node.name} was set to {quoted(now)}, but its '
+                    'class reads parameters in __init__ alone: the node goes on with '
+                    f'{quoted(before)}.',
+                )
 
 
 def _for_all(node: OwnNode) -> set[str]:

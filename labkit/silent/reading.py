@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 from rclpy.exceptions import InvalidHandle
+from rclpy.node import Node
 
 from labkit.asking.silence import offers_service
 from labkit.asking.traffic import Sent, sent_by
@@ -25,6 +26,7 @@ from labkit.rosgraph.names import is_hidden
 from labkit.rosgraph.snapshot import Graph, is_whole, read_graph
 from labkit.rosgraph.yaml_loading import load_yaml_file
 from labkit.settings import LATE_SEC
+from labkit.silent.rereading import reads_only_in_init
 from labkit.silent.scene import (
     Client,
     LongCall,
@@ -40,8 +42,6 @@ from labkit.silent.scene import (
 )
 
 if TYPE_CHECKING:
-    from rclpy.node import Node
-
     from labkit.background.nodes import NodeEntry
 
 __all__ = ['Reader', 'files_in', 'rules_in']
@@ -138,6 +138,7 @@ class Reader:
             self._jump(node, now) if sim_time else 0.0,
             frozenset(given),
             frozenset(declared),
+            _unread(node, entry),
             rules,
             files_in(args),
             shared_rules,
@@ -190,6 +191,23 @@ class Reader:
                 max(0, ahead - known.ahead - sub.qos_profile.depth - 1) if entry else 0,
                 known.since,
             )
+
+
+def _unread(node: Node, entry: NodeEntry | None) -> tuple[tuple[str, Any, Any], ...]:
+    """Return the parameters that were set since, in vain; their values then and now."""
+    before = entry.parameters if entry is not None else {}
+    now = compat.parameter_values(node)
+    found = tuple((key, was, now[key]) for key, was in before.items() if now.get(key, was) != was)
+    if not found or compat.has_parameter_callbacks(node):
+        return ()
+    ends = (*node.timers, *node.subscriptions, *node.services)
+    callbacks = [end.callback for end in ends if not _is_of_rclpy(end.callback)]
+    return found if reads_only_in_init(type(node), Node, callbacks) else ()
+
+
+def _is_of_rclpy(callback: Any) -> bool:
+    module = getattr(getattr(callback, '__func__', callback), '__module__', None)
+    return str(module).startswith('rclpy.')
 
 
 def _sent(nodes: Sequence[Node]) -> dict[str, list[Sent]]:

@@ -158,6 +158,8 @@ class OwnNode:
         went_back: Seconds by which its clock has jumped back.
         overrides: Names of the parameters it was given.
         declared: Names of the parameters it has declared.
+        unread: Parameters that were set since it was spun, though it has read them before and
+            does not read them again: name, value then, value now.
         rules: Remapping rules for it alone.
         files: Parameter files for it alone.
         shared_rules: Remapping rules of its program, which all nodes of that have.
@@ -175,6 +177,7 @@ class OwnNode:
     went_back: float = 0.0
     overrides: frozenset[str] = frozenset()
     declared: frozenset[str] = frozenset()
+    unread: tuple[tuple[str, Any, Any], ...] = ()
     rules: tuple[Rule, ...] = ()
     files: tuple[ParameterFile, ...] = ()
     shared_rules: tuple[Rule, ...] = ()

@@ -504,6 +504,9 @@ node = Node('given', parameter_overrides=[Parameter('speed', value=1)])
 node.declare_parameter('size', 2)
 given, declared = compat.parameters_of(node)
 print(given, 'size' in declared, 'speed' in declared)
+print(compat.parameter_values(node)['size'], compat.has_parameter_callbacks(node))
+node.add_post_set_parameters_callback(print)
+print(compat.has_parameter_callbacks(node))
 client = node.create_client(Trigger, 'work')
 print(compat.pending_requests(client))
 client.call_async(Trigger.Request())
@@ -511,4 +514,4 @@ print(compat.pending_requests(client))
 print(compat.timer_of_rate(node.create_rate(10)) in node.timers)
 """
     )
-    assert result.stdout == "['speed'] True False\n0\n1\nTrue\n", result.stderr
+    assert result.stdout == ("['speed'] True False\n2 False\nTrue\n0\n1\nTrue\n"), result.stderr

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import functools
 import os
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -19,6 +22,7 @@ from labkit.silent.messages import NO_STAMP, look_at_messages
 from labkit.silent.names import alike, look_at_names
 from labkit.silent.parameters import matches
 from labkit.silent.reading import files_in
+from labkit.silent.rereading import reads_only_in_init
 from labkit.silent.scene import OwnNode, Publisher, Scene, Subscription, Timer
 from labkit.silent.timing import look_at_clocks
 
@@ -51,6 +55,45 @@ def test_files_of_parameters_that_are_read_again(tmp_path: Path) -> None:
     ]
     (file,) = files_in(args)
     assert file.sections == (('/robot/cruiser', {'a.b': 1}), ('/robot/other', {'a.b': 1}))
+
+
+READER = """
+class Cruiser(Node):
+    def __init__(self):
+        super().__init__()
+        self.speed = self.get_parameter('speed').value
+"""
+
+
+@pytest.mark.parametrize(
+    ('more', 'only'),
+    [
+        ('    def tick(self):\n        return self.speed', True),
+        ('    size = 3\n    @property\n    def half(self):\n        return self.speed / 2', True),
+        ('    def tick(self):\n        return self.get_parameter("speed")', False),
+        ('        self.now = lambda: self.get_parameter("speed")', False),
+        ('    @property\n    def now(self):\n        return self.get_parameter("speed")', False),
+        ('    @functools.lru_cache\n    def tick(self):\n        return 3', False),
+        ('    def count(self):\n        self.set_parameters([])', False),
+        ('def tick(node):\n    return node.get_parameter("speed")', False),
+        ('def tick(node):\n    return node.speed', True),
+        ('class Helper:\n    def go(self):\n        self.node.get_parameters([])', False),
+        ('class Other(Node):\n    def go(self):\n        self.get_parameters([])', True),
+        ('class Cruiser(Node):\n    pass', False),
+    ],
+)
+def test_who_reads_its_parameters_only_in_its_init(
+    more: str, only: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    notebook = ModuleType('__main__')
+    monkeypatch.setitem(sys.modules, '__main__', notebook)
+    vars(notebook).update(Node=Path, functools=functools)
+    exec(READER + more, vars(notebook))
+    Cruiser = vars(notebook)['Cruiser']
+    assert reads_only_in_init(Cruiser, Path, ()) is only
+    # Callbacks that are made elsewhere: one that reads, and one that nobody can look into.
+    for callback in (lambda: notebook.get_parameter('speed'), functools.partial(print, 1)):
+        assert not reads_only_in_init(Cruiser, Path, [callback])
 
 
 def test_type_of_another_package() -> None:

@@ -13,6 +13,20 @@ def _remap(*rules: str, name: str = 'talker') -> str:
     return f"loud({name!r}, 'chatter', cli_args={['--ros-args', *args]!r})"
 
 
+def _set_later(spoken: str) -> str:
+    return (
+        'class Cruiser(Node):\n'
+        '    def __init__(self):\n'
+        "        super().__init__('cruiser')\n"
+        "        self.declare_parameter('speed', 1.0)\n"
+        "        self.speed = self.get_parameter('speed').value\n"
+        '        self.create_timer(0.1, self.tick)\n'
+        '    def tick(self):\n'
+        f'        heard({spoken})\n'
+        "lab.spin(Cruiser()).set_parameters([Parameter('speed', value=2.0)])"
+    )
+
+
 _HALF = '{speed: 0.5}'
 
 CASES = {
@@ -33,6 +47,10 @@ CASES = {
     'parameters.wildcard': (
         _file(f'cruiser: {{ros__parameters: {_HALF}}}\n/**: {{ros__parameters: {{speed: 2.0}}}}'),
         _file(f'/**: {{ros__parameters: {{speed: 2.0}}}}\ncruiser: {{ros__parameters: {_HALF}}}'),
+    ),
+    'parameters.read-once': (
+        _set_later('self.speed'),
+        _set_later("self.get_parameter('speed').value"),
     ),
     'remap.unmatched': (_remap('/chater:=/other'), _remap('/chatter:=/other')),
     'remap.chain': (_remap('chatter:=news', 'news:=other'), _remap('chatter:=news')),
