@@ -349,7 +349,7 @@ class BackgroundExecutor(Executor):
             self._running = None
             took = time.monotonic() - self._running_since
             if took >= settings.LATE_SEC or entry.took:
-                entry.took[callback_name(what)] = took
+                entry.took[what if isinstance(what, Timer) else callback_name(what)] = took
             # The error of a node or action that was removed meanwhile is only that it was.
             if error is not None and not self._was_removed(entry, what, error):
                 self._hand_over(entry, callback_name(what), error)

@@ -5,6 +5,7 @@ It subscribes to nothing, and asks no node of the learner for anything but its a
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -267,12 +268,14 @@ def _long_calls(entry: NodeEntry | None) -> Iterator[LongCall]:
     if entry is None:
         return
     running = runtime.executor.running_for()
-    took = dict(entry.took)
-    if running is not None and running[0] is entry:
-        took[running[1]] = max(running[2], took.get(running[1], 0.0))
-    for callback, seconds in took.items():
+    if running is not None and running[0] is entry and running[2] >= LATE_SEC:
+        yield LongCall(*running[1:])
+    timers = {*entry.node.timers}
+    for what, seconds in dict(entry.took).items():
         if seconds >= LATE_SEC:
-            yield LongCall(callback, seconds)
+            timed = what in timers and not what.is_canceled()
+            period = what.timer_period_ns / 1e9 if timed else math.inf
+            yield LongCall(callback_name(what), seconds, period)
 
 
 def _running() -> Running | None:

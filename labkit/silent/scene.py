@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -99,10 +100,11 @@ class Client:
 
 @dataclass(frozen=True)
 class LongCall:
-    """A callback that took long: its name, and the seconds."""
+    """A callback that took long: its name, the seconds, and the period of its timer, if any."""
 
     callback: str
     seconds: float
+    period: float = math.inf
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from labkit.settings import LATE_SEC, LONG_SEC
 from labkit.silent.kinds import Fault, kind
-from labkit.silent.scene import LongCall, OwnNode, Scene
+from labkit.silent.scene import OwnNode, Scene
 
 __all__ = ['look_at_callbacks', 'look_at_clocks', 'look_at_timers']
 
@@ -216,22 +216,14 @@ def look_at_callbacks(scene: Scene) -> Iterator[Fault]:
                     f'{call.callback} of {node.name} takes {call.seconds:.1f} s; meanwhile '
                     'nothing else runs.',
                 )
-            elif (period := _overrun(node, call)) is not None:
+            elif not node.sim_time and call.seconds > max(call.period, LATE_SEC):
                 yield Fault(
                     OVERRUN,
                     (node.name,),
                     call.callback,
                     f'{call.callback} of {node.name} takes {call.seconds:.2g} s, but its timer '
-                    f'has a period of {period:g} s, and fires no sooner than it has returned.',
+                    f'has a period of {call.period:g} s: it fires only when it has returned.',
                 )
-
-
-def _overrun(node: OwnNode, call: LongCall) -> float | None:
-    """Return the period of the timer whose callback takes longer than that, None if none does."""
-    timers = [timer for timer in node.timers if timer.callback == call.callback]
-    if node.sim_time or len(timers) != 1 or timers[0].is_canceled:
-        return None  # of two timers with callbacks of one name, it is not known which it was
-    return timers[0].period if max(timers[0].period, LATE_SEC) < call.seconds else None
 
 
 def _keeps_others(scene: Scene, node: OwnNode, callback: str) -> bool:

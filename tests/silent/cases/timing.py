@@ -23,6 +23,15 @@ _OVERRUN = (
     "n = node('sleeper')\ndef tick(): time.sleep(0.25)\nn.create_timer({period}, tick)\n"
     'lab.wait_until(lambda: runtime.entry_of(n).took)'
 )
+# A timer and a subscription whose callbacks have one name, as all lambdas have.
+_ONE_NAME = (
+    "\nm = deaf('worker', 'work', callback=lambda _: time.sleep(0.25)); e = runtime.entry_of(m)\n"
+    "m.create_timer(0.05, lambda: None); loud('boss', 'work').publish(String())\n"
+    'def quiet():\n'
+    "    assert not [f for f in watch.look() if f.kind.id == 'time.overrun']\n"
+    '    return e.took\n'
+    'lab.wait_until(quiet)'
+)
 
 CASES = {
     'time.no-clock': (
@@ -52,7 +61,7 @@ CASES = {
         _LONG.format(seconds=1.1, more='m.create_timer(0.5, heard)'),
         _LONG.format(seconds=0.01, more='m.create_timer(0.5, heard)'),
     ),
-    'time.overrun': (_OVERRUN.format(period=0.05), _OVERRUN.format(period=1)),
+    'time.overrun': (_OVERRUN.format(period=0.05), _OVERRUN.format(period=1) + _ONE_NAME),
     'time.stuck-callback': (
         "free = threading.Event(); n = node('stuck'); begun = threading.Event()\n"
         'def tick(): begun.set(); free.wait()\n'
