@@ -22,7 +22,7 @@ import threading
 from importlib.machinery import ModuleSpec, PathFinder
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
-from types import ModuleType
+from types import FrameType, ModuleType
 from typing import Any
 
 from labkit import settings
@@ -94,10 +94,21 @@ class _Types(ModuleType):
             raise AttributeError(f'module {self.__name__!r} has no attribute {word!r}')
         with _lock:
             if word not in vars(self):
-                setattr(self, word, self._load(word))
+                setattr(self, word, self._load(word, self._of_all(word, sys._getframe(1))))
         return vars(self)[word]
 
-    def _load(self, word: str) -> Any:
+    def _of_all(self, word: str, caller: FrameType) -> str:
+        """Return how far `import *` is if that asks for a type, as it does for each; else ''."""
+        # Python's import system asks so, before the statement takes the names.
+        if caller.f_code.co_name != '_handle_fromlist' or not caller.f_locals.get('recursive'):
+            return ''
+        number = self.__all__.index(word) + 1
+        return (
+            f' ({number} of {len(self.__all__)}: import * asks for all of them. Name those that '
+            f'you use instead: from {self.__name__} import {word})'
+        )
+
+    def _load(self, word: str, of_all: str) -> Any:
         from rosidl_pycommon import (  # type: ignore[import-untyped]
             convert_camel_case_to_lower_case_underscore as to_module,
         )
@@ -106,7 +117,7 @@ class _Types(ModuleType):
         package, kind = self.__name__.split('.')
         module = f'_{to_module(word)}'
         if not any(Path(path, f'{module}.py').is_file() for path in self.__path__):
-            _add(package, _built(f'{package}/{kind}/{word}'))
+            _add(package, _built(f'{package}/{kind}/{word}', of_all))
         return getattr(importlib.import_module(f'{package}.{kind}.{module}'), word)
 
 
@@ -138,8 +149,12 @@ def _functions(package: str) -> str:
 # -- building -----------------------------------------------------------------------------------
 
 
-def _built(name: str) -> Path:
+def _built(name: str, of_all: str = '') -> Path:
     """Return the folder with what was built of a type; build it if there is none.
+
+    Args:
+        name: The type.
+        of_all: What is said beside its name while it is built.
 
     Raises:
         LabError: It can not be built.
@@ -152,14 +167,14 @@ def _built(name: str) -> Path:
     try:
         check_compiler()
         place = _writable_place()
-        _say(name)
+        _say(name, of_all)
         # Another process may be building it.
         with locked(place / 'lock', math.inf):
             if not (place / key).is_dir():
                 for left in place.glob('.building-*'):
                     shutil.rmtree(left, ignore_errors=True)
                 with tempfile.TemporaryDirectory(prefix='.building-', dir=place) as work:
-                    _build(Path(work), name, texts).rename(place / key)
+                    _build(Path(work), name, texts, of_all).rename(place / key)
     except (LabError, OSError) as error:
         todo = error.todo if isinstance(error, LabError) else ''
         why = error.message if isinstance(error, LabError) else str(error)
@@ -204,7 +219,7 @@ def _writable_place() -> Path:
     )
 
 
-def _build(work: Path, name: str, texts: dict[str, str]) -> Path:
+def _build(work: Path, name: str, texts: dict[str, str], of_all: str) -> Path:
     """Build a type in a folder for that; return the folder with the result."""
     package = name.partition('/')[0]
     source = work / 'src' / package
@@ -218,7 +233,7 @@ def _build(work: Path, name: str, texts: dict[str, str]) -> Path:
     colcon(
         work,
         [package],
-        label=f'Building {name}, once',
+        label=f'Building {name}, once{of_all}',
         definitions={
             'PACKAGE': package,
             'UNIT': name.replace('/', '_'),
@@ -230,7 +245,7 @@ def _build(work: Path, name: str, texts: dict[str, str]) -> Path:
 
 
 @functools.cache
-def _say(name: str) -> None:
+def _say(name: str, of_all: str) -> None:
     """Tell a terminal why nothing happens; a notebook has a progress bar."""
     if settings.audience() in (settings.TERMINAL, settings.SCRIPT):
-        print(f'labkit builds {name}, once for this environment.', file=sys.stderr)
+        print(f'labkit builds {name}, once for this environment{of_all}.', file=sys.stderr)

@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 from rosidl_adapter.parser import parse_message_string
@@ -140,6 +141,34 @@ def test_one_that_is_installed_wins(script, tmp_path):
     assert late.stdout == 'late\n', late.stderr
 
 
+def test_import_of_all_says_how_far_it_is_and_how_to_need_less(monkeypatch):
+    said = []
+
+    def load(self, word, of_all):
+        said.append(of_all)
+        return word
+
+    monkeypatch.setattr(built_types._Types, '_load', load)
+    monkeypatch.setitem(sys.modules, 'some', ModuleType('some'))
+    words = [
+        ' (1 of 2: import * asks for all of them. Name those that you use instead: '
+        'from some.msg import Bool)',
+        ' (2 of 2: import * asks for all of them. Name those '
+        'that you use instead: from some.msg import Int64)',
+    ]
+    for code, told in (
+        ('from some.msg import *', words),
+        ('from some.msg import Bool', ['']),
+        ('import some.msg; some.msg.Int64; some.msg.Int64', ['']),
+    ):
+        module = built_types._Types('some.msg', ['Bool', 'Int64'])
+        monkeypatch.setitem(sys.modules, 'some.msg', module)
+        sys.modules['some'].msg = module
+        exec(code, {})
+        assert said == told
+        said.clear()
+
+
 # -- keeping ------------------------------------------------------------------------------------
 
 
@@ -149,9 +178,9 @@ def places(tmp_path, monkeypatch):
     found = [tmp_path / 'environment', tmp_path / 'home']
     monkeypatch.setattr(built_types, '_places', lambda: found)
 
-    def build(work: Path, name: str, texts: dict[str, str]) -> Path:
+    def build(work: Path, name: str, texts: dict[str, str], of_all: str) -> Path:
         with (tmp_path / 'builds').open('a') as log:
-            log.write(f'{name}\n')
+            log.write(f'{name}{of_all}\n')
         (work / 'result').mkdir()
         return work / 'result'
 
@@ -161,7 +190,7 @@ def places(tmp_path, monkeypatch):
 
 def builds(tmp_path: Path) -> list[str]:
     path = tmp_path / 'builds'
-    return path.read_text().split() if path.exists() else []
+    return path.read_text().splitlines() if path.exists() else []
 
 
 def test_what_was_built_is_kept_until_its_text_changes(places, tmp_path, monkeypatch):
@@ -210,7 +239,7 @@ from pathlib import Path
 from labkit.packages import built_types
 
 
-def build(work, name, texts):
+def build(work, name, texts, of_all):
     print('builds', flush=True)
     sys.stdin.readline()
     (work / 'result').mkdir()
