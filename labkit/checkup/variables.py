@@ -11,9 +11,14 @@ from labkit import settings
 from labkit.checkup.found import Found
 from labkit.errors import first_few
 from labkit.files import is_inside
-from labkit.setup.machine import clean_environment
+from labkit.setup.machine import OWN_RELEASE, clean_environment
 
 __all__ = ['variables']
+
+_NOT_SOURCED = (
+    'Start from a terminal where no other ROS has been sourced (look for a line with /opt/ros in '
+    '~/.bashrc).'
+)
 
 
 def variables() -> str:
@@ -21,12 +26,14 @@ def variables() -> str:
     found = [*_foreign_entries(), *_lost_libraries(), *_wrong_values()]
     if found:
         raise Found(found)
-    peers = os.environ.get('ROS_STATIC_PEERS', '')
-    return f'ROS_STATIC_PEERS lets {peers!r} take part' if peers else 'none from elsewhere'
+    peers, server = map(os.environ.get, ('ROS_STATIC_PEERS', 'ROS_DISCOVERY_SERVER'))
+    said = [f'ROS_STATIC_PEERS lets {peers!r} take part'] * bool(peers)
+    said += [f'ROS_DISCOVERY_SERVER: nodes find each other through {server!r}'] * bool(server)
+    return '; '.join(said) or 'none from elsewhere'
 
 
 def _foreign_entries() -> list[tuple[str, str]]:
-    """Find folders of another ROS 2 in the search paths of Python and the system."""
+    """Find folders of another ROS in the search paths of Python and the system."""
     clean = clean_environment()
     # The learner's own workspace, built on this environment, is fine.
     workspaces = [
@@ -46,9 +53,8 @@ def _foreign_entries() -> list[tuple[str, str]]:
         if foreign:
             found.append(
                 (
-                    f'{name} leads to another ROS 2: {first_few(foreign)}.',
-                    'Start from a terminal where no ROS 2 has been sourced (look for a line with '
-                    '/opt/ros in ~/.bashrc).',
+                    f'{name} leads to another ROS: {first_few(foreign)}.',
+                    _NOT_SOURCED,
                 )
             )
     return found
@@ -79,6 +85,17 @@ def _wrong_values() -> list[tuple[str, str]]:
         if settings.dropped_variables:
             text += ' That is used instead, but a program without labkit would not start.'
         found.append((text, _unset('RMW_IMPLEMENTATION')))
+    others = [
+        f'{name} is {value!r}'
+        for name, own in OWN_RELEASE.items()
+        if (value := os.environ.get(name, '')) not in ('', own)
+    ]
+    if others:
+        text = (
+            f'{" and ".join(others)}, but what runs here is ROS 2 Jazzy: programs and launch '
+            'files that ask for it take the wrong way.'
+        )
+        found.append((text, _NOT_SOURCED))
     local = os.environ.get('ROS_LOCALHOST_ONLY', '')
     if local:
         text = (

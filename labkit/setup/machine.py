@@ -19,6 +19,7 @@ from labkit.errors import SetupError
 from labkit.files import is_inside
 
 __all__ = [
+    'OWN_RELEASE',
     'Interpreter',
     'check_platform',
     'clean_environment',
@@ -30,6 +31,8 @@ __all__ = [
 VERSIONS = ((3, 12), (3, 13), (3, 11), (3, 10))
 # The wheels are of the kind manylinux_2_28: they need this version of glibc.
 GLIBC = (2, 28)
+# What a sourced ROS sets, and programs ask for.
+OWN_RELEASE = {'ROS_DISTRO': 'jazzy', 'ROS_VERSION': '2'}
 
 _ELSEWHERE = (
     'On Windows, use WSL2 (`wsl --install`), which is Linux. On macOS, ARM and older systems, '
@@ -180,6 +183,9 @@ def clean_environment() -> dict[str, str]:
         if kept:
             environment[name] = os.pathsep.join(kept)
     environment.pop('PYTHONHOME', None)
+    for name, own in OWN_RELEASE.items():
+        if environment.get(name) != own:
+            environment.pop(name, None)
     # The only middleware among the wheels; another choice is for another ROS installation.
     if environment.get('RMW_IMPLEMENTATION') != 'rmw_fastrtps_cpp':
         environment.pop('RMW_IMPLEMENTATION', None)

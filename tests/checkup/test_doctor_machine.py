@@ -27,8 +27,11 @@ ROOT = Path(__file__).resolve().parents[2]
         ('ROS_LOCALHOST_ONLY', '1', 'Variables', 'overrides ROS_AUTOMATIC_DISCOVERY_RANGE'),
         ('ROS_PYTHON_CHECK_FIELDS', '0', 'Variables', 'Int16(data=40000), is not refused'),
         ('ROS_STATIC_PEERS', '192.168.1.7', 'Variables', 'has no effect'),
-        ('AMENT_PREFIX_PATH', '/opt/ros/humble', 'Variables', 'another ROS 2: /opt/ros/humble'),
-        ('LD_LIBRARY_PATH', '/opt/ros/humble/lib', 'Variables', 'another ROS 2: /opt/ros/humble'),
+        ('AMENT_PREFIX_PATH', '/opt/ros/humble', 'Variables', 'another ROS: /opt/ros/humble'),
+        ('LD_LIBRARY_PATH', '/opt/ros/humble/lib', 'Variables', 'another ROS: /opt/ros/humble'),
+        ('PYTHONPATH', '/opt/ros/noetic/lib', 'Variables', 'another ROS: /opt/ros/noetic/lib.'),
+        ('ROS_DISTRO', 'humble', 'Variables', "is 'humble', but what runs here is ROS 2 Jazzy"),
+        ('ROS_VERSION', '1', 'Variables', "is '1', but what runs here is ROS 2 Jazzy"),
         ('ROS_DOMAIN_ID', 'seven', 'Domain', "must be a number from 0 to 101, but it is 'seven'"),
         ('ROS_DOMAIN_ID', '150', 'Domain', 'Choose a number from 0 to 101'),
         ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCAL', 'Domain', "but it is 'LOCAL'"),
@@ -38,8 +41,8 @@ ROOT = Path(__file__).resolve().parents[2]
 def test_variable_that_is_wrong(
     lab_env: dict[str, str], variable: str, value: str, line: str, words: str
 ) -> None:
-    if variable == 'LD_LIBRARY_PATH':
-        value += f':{os.environ.get(variable, "")}'
+    if variable.endswith('PATH') and variable != 'AMENT_PREFIX_PATH':
+        value += f':{lab_env.get(variable, "")}'
     seen = visit({**lab_env, variable: value})
     assert seen.exit_code == 1
     assert words in seen.red[line]
@@ -60,7 +63,7 @@ def test_packages_of_another_ros_on_the_path(lab_env: dict[str, str], tmp_path: 
     assert f'Python takes rclpy from {str(other / "__init__.py")!r}' in seen.red['ROS 2 packages']
     assert f'PYTHONPATH has {str(tmp_path)!r}' in seen.red['ROS 2 packages']
     assert 'ROS does not start: ImportError: of another Python' in seen.red['Middleware']
-    assert 'PYTHONPATH leads to another ROS 2' in seen.red['Variables']
+    assert 'PYTHONPATH leads to another ROS' in seen.red['Variables']
 
 
 def test_workspace_of_the_learner_is_welcome(lab_env: dict[str, str], tmp_path: Path) -> None:

@@ -432,9 +432,11 @@ def test_other_ros_installations_are_kept_out(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setenv('LD_LIBRARY_PATH', f'/opt/ros/humble/lib:/mine:/other/.venv/lib:{wheels}')
     monkeypatch.setenv('PYTHONPATH', '/home/me/ws/install/mine/lib/python3.10/site-packages')
     monkeypatch.setenv('RMW_IMPLEMENTATION', 'rmw_cyclonedds_cpp')
+    monkeypatch.setenv('ROS_DISTRO', 'humble')
+    monkeypatch.setenv('ROS_VERSION', '2')
     clean = machine.clean_environment()
-    assert clean['LD_LIBRARY_PATH'] == '/mine'
-    gone = {'_ROS_WHEELS_BOOTSTRAP_COMPLETE', 'AMENT_PREFIX_PATH', 'PYTHONPATH'}
+    assert clean['LD_LIBRARY_PATH'] == '/mine' and clean['ROS_VERSION'] == '2'
+    gone = {'_ROS_WHEELS_BOOTSTRAP_COMPLETE', 'AMENT_PREFIX_PATH', 'PYTHONPATH', 'ROS_DISTRO'}
     assert not {*gone, 'RMW_IMPLEMENTATION'} & set(clean)
 
 
