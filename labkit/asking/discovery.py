@@ -12,7 +12,7 @@ from rclpy.node import Node
 from labkit.background.domains import open_ports
 from labkit.background.runtime import runtime
 from labkit.background.wait import wait_for
-from labkit.domain_ids import first_port
+from labkit.domain_ids import ports_of_participants
 from labkit.rosgraph.names import LAST_SERVICE, PARAMETER_SERVICES
 from labkit.rosgraph.snapshot import is_whole, node_names
 
@@ -40,11 +40,6 @@ MOST_SEC = 10.0
 # A new process has made all of its nodes when nothing was added for so long: it may have to load
 # message types in between.
 SETTLED_SEC = 0.3
-
-# Ports of participants, DDSI-RTPS 2.5, 9.6.2.3: that of the domain + 10 + 2 * participant. Fast
-# DDS looks for 32 participants on this machine; the next ports belong to another domain.
-_FIRST_PARTICIPANT = 10
-_MOST_PARTICIPANTS = 32
 
 
 def asking_node(spin_time: float = DISCOVERY_SEC) -> Node:
@@ -135,8 +130,7 @@ def _stopwatch(look: Callable[[], object]) -> Callable[[], float]:
 
 def _participants_here() -> int:
     """Return the number of participants of this domain with an open port on this machine."""
-    first = first_port(runtime.domain_id or 0) + _FIRST_PARTICIPANT
-    return len(open_ports() & set(range(first, first + 2 * _MOST_PARTICIPANTS, 2)))
+    return len(open_ports() & {*ports_of_participants(runtime.domain_id or 0)})
 
 
 def _is_local() -> bool:

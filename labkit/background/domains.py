@@ -24,6 +24,7 @@ from labkit.domain_ids import (
     between_is_possible,
     first_port,
     is_ours,
+    ports_of_participants,
 )
 from labkit.errors import LabError, printable
 from labkit.settings import notebook_name
@@ -32,6 +33,7 @@ __all__ = [
     'DomainClaim',
     'claim_domain',
     'claimed_domains',
+    'domains_of_programs',
     'first_node_is_made',
     'follow_profile',
     'number_for_ros',
@@ -201,6 +203,22 @@ def claimed_domains() -> dict[int, str]:
     told = {domain_id: names.get(found[domain_id], (0, 'a notebook')) for domain_id in found}
     newest_first = sorted(told, key=lambda domain_id: (-told[domain_id][0], domain_id))
     return {domain_id: told[domain_id][1] for domain_id in newest_first}
+
+
+def domains_of_programs() -> list[int]:
+    """Return the domains in which other programs of this user have nodes, but no notebook has."""
+    own = _links(Path('/proc/self/fd'))
+    opened = {
+        each.port
+        for each in _udp_sockets()
+        if each.user_id == os.getuid() and f'socket:[{each.inode}]' not in own
+    }
+    notebooks = claimed_domains()
+    return [
+        domain_id
+        for domain_id in range(LAST_DOMAIN_ID + 1)
+        if domain_id not in notebooks and opened & {*ports_of_participants(domain_id)}
+    ]
 
 
 def open_ports() -> set[int]:

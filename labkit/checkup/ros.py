@@ -174,7 +174,18 @@ def domain() -> str:
             todo='Call lab.stop(), then start the nodes again.',
         )
     whose = "this notebook's own" if runtime.own_domain else 'shared'
-    return f'{runtime.domain_id} ({whose}), range {reach}'
+    return f'{runtime.domain_id} ({whose}), range {reach}{_elsewhere(runtime.domain_id)}'
+
+
+def _elsewhere(own: int | None) -> str:
+    """Return in which other domains programs of this user have nodes, in words."""
+    from labkit.background.domains import domains_of_programs
+
+    others = [str(domain_id) for domain_id in domains_of_programs() if domain_id != own]
+    if not others:
+        return ''
+    which = 'domain' if len(others) == 1 else 'domains'
+    return f'; programs of yours in {which} {first_few(others)} are apart from it'
 
 
 def _range() -> str:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 
 import pytest
@@ -11,6 +13,15 @@ from visits import NAMES, Visit, look, visit
 from labkit.background import domains
 from labkit.checkup.found import Found
 from labkit.checkup.report import Line, Report
+
+OTHER = """
+import sys
+import rclpy
+rclpy.init()
+node = rclpy.create_node('talker')
+print('ready', flush=True)
+sys.stdin.read()
+"""
 
 
 @pytest.fixture
@@ -243,6 +254,28 @@ def test_domain_that_was_changed_after_the_start(kernel, domain_id: str) -> None
     assert f"but ROS_DOMAIN_ID is '{domain_id}' now" in seen.red['Domain']
     kernel.run('lab.stop()\nlab.start()')
     assert look(kernel).exit_code == 0
+
+
+@pytest.mark.slow('the doctor looks for other processes')
+def test_a_program_in_another_domain_is_named(kernel, lab_env: dict[str, str]) -> None:
+    claim = domains.claim_domain(shared=True)  # not listed as that of a notebook
+    env = {**lab_env, 'ROS_DOMAIN_ID': str(claim.domain_id)}
+    env['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    kernel.run(f'{SETUP}lab.start()')
+
+    def is_named() -> bool:
+        said = ' '.join(kernel.run('print(lab.doctor())').text.split())
+        (found,) = re.findall(r'Domain (.*?) ✔', said)
+        return bool(re.search(rf'programs of yours in .*\b{claim.domain_id}\b', found))
+
+    assert not is_named()
+    command = [sys.executable, '-c', OTHER]
+    other = subprocess.Popen(command, env=env, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    assert other.stdout.readline() == b'ready\n'
+    assert is_named()
+    other.communicate()
+    assert not is_named()
+    claim.close()
 
 
 def test_pair_that_does_not_match_until_one_end_is_mended(kernel) -> None:
