@@ -19,7 +19,6 @@ from labkit.exercises.life import Life, Sent, Stimulus, live
 from labkit.exercises.mistakes import Mistake
 from labkit.exercises.scope import Scope
 from labkit.exercises.watch import Lived, Watch
-from labkit.lessons.my_name_is.two_names import two_names
 
 INT16 = 'std_msgs/msg/Int16'
 CLAUSE = Answers('/odds', '/evens', INT16, 'add 1', answer=lambda n: n + 1, draw=lambda: [1])
@@ -168,74 +167,6 @@ def test_stranger_who_has_not_found_the_node_takes_no_answer_of_a_test() -> None
     seen.life.samples['/evens'].clear()
     with pytest.raises(Fail, match='nothing on /evens'):
         CLAUSE.judge(seen)
-
-
-OPENING, OTHER = 'My name is ', 'I am '
-ADA, BOB = '/ada', '/bob'
-Said = tuple[float, str, str, int]
-
-
-def introduced(*answers: Said) -> Evidence:
-    """Return evidence of two nodes that say names: when, what, the node, and its number."""
-
-    def said(*texts: Said) -> list[Lived]:
-        return [Lived(SimpleNamespace(data=text), 0.0, n, at, by) for at, text, by, n in texts]
-
-    tests = [(2.0, OPENING), (3.0, OTHER)]
-    heard = said(*[(at, text, '/check', 0) for at, text in [(1.9, OPENING), *tests]])
-    life = Life(30.0, {'/incomplete': heard, '/names': said(*answers)})
-    life.sent = [Sent(at, '/incomplete', {'data': text}) for at, text in tests]
-    life.strangers = {'/incomplete': 1}
-    ends = {
-        (kind, topic, name): SimpleNamespace(node=name)
-        for kind, topic in (('publisher', '/names'), ('subscription', '/incomplete'))
-        for name in (ADA, BOB)
-    }
-    return Evidence(NOBODY_ELSE, ends=cast(Any, ends), life=life)
-
-
-_, EACH, DIFFER = two_names.clauses
-
-
-@pytest.mark.parametrize('here', [True, False])
-def test_one_of_two_who_say_a_name_has_not_been_found_by_a_stranger(here: bool) -> None:
-    ada, bob = (ADA, BOB) if here else ('', '')
-    came = [(2.1, OPENING + 'Bob', bob, 1), (2.1, OPENING + 'Ada', ada, 1)]
-    came += [(3.1, OTHER + 'Ada', ada, 2)]
-    seen = introduced(*came, (3.1, OTHER + 'Bob', bob, 2))
-    assert EACH.judge(seen).startswith('Each text was completed by 2 nodes')
-    assert not DIFFER.judge(seen)
-    with pytest.raises(Fail, match='1 of 2 messages were answered correctly'):
-        EACH.judge(introduced(*came))
-
-
-@pytest.mark.parametrize('here', [True, False])
-def test_node_that_speaks_for_a_silent_one_is_one_of_two(here: bool) -> None:
-    ada = ADA if here else ''
-    names = [OPENING + 'Ada', OPENING + 'Bob', OTHER + 'Ada', OTHER + 'Bob']
-    came = [(2.1 + i // 2, text, ada, i + 1) for i, text in enumerate(names)]
-    with pytest.raises(Fail, match='1 of 2') as refused:
-        EACH.judge(introduced(*came))
-    assert refused.value.mistake is not None
-    assert refused.value.mistake.id == 'two-names/only-some'
-
-
-def test_node_that_has_spoken_before_the_check_is_none_that_never_answers(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    seen = introduced((2.1, OPENING + 'Bob', BOB, 1), (3.1, OTHER + 'Bob', BOB, 2))
-    monkeypatch.setattr(seen, 'said_by', lambda node, _: [node] if node == ADA else [])
-    with pytest.raises(Fail) as refused:
-        EACH.judge(seen)
-    assert refused.value.seen == 'nothing on /names'
-
-
-def test_nodes_that_take_turns_with_their_names_do_not_stay_with_them() -> None:
-    came = [(2.1, OPENING + 'Ada', ADA, 1), (2.1, OPENING + 'Bob', BOB, 1)]
-    with pytest.raises(Fail) as refused:
-        EACH.judge(introduced(*came, (3.1, OTHER + 'Bob', ADA, 2), (3.1, OTHER + 'Ada', BOB, 2)))
-    assert refused.value.mistake is not None
-    assert refused.value.mistake.id == 'stages/changed'
 
 
 def test_answer_to_a_stranger_who_speaks_with_a_test_may_seem_late() -> None:

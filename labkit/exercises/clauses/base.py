@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import random
 import time
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from labkit.exercises import expect, words
@@ -188,15 +189,22 @@ class Evidence:
             self.tests.setdefault(clause, []).append(sent)
         self.refuse_trouble(clauses)
 
-    def alone(self, clause: GraphClause, tests: Sequence[Test], node: str) -> Evidence:
-        """Let time pass for one node alone, and send it tests.
+    def alone(
+        self,
+        clause: GraphClause,
+        tests: Sequence[Test],
+        *nodes: str,
+        also: Mapping[str, str] = MappingProxyType({}),
+    ) -> Evidence:
+        """Let time pass for one node alone, or for some of those that are there, and send tests.
 
         So they don't mix with what another node under test says on the same topic.
 
         Args:
             clause: Who asks.
             tests: What is sent.
-            node: Full name of the node.
+            nodes: Full names of the nodes.
+            also: Topics that no task names, with their types: what comes there is seen, too.
 
         Returns:
             The same evidence, with what was seen now.
@@ -205,9 +213,9 @@ class Evidence:
             LearnerError, Fail: As `refuse_trouble` does.
         """
         scope, stimuli = self.probe.scope, _in_turn(tests)
-        topics = {**scope.publishes, **scope.subscribes}
+        topics = {**scope.publishes, **scope.subscribes, **also}
         seconds = _seconds(stimuli) or LIFE_SEC
-        life = self.live(topics, seconds, [clause], stimuli, nodes=[node])
+        life = self.live(topics, seconds, [clause], stimuli, nodes=nodes)
         evidence = replace(self, life=life)
         evidence.refuse_trouble(())
         return evidence

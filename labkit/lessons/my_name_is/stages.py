@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator, Sequence
+from typing import Any
+
 from labkit.exercises import Mistake
 from labkit.exercises.clauses import Says
 
 __all__ = [
-    'CHANGED',
+    'COMPLETES',
     'INNER',
     'NOTHING_ADDED',
     'NOT_IN_IT',
     'OPENING',
     'STRING',
-    'name_trouble',
     'says_opening',
 ]
 
@@ -53,7 +55,7 @@ def says_opening() -> Says:
     return Says(INNER, OPENING, words=words)
 
 
-def name_trouble(text: str, answer: str) -> Mistake | None:
+def _name_trouble(text: str, answer: str) -> Mistake | None:
     """Return what is wrong with a name that was appended to a text; None if nothing is."""
     name = answer.removeprefix(text)
     if answer == text or not name.strip():
@@ -65,3 +67,28 @@ def name_trouble(text: str, answer: str) -> Mistake | None:
     if answer.startswith(text.rstrip()):
         return NO_SPACE
     return IN_FRONT if text.strip() in answer else NOT_IN_IT
+
+
+def _complete(name: str | None) -> Generator[str, str, None]:
+    """Append a name, or what stands for one, to each text."""
+    text = yield ''
+    while True:
+        text = yield f'{text}{name or "Ada"}'
+
+
+def _names(text: str, said: str) -> Sequence[str | None]:
+    """Return the name that the first answer tells, None in its place if it holds none."""
+    return [None if _name_trouble(text, said) else said.removeprefix(text)]
+
+
+def _trouble(text: str, came: Sequence[str]) -> Mistake | None:
+    return (_name_trouble(text, came[-1]) or CHANGED) if came else None
+
+
+# For `Answers`: a stage appends a first name to each text. Which one, its first answer tells.
+COMPLETES: dict[str, Any] = {
+    'answer': _complete,
+    'mistakes': [NOTHING_ADDED],
+    'explain': _trouble,
+    'resume': _names,
+}

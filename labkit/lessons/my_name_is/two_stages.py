@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from labkit.exercises import Exercise, Fail, Mistake, Solution
 from labkit.exercises.clauses import WITHIN, Answers, Evidence, GraphClause, Publishes, Test
 from labkit.exercises.draws import draw_texts
 from labkit.lessons.my_name_is.stages import (
-    CHANGED,
+    COMPLETES,
     INNER,
-    NOTHING_ADDED,
     OPENING,
     STRING,
-    name_trouble,
     says_opening,
 )
 
@@ -26,22 +24,6 @@ ONE_NODE = Mistake(
     'One node does the work of both stages, so neither can be replaced without the other.',
     'Write a class for each stage.',
 )
-
-
-def _complete(name: str | None) -> Generator[str, str, None]:
-    """Append a name, or what stands for one, to each text."""
-    text = yield ''
-    while True:
-        text = yield f'{text}{name or "Ada"}'
-
-
-def _names(text: str, said: str) -> Sequence[str | None]:
-    """Return the name that the first answer tells, None in its place if it holds none."""
-    return [None if name_trouble(text, said) else said.removeprefix(text)]
-
-
-def _trouble(text: str, came: Sequence[str]) -> Mistake | None:
-    return (name_trouble(text, came[-1]) or CHANGED) if came else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,11 +72,8 @@ two_stages = Exercise(
             STRING,
             f'for each text on `{INNER}`, publish it on `{OUTER}` with your first name appended '
             f'(both `{STRING}`), once, {WITHIN}',
-            answer=_complete,
             draw=lambda: [OPENING, *draw_texts()],
-            mistakes=[NOTHING_ADDED],
-            explain=_trouble,
-            resume=_names,
+            **COMPLETES,
         ),
         _TwoNodes(),
     ),
