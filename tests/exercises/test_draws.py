@@ -167,7 +167,6 @@ SAME = {
         'not what came before',
         'not the same within 10 ms',
     },
-    'millimetres': {'no sign', 'small numbers'},
     'distance': {'nothing for nothing'},
 }
 MEMORY: dict[str, Program] = {'it forgets after ten': forgetful}

@@ -5,10 +5,11 @@ from __future__ import annotations
 from labkit.exercises import Lesson
 from labkit.lessons.quality_of_service.door import door
 from labkit.lessons.quality_of_service.lock import NODE as LOCK
-from labkit.lessons.quality_of_service.millimetres import SONAR, millimetres
+from labkit.lessons.quality_of_service.masts import NODES
 from labkit.lessons.quality_of_service.quiz import QUIZ, WARM_UP
 from labkit.lessons.quality_of_service.rover import NODE as ROVER
 from labkit.lessons.quality_of_service.rover import TOPICS
+from labkit.lessons.quality_of_service.silent_mast import silent_mast
 from labkit.lessons.quality_of_service.site import site
 from labkit.lessons.quality_of_service.watchdog import watchdog
 
@@ -23,9 +24,9 @@ LESSON = Lesson(
         'depth, reliability, durability, lifespan, deadline; two ends that do not match, '
         'and where ROS tells'
     ),
-    exercises=[site, watchdog, millimetres, door],
+    exercises=[site, watchdog, silent_mast, door],
     quizzes=[WARM_UP, QUIZ],
-    topics=['/frames', *TOPICS, '/numbers', '/fresh', '/kept', '/beat'],
+    topics=['/frames', *TOPICS, '/numbers', '/fresh', '/kept', '/beat', '/range', '/display'],
     given={
         '/camera': 'slow',
         '/viewer': 'slow',
@@ -38,8 +39,9 @@ LESSON = Lesson(
         '/clock': 'lifespan',
         '/heart': 'deadline',
         '/nurse': 'deadline',
-        SONAR: 'silent',
+        '/sonar': 'silent',
         '/pilot': 'silent repair',
+        **dict.fromkeys(NODES, ''),
         '/old_door': 'lock',
         LOCK: 'lock',
     },

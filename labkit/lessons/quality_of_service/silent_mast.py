@@ -1,0 +1,231 @@
+"""Exercise: find the mast that hears nothing, and let a node stand in for it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from itertools import pairwise, product
+from typing import TYPE_CHECKING
+
+from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, Solution, expect, words
+from labkit.exercises.clauses import Evidence, GraphClause
+from labkit.exercises.scope import PUBLISHER, SUBSCRIPTION, Role
+from labkit.exercises.watch import Watch
+from labkit.lessons.quality_of_service.masts import INT16, NODES, TOPICS, masts_are_open
+
+if TYPE_CHECKING:
+    from labkit.rosgraph.endpoints import Endpoint
+
+__all__ = ['silent_mast']
+
+LEVEL, *SAID = TOPICS
+# On these a node of the learner's may take the place of a mast, and these it may hear.
+STANDS_IN, HEARS = TOPICS[1:4], TOPICS[:3]
+# How long the first number may take to go through two processes, s, and so many are looked at.
+FIRST_SEC, SEVERAL = 8.0, 6
+
+_COMPARE = 'Compare what {before} offers with what {node} asks for: lab.doctor() does that.'
+ELSEWHERE = Mistake(
+    'silent-mast/elsewhere',
+    'Nothing comes on {topic}, and none of your nodes publishes there.',
+    f'Look for the first topic that is silent. {_COMPARE}',
+    change=[('fits == QoSCompatibility.ERROR', 'fits != QoSCompatibility.ERROR')],
+)
+NO_EAR = Mistake(
+    'silent-mast/no-ear',
+    'Your node publishes on {topic}, and does not hear {hears}, from which the numbers come.',
+    'A mast hears the topic before its own.',
+)
+NOT_SAID = Mistake(
+    'silent-mast/not-said',
+    'Your node hears {hears}, and publishes nothing on {topic}.',
+    'Publish each message in the callback, as it came.',
+    change=[('self.publisher.publish(msg)', 'self.level = msg.data')],
+)
+OTHERS = Mistake(
+    'silent-mast/others',
+    'These are other numbers than those of /gauge.',
+    'A mast passes on each number as it came.',
+    change=[('self.publisher.publish(msg)', 'self.publisher.publish(Int16(data=msg.data + 1))')],
+)
+MISSING = Mistake(
+    'silent-mast/missing',
+    'Not each number is passed on.',
+    'Publish each message in the callback, as it came.',
+    change=[
+        (
+            '        self.publisher.publish(msg)',
+            "        self.turn = not getattr(self, 'turn', False)\n        if self.turn:\n"
+            '            self.publisher.publish(msg)',
+        )
+    ],
+)
+TWICE = Mistake(
+    'silent-mast/twice',
+    'On {topic} the same number comes more than once.',
+    'Stand in for the silent mast alone, and publish each number once.',
+)
+
+
+class _Carries(GraphClause):
+    """All numbers come through the chain."""
+
+    text = (
+        f'each number that `{NODES[0]}` publishes on `{LEVEL}` comes on '
+        f'{", ".join(f"`{topic}`" for topic in SAID[:-1])} and `{SAID[-1]}`'
+    )
+    recognises = (ELSEWHERE, NOT_SAID, OTHERS, MISSING)
+    own_life = True
+
+    @property
+    def roles(self) -> dict[Role, str]:
+        """A node may take the place of each mast."""
+        publishes = {(PUBLISHER, topic): INT16 for topic in STANDS_IN}
+        return publishes | {(SUBSCRIPTION, topic): INT16 for topic in HEARS}
+
+    def find(self, evidence: Evidence) -> None:
+        """Look for the masts, and for a node that stands in."""
+        probe = evidence.probe
+        if not masts_are_open():
+            raise NotAttempted('The masts are closed. Run the cell with open_masts() first.')
+
+        def places() -> list[str]:
+            return [topic for topic in STANDS_IN if probe.publishers(topic)]
+
+        if not probe.wait_to_appear(places):
+            if not probe.attempt():
+                raise NotAttempted
+            raise Fail(
+                f'a node of yours that publishes on {" or ".join(STANDS_IN)}',
+                f'{", ".join(sorted(probe.attempt()))}, which publishes on none of them',
+                todo='Take the place of the mast that hears nothing: hear what it should hear, '
+                'and publish on its topic.',
+            )
+        for topic in places():
+            expect.spun(probe, evidence.publisher(topic))
+            for end in probe.publishers(topic):
+                if end.node in {other.node for other in probe.subscriptions(topic)}:
+                    seen = f'{end.node} publishes on {topic}, and subscribes to it'
+                    raise Fail(
+                        f'a node that hears the topic before {topic}', seen, words.HEARS_ITSELF
+                    )
+
+    def judge(self, evidence: Evidence) -> str:
+        """Listen at each place, until the town has shown some numbers."""
+        probe, heard = evidence.probe, evidence.heard
+        for topic in TOPICS:
+            heard[topic] = probe.watch(topic, INT16)
+        probe.wait(lambda: all(map(len, heard.values())), FIRST_SEC)
+        for before, topic in pairwise(TOPICS):
+            if not len(heard[topic]):
+                raise _silent(evidence, before, topic)
+        # Some were on their way when the first ones of these were heard.
+        started = {topic: len(watch) for topic, watch in heard.items()}
+        probe.wait(
+            lambda: all(len(watch) >= started[t] + SEVERAL for t, watch in heard.items()),
+            FIRST_SEC,
+        )
+        numbers = _numbers(heard[LEVEL])
+        for topic in SAID:
+            came = _numbers(heard[topic])
+            both = [number for number in numbers if number in came]
+            wanted = numbers[numbers.index(both[0]) : numbers.index(both[-1]) + 1] if both else []
+            seen = list(dict.fromkeys(came[came.index(both[0]) :])) if both else came
+            seen = seen[: seen.index(both[-1]) + 1] if both else seen
+            if seen != wanted:
+                raise Fail(
+                    f'on {topic} the numbers of {LEVEL}: {expect.show(wanted or numbers)}',
+                    expect.show(seen),
+                    MISSING if {*seen} < {*wanted} else OTHERS,
+                )
+        return f'On {SAID[-1]} come the numbers of {NODES[0]}: {expect.show(numbers[-3:])}.'
+
+
+class _Once(GraphClause):
+    """No number comes twice."""
+
+    text = 'on each of these topics, it comes once'
+    recognises = (TWICE,)
+
+    def judge(self, evidence: Evidence) -> str:
+        """Count them."""
+        for topic in SAID:
+            number, count = Counter(_numbers(evidence.heard[topic])).most_common(1)[0]
+            if count > 1:
+                who = ' and '.join(sorted(end.node for end in _publishers(evidence, topic)))
+                raise Fail(
+                    f'on {topic} each number once',
+                    f'{number} came {count} times; {who} publish there',
+                    TWICE.of(topic=topic),
+                )
+        return ''
+
+
+def _numbers(watch: Watch) -> list[int]:
+    watch.pump()
+    return watch.values('data')
+
+
+def _publishers(evidence: Evidence, topic: str) -> list[Endpoint]:
+    from labkit.rosgraph.endpoints import publishers
+
+    return publishers(evidence.probe.node, topic)
+
+
+def _silent(evidence: Evidence, before: str, topic: str) -> Fail:
+    """Return why nothing comes on a topic, though something comes on the one before it."""
+    probe, place = evidence.probe, TOPICS.index(topic)
+    expected = f'the numbers of {LEVEL} on {topic}'
+    for source, sink, reason in _apart(evidence, before):
+        mine = sink if sink.node in probe.attempt() else source
+        return Fail(
+            f'{sink.node} hears {source.node} on {before}',
+            f'the two do not match: {reason[:1].lower()}{reason[1:]}',
+            words.OFFER_AND_REQUEST.of(
+                todo=f'Look at both profiles with %ros2 topic info --verbose {before}, and change '
+                f'that of {mine.node}.'
+            ),
+        )
+    values = {'topic': topic, 'hears': before, 'before': NODES[place - 1], 'node': NODES[place]}
+    mistake = NOT_SAID
+    if not probe.publishers(topic):
+        mistake = ELSEWHERE
+    elif not probe.subscriptions(before):
+        mistake = NO_EAR
+    return Fail(expected, f'nothing on {topic}', mistake.of(**values))
+
+
+def _apart(evidence: Evidence, topic: str) -> Iterator[tuple[Endpoint, Endpoint, str]]:
+    """Give the pairs that do not match, of which one end is the learner's."""
+    from labkit.rosgraph.endpoints import subscriptions
+    from labkit.rosgraph.matching import why_apart
+
+    probe = evidence.probe
+    mine = probe.attempt()
+    for source, sink in product(_publishers(evidence, topic), subscriptions(probe.node, topic)):
+        reason = why_apart(source, sink) if mine & {source.node, sink.node} else ''
+        if reason:
+            yield source, sink, reason
+
+
+silent_mast = Exercise(
+    name='silent_mast',
+    task='One mast of the chain hears nothing. Find it, and let a node of yours stand in for it.',
+    clauses=(_Carries(), _Once()),
+    shared=STANDS_IN,
+    hints=[
+        'Go along the chain: on which topic does nothing come? lab.doctor() names the two ends '
+        'that do not match.',
+        'Your node hears what the silent mast should hear, and asks for no more than is offered '
+        'there: %ros2 topic info --verbose shows it.',
+        'If /mast_b is silent: subscribe to /level_a with qos_profile_sensor_data, and publish '
+        'each message on /level_b with a depth alone, for the next mast asks for reliable.',
+    ],
+    answer=Solution(
+        __file__,
+        'silent_mast.py',
+        'The node looks for the link by itself, with the function that rclpy compares profiles '
+        'with. You may have read it off the graph, and written the two topics down. It asks for '
+        'little, and offers what is usual, so it matches both of its neighbours.',
+    ),
+)
