@@ -161,8 +161,8 @@ def test_what_is_typed_is_published(open_lesson: Callable[[str], Notebook]) -> N
     box.press('Enter')
     expect(box).to_have_value('')
     notebook.replace_cell(
-        'teller-starter',
+        'typed-text-starter',
         "lab.wait_until(lambda: ('Ada', 'Typed into the box') in chat.heard)\nprint(chat.heard)",
     )
-    shown = notebook.run_cell('teller-starter')
+    shown = notebook.run_cell('typed-text-starter')
     assert shown.count('Typed into the box') == 1

@@ -152,7 +152,6 @@ NUMBERS: dict[str, Program] = {
 SAME = {
     'evens': {'nothing for nothing'},
     'two_stages': {'it forgets after ten'},
-    'teller': {'no blanks at the ends', 'nothing for nothing'},
     'mouth': {'small letters'},
     'greeter': {
         'nothing for nothing',

@@ -8,7 +8,7 @@ from labkit.lessons.chat.greeter import greeter
 from labkit.lessons.chat.hearer import hearer
 from labkit.lessons.chat.polite import polite
 from labkit.lessons.chat.quiz import QUIZ, WARM_UP
-from labkit.lessons.chat.teller import teller
+from labkit.lessons.chat.typed_text import typed_text
 
 __all__ = ['LESSON']
 
@@ -21,7 +21,7 @@ LESSON = Lesson(
         "typed text, everybody's messages; share one topic with other computers; replies "
         'without an end'
     ),
-    exercises=[teller, hearer, greeter, polite],
+    exercises=[typed_text, hearer, greeter, polite],
     quizzes=[WARM_UP, QUIZ],
     topics=['/shared_chatter', '/heard_next_door', *ROBOT_TOPICS],
     given={
