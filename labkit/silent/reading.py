@@ -201,7 +201,7 @@ def _unread(node: Node, entry: NodeEntry | None) -> tuple[tuple[str, Any, Any], 
     found = tuple((key, was, now[key]) for key, was in before.items() if now.get(key, was) != was)
     if not found or compat.has_parameter_callbacks(node):
         return ()
-    ends = (*node.timers, *node.subscriptions, *node.services)
+    ends: tuple[Any, ...] = (*node.timers, *node.subscriptions, *node.services)
     callbacks = [end.callback for end in ends if not _is_of_rclpy(end.callback)]
     return found if reads_only_in_init(type(node), Node, callbacks) else ()
 

@@ -163,7 +163,7 @@ def test_import_of_all_says_how_far_it_is_and_how_to_need_less(monkeypatch):
     ):
         module = built_types._Types('some.msg', ['Bool', 'Int64'])
         monkeypatch.setitem(sys.modules, 'some.msg', module)
-        sys.modules['some'].msg = module
+        monkeypatch.setattr(sys.modules['some'], 'msg', module, raising=False)
         exec(code, {})
         assert said == told
         said.clear()

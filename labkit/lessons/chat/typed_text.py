@@ -181,6 +181,7 @@ class _Says(GraphClause):
             mistake = EMPTY_TOO.of(line=empty)
         elif came:
             found = recognise(MISTAKES, lambda each: each.answer(line) == came[0])
+            assert found is not None  # the last one of them fits anything
             trouble = text_trouble(came[0], right)
             mistake = found if trouble is None or found is not MISTAKES[-1] else trouble
         fail = Fail(wanted, seen, mistake)

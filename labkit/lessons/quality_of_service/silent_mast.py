@@ -169,7 +169,7 @@ def _numbers(watch: Watch) -> list[int]:
 def _publishers(evidence: Evidence, topic: str) -> list[Endpoint]:
     from labkit.rosgraph.endpoints import publishers
 
-    return publishers(evidence.probe.node, topic)
+    return list(publishers(evidence.probe.node, topic))
 
 
 def _silent(evidence: Evidence, before: str, topic: str) -> Fail:
