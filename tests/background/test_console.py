@@ -31,6 +31,8 @@ def test_a_first_start_in_a_cell_that_captures_its_output(kernel):
 
 def test_a_captured_cell_between_two_others(kernel):
     kernel.run(SETUP + 'loud = lab.spin(Loud("quiet"))\nloud.act = None')
+    # Between two callbacks: none of them speaks any more.
+    kernel.run('lab.wait_until(lambda: True)')
     kernel.run('%%capture caught\nprint("mine")\nimport sys\nerr = sys.stderr')
     assert kernel.run('print(repr(caught.stdout.splitlines()[0]))').text == "'mine'\n"
     cell = kernel.run('other = lab.spin(Loud("other"))')

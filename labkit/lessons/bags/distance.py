@@ -194,7 +194,7 @@ distance = Exercise(
             '/distance',
             ODOMETRY,
             f'answer each message with a `{FLOAT64}` on `/distance`: the sum of all steps '
-            f'(straight lines by x and y) shorter than {JUMP} m',
+            f'(straight lines) shorter than {JUMP} m',
             answer=_sums,
             draw=lambda: [*_drive(0.0), *_drive(-10.0)],
             outer_type=FLOAT64,
