@@ -1,6 +1,6 @@
 """Film the first five minutes of the course, in twenty seconds: the README's second picture.
 
-    python -m tests.browser.film --out notebooks/images/readme_first_minutes.gif
+    python -m tests.browser.film --out docs/pictures/first_minutes.gif
 
 opens lesson 00 in JupyterLab, runs its first cells, solves its exercise, and drives the robot.
 What takes longer than a moment is shortened.
@@ -94,7 +94,7 @@ def act(notebook: Notebook, film: Film) -> None:
 
     notebook.run_cell('robot')
     notebook.scroll_to_top('robot-read')
-    keys = page.locator('.labkit-teleop')
+    keys = page.locator('.jupyterlab-sidecar .labkit-teleop')
     expect(keys).to_be_visible()
     keys.click(position={'x': 4, 'y': 4})
     for key, seconds in (('w', 3.0), ('a', 1.0), ('w', 3.0), ('d', 1.0), ('w', 2.0)):
