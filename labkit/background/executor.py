@@ -47,6 +47,9 @@ __all__ = ['BackgroundExecutor']
 END_SEC = 30.0
 # How long to wait for a callback that keeps a removed node from being released, s.
 RELEASE_SEC = 1.0
+# How old the number of seconds may be for which others ran instead: to read it for each of
+# thousands of messages would cost as much as some callbacks do, s.
+READ_SEC = 0.02
 # Whose a task is that a cell has made: in messages, in place of the name of a node.
 _EXECUTOR = 'the executor'
 
@@ -77,6 +80,7 @@ class BackgroundExecutor(Executor):
         self._round_awaited = 0
         self._running: tuple[NodeEntry, Any] | None = None
         self._running_since = 0.0
+        self._waits = self._waits_read = 0.0
         self._conditions = Conditions(console)
         self._closing = False
         self._settled = threading.Event()  # not set while somebody waits for it
@@ -341,6 +345,8 @@ class BackgroundExecutor(Executor):
         what = work.what if isinstance(work, Work) else work.entity
         self._console.speak_for(entry.cell)
         with self._conditions.lock:
+            if time.monotonic() > self._waits_read + READ_SEC:
+                self._read_waits()
             self._running, self._running_since = (entry, what), time.monotonic()
             if isinstance(work, Work):
                 error = self._pending_tasks.resume(work)
@@ -348,8 +354,12 @@ class BackgroundExecutor(Executor):
                 error = self._begin(work, entry)
             self._running = None
             took = time.monotonic() - self._running_since
+            if took >= settings.LATE_SEC:  # a busy machine may have kept it from running
+                waited = self._read_waits()
+                took = max(self._waits_read - self._running_since - waited, 0.0)
             if took >= settings.LATE_SEC or entry.took:
-                entry.took[what if isinstance(what, Timer) else callback_name(what)] = took
+                key = what if isinstance(what, Timer) else callback_name(what)
+                entry.took[key] = (*entry.took.get(key, ())[-2:], took)
             # The error of a node or action that was removed meanwhile is only that it was.
             if error is not None and not self._was_removed(entry, what, error):
                 self._hand_over(entry, callback_name(what), error)
@@ -357,6 +367,12 @@ class BackgroundExecutor(Executor):
             if spun is not None and spun.budget is not None and spun.budget <= 0:
                 self.remove_node(entry.node)
             self._conditions.look()
+
+    def _read_waits(self) -> float:
+        """Return for how long this thread was kept from running since the last reading, s."""
+        before, self._waits = self._waits, _waits_for_a_processor()
+        self._waits_read = time.monotonic()
+        return self._waits - before
 
     def _was_removed(self, entry: NodeEntry, what: object, error: BaseException) -> bool:
         """Return whether an error is only that its node or action has ended meanwhile."""
@@ -415,6 +431,18 @@ class BackgroundExecutor(Executor):
             return error
         task = Task(coroutine)  # type: ignore[no-untyped-call]
         return self._pending_tasks.add_callback(task, entry, work.entity)
+
+
+def _waits_for_a_processor() -> float:
+    """Return for how long this thread could have run, and others did, s; 0 if nobody counts it.
+
+    Source: the kernel's Documentation/scheduler/sched-stats.rst, /proc/<pid>/schedstat.
+    """
+    try:
+        with open('/proc/thread-self/schedstat', encoding='ascii') as file:
+            return int(file.read().split()[1]) * 1e-9
+    except (OSError, ValueError, IndexError):
+        return 0.0
 
 
 def _was_destroyed(node: Node, what: object, error: BaseException) -> bool:

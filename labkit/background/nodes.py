@@ -65,8 +65,8 @@ class NodeEntry:
         counts: Number of callbacks run for each timer, subscription and so on.
         parameters: The values of its parameters when it was started.
         budget: Number of callbacks left before the node leaves the executor, None for no limit.
-        took: Seconds that callbacks took the last time, by timer or by name, once one has taken
-            `LATE_SEC`.
+        took: Seconds that callbacks took the last three times, by timer or by name, once one has
+            taken `LATE_SEC`; without those in which it could have run, and others did.
         spins: The foreground spins of it, the last one of which gets what its callbacks raise.
         lasts: Whether it stays when these have ended.
     """
@@ -77,7 +77,7 @@ class NodeEntry:
     counts: dict[Any, int] = field(default_factory=dict)
     parameters: Mapping[str, Any] = field(default_factory=dict)
     budget: int | None = None
-    took: dict[Any, float] = field(default_factory=dict)
+    took: dict[Any, tuple[float, ...]] = field(default_factory=dict)
     spins: list[Spin] = field(default_factory=list)
     lasts: bool = True
 

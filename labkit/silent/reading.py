@@ -271,11 +271,12 @@ def _long_calls(entry: NodeEntry | None) -> Iterator[LongCall]:
     if running is not None and running[0] is entry and running[2] >= LATE_SEC:
         yield LongCall(*running[1:])
     timers = {*entry.node.timers}
-    for what, seconds in dict(entry.took).items():
-        if seconds >= LATE_SEC:
+    for what, times in dict(entry.took).items():
+        if times[-1] >= LATE_SEC:
             timed = what in timers and not what.is_canceled()
             period = what.timer_period_ns / 1e9 if timed else math.inf
-            yield LongCall(callback_name(what), seconds, period)
+            least = min(times) if len(times) == 3 else 0.0
+            yield LongCall(callback_name(what), times[-1], least, period)
 
 
 def _running() -> Running | None:

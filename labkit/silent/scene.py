@@ -100,10 +100,18 @@ class Client:
 
 @dataclass(frozen=True)
 class LongCall:
-    """A callback that took long: its name, the seconds, and the period of its timer, if any."""
+    """A callback that took long.
+
+    Attributes:
+        callback: Its name.
+        seconds: For how long.
+        least: The least of the last three times; 0 if there were fewer.
+        period: The period of its timer, if any.
+    """
 
     callback: str
     seconds: float
+    least: float = 0.0
     period: float = math.inf
 
 

@@ -239,3 +239,19 @@ finally:
     thread.join()
 """)
     assert (out.exit_code, out.stdout) == (0, '{True}\n'), out.stderr
+
+
+def test_it_is_known_for_how_long_others_ran_instead(script):
+    """On one processor beside a program that never rests, the thread has to wait now and then."""
+    result = script("""
+import os, subprocess, sys
+from labkit.background.executor import _waits_for_a_processor
+os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+other = subprocess.Popen([sys.executable, '-c', 'while True: pass'])
+before = _waits_for_a_processor()
+while _waits_for_a_processor() < before + 0.02:
+    pass
+other.kill()
+print('known')
+""")
+    assert result.stdout == 'known\n', result.stderr

@@ -21,16 +21,33 @@ _LONG = (
 )
 _OVERRUN = (
     "n = node('sleeper')\ndef tick(): time.sleep(0.25)\nn.create_timer({period}, tick)\n"
-    'lab.wait_until(lambda: runtime.entry_of(n).took)'
+    'lab.wait_until(lambda: runtime.entry_of(n).callbacks > 3)'
 )
-# A timer and a subscription whose callbacks have one name, as all lambdas have.
-_ONE_NAME = (
-    "\nm = deaf('worker', 'work', callback=lambda _: time.sleep(0.25)); e = runtime.entry_of(m)\n"
-    "m.create_timer(0.05, lambda: None); loud('boss', 'work').publish(String())\n"
-    'def quiet():\n'
+# Once `e` has a callback that took long, it is none that outlasts its period.
+_QUIET = (
+    '\ndef quiet():\n'
     "    assert not [f for f in watch.look() if f.kind.id == 'time.overrun']\n"
     '    return e.took\n'
     'lab.wait_until(quiet)'
+)
+# A timer and a subscription whose callbacks have one name, as all lambdas have.
+_ONE_NAME = (
+    "\nm = deaf('worker', 'work', callback=lambda _: time.sleep(0.4)); e = runtime.entry_of(m)\n"
+    "m.create_timer(0.05, lambda: None); loud('boss', 'work').publish(String())"
+)
+_ONE_CALL = (
+    "\nm = node('once'); e = runtime.entry_of(m); late = [0.4]\n"
+    'm.create_timer(0.05, lambda: time.sleep(late.pop() if late else 0.0))'
+)
+# As on a machine that lets others run all the while.
+_BUSY = (
+    '\nfrom labkit.background import executor\n'
+    'executor._waits_for_a_processor, real = time.monotonic, executor._waits_for_a_processor\n'
+    f'{_OVERRUN.partition("lab.wait_until")[0].format(period=0.05)}'
+    'lab.wait_until(lambda: runtime.entry_of(n).callbacks > 2)\n'
+    'told = [f.kind.id for f in watch.look()]\n'
+    'executor._waits_for_a_processor = real; lab.remove(n)\n'
+    "assert 'time.overrun' not in told"
 )
 
 CASES = {
@@ -61,7 +78,10 @@ CASES = {
         _LONG.format(seconds=1.1, more='m.create_timer(0.5, heard)'),
         _LONG.format(seconds=0.01, more='m.create_timer(0.5, heard)'),
     ),
-    'time.overrun': (_OVERRUN.format(period=0.05), _OVERRUN.format(period=1) + _ONE_NAME),
+    'time.overrun': (
+        _OVERRUN.format(period=0.05),
+        _OVERRUN.format(period=1) + _ONE_NAME + _QUIET + _ONE_CALL + _QUIET + _BUSY,
+    ),
     'time.stuck-callback': (
         "free = threading.Event(); n = node('stuck'); begun = threading.Event()\n"
         'def tick(): begun.set(); free.wait()\n'
