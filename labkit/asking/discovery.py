@@ -14,7 +14,7 @@ from labkit.background.runtime import runtime
 from labkit.background.wait import wait_for
 from labkit.domain_ids import ports_of_participants
 from labkit.rosgraph.names import LAST_SERVICE, PARAMETER_SERVICES
-from labkit.rosgraph.snapshot import is_whole, node_names
+from labkit.rosgraph.snapshot import is_whole
 
 __all__ = [
     'DISCOVERY_SEC',
@@ -25,7 +25,7 @@ __all__ = [
     'has_all_services',
     'is_only_process',
     'poll_until',
-    'wait_until_graph_is_stable',
+    'wait_until_announced',
 ]
 
 Found = TypeVar('Found')
@@ -37,9 +37,6 @@ SOON_SEC = 1.0
 # Discovery is complete when all is there that participants of this machine announce, and at the
 # latest after this time: one may be there that announces nothing.
 MOST_SEC = 10.0
-# A new process has made all of its nodes when nothing was added for so long: it may have to load
-# message types in between.
-SETTLED_SEC = 0.3
 
 
 def asking_node(spin_time: float = DISCOVERY_SEC) -> Node:
@@ -58,17 +55,14 @@ def asking_node(spin_time: float = DISCOVERY_SEC) -> Node:
     return runtime.helper
 
 
-def wait_until_graph_is_stable(node: Node) -> None:
-    """Wait until the graph has stopped changing: a new node is discovered bit by bit."""
+def wait_until_announced(node: Node) -> None:
+    """Wait until all is in the graph that processes of this machine have announced by now.
 
-    def graph() -> object:
-        if not is_whole(node):
-            return object()  # equal to no other one
-        ends = [(name, _count(node, name)) for name, _ in node.get_topic_names_and_types()]
-        return node_names(node), ends, node.get_service_names_and_types()
-
-    unchanged_sec = _stopwatch(graph)
-    wait_for(lambda: unchanged_sec() >= SETTLED_SEC, SOON_SEC)
+    A process announces an endpoint when it makes it. What a node that has answered was to have
+    from the start is announced by then: its `__init__` has ended.
+    """
+    now = time.monotonic()
+    discover(node, now, now + SOON_SEC)
 
 
 def has_all_services(node: Node, names: list[str]) -> bool:
@@ -83,10 +77,6 @@ def has_all_services(node: Node, names: list[str]) -> bool:
         if f'{name}/{LAST_SERVICE}' not in offered or (any(found) and not all(found)):
             return False
     return True
-
-
-def _count(node: Node, topic: str) -> tuple[int, int]:
-    return node.count_publishers(topic), node.count_subscribers(topic)
 
 
 def discover(node: Node, least: float, most: float) -> None:
@@ -111,21 +101,6 @@ def discover(node: Node, least: float, most: float) -> None:
             return others <= 0 or (announced.participants() - 1 >= others and is_whole(node))
 
         wait_for(all_known, max(least, most) - time.monotonic())
-
-
-def _stopwatch(look: Callable[[], object]) -> Callable[[], float]:
-    """Return a function that looks, and returns for how long the answer has been the same, s."""
-    seen: object = None
-    since = time.monotonic()
-
-    def unchanged_sec() -> float:
-        nonlocal seen, since
-        found = look()
-        if found != seen:
-            seen, since = found, time.monotonic()
-        return time.monotonic() - since
-
-    return unchanged_sec
 
 
 def _participants_here() -> int:

@@ -20,7 +20,7 @@ from collections.abc import Collection
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from labkit import settings
-from labkit.asking.discovery import has_all_services, wait_until_graph_is_stable
+from labkit.asking.discovery import has_all_services, wait_until_announced
 from labkit.asking.service_calls import wait_until_spun
 from labkit.background.console import Cell
 from labkit.background.runtime import runtime
@@ -60,6 +60,8 @@ GONE_SEC = 30.0
 READ_SEC = 0.2
 # How long to wait for the services of a new node. A node may be made without them.
 SERVICES_SEC = 5.0
+# How long until a node answers, which a program that loads types first does late. Some never do.
+SPUN_SEC = 2.0
 
 
 AnyProcess = TypeVar('AnyProcess', bound='Process')
@@ -223,7 +225,7 @@ class Process:
 
         Endpoints are discovered one by one. If the program announces them, this waits for all of
         them. Otherwise it waits for the standard services of each node and an answer from them,
-        and then until the graph is stable.
+        and then for what it has announced to ROS by then.
 
         Args:
             node: The node for graph queries.
@@ -268,8 +270,8 @@ class Process:
         self._in_graph = {process_of(gid) for gid in gids_in(node) if self.owns(gid)}
         if self.nodes and not self._announces:
             for name in self.nodes:
-                wait_until_spun(node, name)
-            wait_until_graph_is_stable(node)
+                wait_until_spun(node, name, SPUN_SEC)
+            wait_until_announced(node)
         return complete
 
     def _has_begun(self, node: Node) -> bool:

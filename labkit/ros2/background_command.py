@@ -10,7 +10,7 @@ import sys
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
-from labkit.asking.discovery import wait_until_graph_is_stable
+from labkit.asking.discovery import wait_until_announced
 from labkit.background.wait import wait_for
 from labkit.programs.child_processes import end_earlier, environment, start_process
 from labkit.ros2.asking import asking_node
@@ -51,7 +51,7 @@ def start(words: list[str], args: Namespace) -> int | None:
     # It has begun when it has an endpoint on the topic, or some output.
     wait_for(lambda: process.output or not process.running or has_come(), BEGIN_SEC)
     if not process.output and has_come():
-        wait_until_graph_is_stable(node)
+        wait_until_announced(node)
     if process.exit_code:
         print('\n'.join(process.output[-10:]))
         return process.exit_code

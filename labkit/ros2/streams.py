@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from labkit import settings
-from labkit.asking.discovery import poll_until, wait_until_graph_is_stable
+from labkit.asking.discovery import poll_until
 from labkit.asking.listener import Listener
 from labkit.background.compat import RCLError
 from labkit.background.wait import wait_for
@@ -208,12 +208,7 @@ def wait_for_type(
     Raises:
         LabError: The topic has more than one type.
     """
-    types = topic_types(node, topic)
-    if not types and is_patient:
-        types = poll_until(lambda: topic_types(node, topic))
-    elif not types:
-        wait_until_graph_is_stable(node)
-        types = topic_types(node, topic)
+    types = poll_until(lambda: topic_types(node, topic))
     if not types:
         hint = unknown(topic, [name for name, _ in topics(node)], 'topic')
         print(f'WARNING: topic [{typed}] does not appear to be published yet', flush=True)

@@ -41,7 +41,6 @@ SLOW = (
 import sys, time
 import labkit as lab
 from labkit.programs import child_processes
-from labkit.asking import service_calls
 from labkit.programs.child_processes import environment, start_process
 from labkit.background.runtime import runtime
 from labkit.rosgraph.listings import ends_of_node
@@ -88,7 +87,7 @@ def test_another_program_is_waited_for_until_it_answers(script: Any, env: dict[s
     result = script(
         SLOW
         + """
-service_calls.wait_until_spun.__defaults__ = (60.0,)
+child_processes.SPUN_SEC = 60.0
 process = start('rclpy.spin(node)', False)
 print(process.announced)
 """,

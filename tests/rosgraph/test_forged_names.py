@@ -91,7 +91,7 @@ while True:
 BEGIN = """
 import json, subprocess, sys
 import labkit as lab
-from labkit.asking.discovery import wait_until_graph_is_stable
+from labkit.asking.discovery import wait_until_announced
 from labkit.background.runtime import runtime
 from labkit.rosgraph.snapshot import node_names, read_graph
 from labkit.silent.watch import watch
@@ -111,7 +111,7 @@ def is_there():
 try:
     lab.wait_until(is_there, timeout_sec=60)
     graph = read_graph(runtime.helper, include_hidden=True, include_services=True)
-    wait_until_graph_is_stable(runtime.helper)
+    wait_until_announced(runtime.helper)
     watch.look()
     drawn = lab.graph(live=False)._repr_mimebundle_()
 finally:
