@@ -102,24 +102,15 @@ class _Typed(GraphClause):
     recognises = (NOT_ASKED, ASKS_AGAIN)
     own_life = True
 
-    def find(self, evidence: Evidence) -> None:
-        """Look for the publisher and the function, and type some lines."""
-        source = evidence.publisher(TOPIC)
-        if not evidence.probe.in_this_process(source):
-            raise Fail(
-                f'a node of this notebook that publishes on {TOPIC}',
-                f'{source.node} {evidence.probe.place(source)}',
-                ELSEWHERE,
-            )
-        if not callable(_function()):
-            raise Fail('a function ask() of this notebook', 'none', NO_FUNCTION)
-
     def judge(self, evidence: Evidence) -> str:
         """Type lines, one for each call, as long as they are answered."""
+        if not callable(_function()):
+            raise Fail('a function ask() of this notebook', 'none', NO_FUNCTION)
         probe, due = evidence.probe, 0
         watch = evidence.heard[TOPIC] = probe.watch(TOPIC, STRING)
         evidence.asked[TOPIC] = []
-        for line in ['Hello', '', *draw_texts()]:
+        first, *others = draw_texts()
+        for line in (first, '', *others):
             _call(line)
             evidence.asked[TOPIC].append({'data': line})
             due += _say(line) is not None
@@ -146,6 +137,16 @@ class _Says(GraphClause):
     def roles(self) -> dict[Role, str]:
         """A node publishes."""
         return {(PUBLISHER, TOPIC): STRING}
+
+    def find(self, evidence: Evidence) -> None:
+        """Look for the publisher."""
+        source = evidence.publisher(TOPIC)
+        if not evidence.probe.in_this_process(source):
+            raise Fail(
+                f'a node of this notebook that publishes on {TOPIC}',
+                f'{source.node} {evidence.probe.place(source)}',
+                ELSEWHERE,
+            )
 
     def judge(self, evidence: Evidence) -> str:
         """Compare what came with what was typed, one after the other."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from labkit.exercises import Exercise, Fail, Mistake, Solution, expect
@@ -25,8 +24,8 @@ from labkit.lessons.my_name_is.stages import (
 __all__ = ['welcome']
 
 OUTER, ENDING = '/welcome', '. Welcome!'
-# So many texts show whether one guest needs the other.
-FEW = 4
+# An odd number of texts shows whether the host waits for another one.
+FEW = 3
 
 _ONE_JOB = 'Give each job to a node: a guest appends a name, the host appends the rest.'
 ALL_IN_ONE = Mistake(
@@ -62,7 +61,7 @@ TOO_MANY = Mistake(
 )
 ELSEWHERE = Mistake(
     'welcome/elsewhere',
-    'The check lets one guest stand still, which it can do in this notebook alone.',
+    'Who has said what, the check sees in this notebook alone.',
     'End the program, and start the node here with lab.spin().',
 )
 PASSED_ON = Mistake(
@@ -75,10 +74,15 @@ PASSED_ON = Mistake(
         ('msg.data + self.first_name', "msg.data + self.first_name + '. Welcome!'"),
     ],
 )
-NEEDS_THE_OTHER = Mistake(
-    'welcome/needs-the-other',
-    'While {other} stands still, nothing of {guest} arrives: it waits for the other one.',
-    f'Let each guest hear {INNER}, and the host publish what comes, when it comes.',
+HEARS_THE_OTHER = Mistake(
+    'welcome/hears-the-other',
+    'When the other guest goes, this one may have nothing to say.',
+    f'A guest needs {INNER}, and nothing else.',
+)
+WAITS = Mistake(
+    'welcome/waits',
+    'The host welcomes two guests, and not one alone: it waits for the other one.',
+    'Publish in the callback, for each text that comes.',
 )
 SHARED = Mistake(
     'welcome/shared',
@@ -129,7 +133,7 @@ class _ThreeNodes(GraphClause):
         for (kind, _, _), end in evidence.ends.items():
             if probe.node_object(end.node) is None:
                 seen = f'{end.node} {probe.place(end)}'
-                raise Fail('three nodes of this notebook', seen, ELSEWHERE)
+                raise Fail('nodes of this notebook', seen, ELSEWHERE)
             if kind == 'subscription':
                 expect.spun(probe, end)
 
@@ -151,32 +155,61 @@ class _Flows(GraphClause):
     def judge(self, evidence: Evidence) -> str:
         """Judge what each of them says."""
         host, guests = _party(evidence)
-        _judge(_lived(self, evidence, guests, draw_texts()), host, guests)
+        tests = [
+            Test(INNER, STRING, {'data': text}, (OUTER,), due=2)
+            for text in [OPENING, *draw_texts()]
+        ]
+        also = dict.fromkeys(guests.values(), STRING)
+        seen = evidence.alone(self, tests, host, *guests, also=also)
+        life = seen.life
+        for guest, topic in guests.items():
+            # Who keeps the method `publish` itself, as `partial` does, is not known.
+            mine = [sample for sample in life.on(topic, before=True) if sample.node == guest]
+            if all(sample.node for sample in life.on(topic)):
+                own = replace(life, samples={**life.samples, topic: mine})
+                _completes(topic, guest).judge(replace(seen, life=own))
+        first, *_ = also
+        both = sorted(
+            (sample for topic in also for sample in life.on(topic, before=True)),
+            key=lambda sample: sample.at,
+        )
+        heard = replace(life, samples={**life.samples, first: both})
+        _welcomes(first, host).judge(replace(seen, life=heard))
+        evidence.streams[OUTER, ''] = Stream(OUTER, life.on(OUTER), True, life.seconds)
         return ''
 
 
 class _OneIsEnough(GraphClause):
-    """While one guest stands still, the texts of the other one arrive."""
+    """Nobody needs both guests."""
 
-    text = 'while one of the two stands still, the texts of the other one come all the same'
-    recognises = (NEEDS_THE_OTHER,)
+    text = (
+        'no guest hears the other one, and the host answers each text by itself: so each guest '
+        'can go'
+    )
+    recognises = (HEARS_THE_OTHER, WAITS)
+
+    def find(self, evidence: Evidence) -> None:
+        """Look at what the guests hear."""
+        _, guests = _party(evidence)
+        for topic in guests.values():
+            for end in evidence.probe.subscriptions(topic):
+                if end.node in guests:
+                    raise Fail(
+                        f'{end.node} hears {INNER} alone',
+                        f'it subscribes to {topic}, where a guest speaks',
+                        HEARS_THE_OTHER,
+                    )
 
     def judge(self, evidence: Evidence) -> str:
-        """Let each guest be alone with the host."""
+        """Say texts to the host, one at a time."""
         host, guests = _party(evidence)
-        for guest, topic in guests.items():
-            seen = _lived(self, evidence, {guest: topic}, draw_texts()[:FEW])
-            if not seen.life.on(OUTER):
-                (other,) = guests.keys() - {guest}
-                raise Fail(
-                    f'texts of {guest} on {OUTER} while {other} stands still',
-                    f'nothing on {OUTER}',
-                    NEEDS_THE_OTHER.of(guest=guest, other=other),
-                )
-            _judge(seen, host, {guest: topic})
-            evidence.streams[OUTER, guest] = Stream(
-                OUTER, seen.life.on(OUTER), exact=True, seconds=seen.life.seconds
-            )
+        for topic in sorted({*guests.values()}):
+            tests = [Test(topic, STRING, {'data': text}, (OUTER,)) for text in draw_texts()[:FEW]]
+            seen = evidence.alone(self, tests, host, also={topic: STRING})
+            try:
+                _welcomes(topic, host).judge(seen)
+            except Fail as fail:
+                raise Fail(fail.expected, fail.seen, WAITS) from None
         return ''
 
 
@@ -187,13 +220,14 @@ class _NamesDiffer(GraphClause):
     recognises = (SHARED,)
 
     def judge(self, evidence: Evidence) -> str:
-        """Compare what the two have said first, to the same text."""
-        said = [evidence.streams[OUTER, guest].values('data')[0] for guest in _party(evidence)[1]]
-        if said[0] == said[1]:
+        """Compare what was made of the first text."""
+        values = evidence.streams[OUTER, ''].values('data')
+        said = sorted({value for value in values if value.startswith(OPENING)})
+        if len(said) < 2:
             name = said[0].removeprefix(OPENING).removesuffix(ENDING)
             raise Fail(
                 f'texts on {OUTER} with different names',
-                f'data = {expect.show(said)}',
+                f'data = {expect.show(said)}, twice',
                 SHARED.of(name=name),
             )
         return f'Each text comes twice: {" and ".join(map(repr, said))}.'
@@ -214,34 +248,14 @@ def _party(evidence: Evidence) -> tuple[str, dict[str, str]]:
     return evidence.publisher(OUTER).node, guests
 
 
-def _lived(
-    clause: GraphClause, evidence: Evidence, guests: Mapping[str, str], texts: Sequence[str]
-) -> Evidence:
-    """Let time pass for the host and some guests, and say the beginning of sentences to them."""
-    tests = [
-        Test(INNER, STRING, {'data': text}, (OUTER,), due=len(guests))
-        for text in [OPENING, *texts]
-    ]
-    nodes = [evidence.publisher(OUTER).node, *guests]
-    return evidence.alone(clause, tests, *nodes, also=dict.fromkeys(guests.values(), STRING))
+def _completes(topic: str, guest: str) -> Answers:
+    return Answers(INNER, topic, STRING, '', by=guest, **COMPLETES)
 
 
-def _judge(seen: Evidence, host: str, guests: Mapping[str, str]) -> None:
-    """Judge what each guest has said, and what the host has made of it."""
-    life = seen.life
-    said = {topic: life.on(topic, before=True) for topic in guests.values()}
-    for guest, topic in guests.items():
-        mine = [sample for sample in said[topic] if sample.node in (guest, '')]
-        # Who keeps the method `publish` itself, as `partial` does, is not known.
-        if len(guests) == 1 or all(sample.node for sample in said[topic]):
-            own = replace(life, samples={**life.samples, topic: mine})
-            Answers(INNER, topic, STRING, '', by=guest, **COMPLETES).judge(replace(seen, life=own))
-    first, *_ = said
-    both = sorted((sample for each in said.values() for sample in each), key=lambda s: s.at)
-    heard = replace(life, samples={**life.samples, first: both})
-    Answers(
-        first, OUTER, STRING, '', lambda text: f'{text}{ENDING}', by=host, mistakes=[PASSED_ON]
-    ).judge(replace(seen, life=heard))
+def _welcomes(topic: str, host: str) -> Answers:
+    return Answers(
+        topic, OUTER, STRING, '', lambda text: f'{text}{ENDING}', by=host, mistakes=[PASSED_ON]
+    )
 
 
 welcome = Exercise(
