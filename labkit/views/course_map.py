@@ -17,7 +17,7 @@ __all__ = ['course_map', 'earned', 'linked_map']
 
 # Stations in a row of the road; their distances, and the radius of one, in units of the picture.
 A_ROW = 5
-ACROSS, DOWN, RADIUS = 130, 96, 18
+ACROSS, DOWN, DOWN_UNTITLED, RADIUS = 130, 96, 64, 18
 # Left and above the first station.
 MARGIN_X, MARGIN_Y = 90, 40
 # A page that has no theme of JupyterLab, such as an image, takes the second colour: a grey that
@@ -39,7 +39,8 @@ def course_map(rows: Sequence[Row], here: str = '', *, titles: bool = True) -> s
         here: File name of the lesson where the learner is; the robot stands there.
         titles: Whether to write the titles of the lessons below the stations.
     """
-    width, height = _size(rows)
+    down = DOWN if titles else DOWN_UNTITLED
+    width, height = _size(rows, down)
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" '
         f'width="{width}" height="{height}" style="max-width:100%;height:auto;display:block" '
@@ -49,20 +50,21 @@ def course_map(rows: Sequence[Row], here: str = '', *, titles: bool = True) -> s
         if number + 1 < len(rows):
             colour = _DONE if percent(row.items) == 100 else _OPEN
             parts.append(
-                f'<path d="{_road(number)}" fill="none" stroke="{colour}" stroke-width="5"/>'
+                f'<path d="{_road(number, down)}" fill="none" stroke="{colour}" stroke-width="5"/>'
             )
-        parts.append(_station(number, row, robot=bool(here) and row.href == here, titles=titles))
+        robot = bool(here) and row.href == here
+        parts.append(_station(_place(number, down), row, robot=robot, titles=titles))
     return '\n'.join([*parts, '</svg>'])
 
 
 def linked_map(rows: Sequence[Row], here: str = '') -> str:
     """Return the picture as HTML, in which a click on a station opens its lesson."""
-    width, height = _size(rows)
+    width, height = _size(rows, DOWN)
     links = []
     for number, row in enumerate(rows):
         if not row.href:
             continue
-        x, y = _place(number)
+        x, y = _place(number, DOWN)
         place = _LINK.format(
             x=100 * (x - ACROSS / 2) / width,
             y=100 * (y - RADIUS) / height,
@@ -107,32 +109,32 @@ def _day(day: date) -> str:
     return f'{day.day} {day:%B %Y}'
 
 
-def _size(rows: Sequence[Row]) -> tuple[int, int]:
+def _size(rows: Sequence[Row], down: int) -> tuple[int, int]:
     lines = max(math.ceil(len(rows) / A_ROW), 1)
-    return 2 * MARGIN_X + (A_ROW - 1) * ACROSS, MARGIN_Y + lines * DOWN
+    return 2 * MARGIN_X + (A_ROW - 1) * ACROSS, MARGIN_Y + lines * down
 
 
-def _place(number: int) -> tuple[int, int]:
+def _place(number: int, down: int) -> tuple[int, int]:
     """Return the centre of a station; every other row of the road leads back."""
     line, place = divmod(number, A_ROW)
     column = place if line % 2 == 0 else A_ROW - 1 - place
-    return MARGIN_X + column * ACROSS, MARGIN_Y + line * DOWN
+    return MARGIN_X + column * ACROSS, MARGIN_Y + line * down
 
 
-def _road(number: int) -> str:
+def _road(number: int, down: int) -> str:
     """Return the path from a station to the next one, from rim to rim."""
-    (x, y), (next_x, next_y) = _place(number), _place(number + 1)
+    (x, y), (next_x, next_y) = _place(number, down), _place(number + 1, down)
     if y == next_y:
         side = RADIUS if next_x > x else -RADIUS
         return f'M{x + side} {y}H{next_x - side}'
     # At the end of a row it turns back, in half a circle.
     side, bow = (RADIUS, 1) if x > MARGIN_X else (-RADIUS, 0)
-    half = DOWN // 2
-    return f'M{x + side} {y}a{half} {half} 0 0 {bow} 0 {DOWN}'
+    half = down // 2
+    return f'M{x + side} {y}a{half} {half} 0 0 {bow} 0 {down}'
 
 
-def _station(number: int, row: Row, *, robot: bool, titles: bool) -> str:
-    x, y = _place(number)
+def _station(place: tuple[int, int], row: Row, *, robot: bool, titles: bool) -> str:
+    x, y = place
     ring = f'<circle r="{RADIUS}" fill="none" stroke-width="5"'
     around = round(2 * math.pi * RADIUS, 1)
     done = round(around * percent(row.items) / 100, 1)
@@ -148,9 +150,9 @@ def _station(number: int, row: Row, *, robot: bool, titles: bool) -> str:
     if titles:
         lines = textwrap.wrap(title, 17, max_lines=2, placeholder=' …')
         parts += [
-            f'<text y="{RADIUS + 17 + 14 * place}" font-size="12" fill="{_TEXT}">'
+            f'<text y="{RADIUS + 17 + 14 * number}" font-size="12" fill="{_TEXT}">'
             f'{html.escape(line)}</text>'
-            for place, line in enumerate(lines)
+            for number, line in enumerate(lines)
         ]
     if robot:
         # The robot of the course from above, driving to the right.
