@@ -118,7 +118,14 @@ class Watch:
             self._show_new()
 
     def _show_new(self) -> None:
-        found = [f for f in self.look() if f.is_aloud and f.kind not in _BY_CHANCE]
+        own = {entry.name for entry in runtime.nodes()}
+        found = [
+            fault
+            for fault in self.look()
+            # What nodes of other processes have between them is no matter of a cell.
+            if fault.is_aloud and (fault.cell is not None or own.intersection(fault.nodes))
+            if fault.kind not in _BY_CHANCE
+        ]
         if any(fault not in self._last for fault in found):
             time.sleep(EVERY_SEC)
             now = self.look()

@@ -42,6 +42,17 @@ class Sleeper(Node):
     def quick(self):
         pass
 """
+# A publisher and a subscription that do not match.
+FAR_AWAY = """
+import rclpy
+from rclpy.qos import qos_profile_sensor_data
+from std_msgs.msg import String
+rclpy.init()
+node, other = rclpy.create_node('far'), rclpy.create_node('away')
+node.create_publisher(String, 'far', qos_profile_sensor_data)
+other.create_subscription(String, 'far', print, 10)
+rclpy.spin(node)
+"""
 CLASSICS = {
     'params-file': (
         "open('p.yaml', 'w').write('cruizer: {ros__parameters: {speed: 0.5}}')\n"
@@ -218,6 +229,27 @@ def test_it_is_the_last_output_of_a_cell_where_outputs_are_compared(
         assert not ran.text
     threads = kernel.run('import threading\nprint(*(t.name for t in threading.enumerate()))').text
     assert 'labkit watch' not in threads
+
+
+@pytest.mark.slow('starts another process')
+def test_what_two_nodes_of_another_process_miss_is_told_under_no_cell(
+    start_kernel: Callable[..., Kernel],
+) -> None:
+    kernel = start_kernel(LABKIT_HEADLESS='1', ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST')
+    assert not kernel.run(PRELUDE).error
+    ran = kernel.run(f"""
+import subprocess, sys
+child = subprocess.Popen([sys.executable, '-c', {FAR_AWAY!r}])
+helper = lab.spin(Node('looks_on'))
+lab.wait_until(
+    lambda: helper.count_publishers('far') and helper.count_subscribers('far'), timeout_sec=30
+)
+""")
+    again = kernel.run("print('next')")
+    kernel.run('child.kill()\nchild.wait()')
+    assert not ran.error, ran.traceback
+    assert not ran.text
+    assert again.text == 'next\n'
 
 
 @pytest.mark.slow('waits in real time')

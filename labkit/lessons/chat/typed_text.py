@@ -175,7 +175,7 @@ class _Says(GraphClause):
         wanted = f'data = {expect.show([right])} on {TOPIC} for the line {line!r}'
         if not right:
             wanted = f'one message on {TOPIC} for each line, and no other'
-        mistake = SILENT
+        mistake: Mistake | None = SILENT
         if came and came[0] == before:
             mistake = TWICE
         elif came and empty is not None and came[0].strip() in ('', f'{WHO}:'):
@@ -186,7 +186,7 @@ class _Says(GraphClause):
             trouble = text_trouble(came[0], right)
             mistake = found if trouble is None or found is not MISTAKES[-1] else trouble
         fail = Fail(wanted, seen, mistake)
-        if mistake.id == EMPTY_TOO.id:
+        if mistake is not None and mistake.id == EMPTY_TOO.id:
             fail.clause = NOTHING.text
         return fail
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise, product
 from typing import TYPE_CHECKING
 
@@ -22,7 +22,7 @@ LEVEL, *SAID = TOPICS
 # On these a node of the learner's may take the place of a mast, and these it may hear.
 STANDS_IN, HEARS = TOPICS[1:4], TOPICS[:3]
 # How long the first number may take to go through two processes, s, and so many are looked at.
-FIRST_SEC, SEVERAL = 8.0, 6
+FIRST_SEC, SEVERAL = 5.0, 6
 
 _COMPARE = 'Compare what {before} offers with what {node} asks for: lab.doctor() does that.'
 ELSEWHERE = Mistake(
@@ -112,9 +112,14 @@ class _Carries(GraphClause):
 
     def judge(self, evidence: Evidence) -> str:
         """Listen at each place, until the town has shown some numbers."""
+        from labkit.asking.service_calls import wait_until_spun
+
         probe, heard = evidence.probe, evidence.heard
         for topic in TOPICS:
             heard[topic] = probe.watch(topic, INT16)
+        with probe.uncounted():
+            # Then the masts know the watches: a process takes what is new in its order.
+            wait_until_spun(probe.spun_node, NODES[0])
         probe.wait(lambda: all(map(len, heard.values())), FIRST_SEC)
         for before, topic in pairwise(TOPICS):
             if not len(heard[topic]):
@@ -166,7 +171,7 @@ def _numbers(watch: Watch) -> list[int]:
     return watch.values('data')
 
 
-def _publishers(evidence: Evidence, topic: str) -> list[Endpoint]:
+def _publishers(evidence: Evidence, topic: str) -> Sequence[Endpoint]:
     from labkit.rosgraph.endpoints import publishers
 
     return list(publishers(evidence.probe.node, topic))

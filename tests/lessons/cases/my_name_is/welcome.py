@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cases import right, wrong
+from cases import ERROR, right, wrong
 
 __all__ = ['ANSWERS']
 
@@ -52,14 +52,16 @@ ANSWERS = [
         'it waits for the other one',
         (
             "        super().__init__('host')\n",
-            "        super().__init__('host')\n        self.waiting = []\n",
+            "        super().__init__('host')\n        self.waiting = {}\n",
         ),
         (
             GREETS,
-            '        self.waiting.append(msg.data)\n'
-            '        while len(self.waiting) > 1:\n'
-            '            for text in (self.waiting.pop(0), self.waiting.pop(0)):\n'
-            "                self.publisher.publish(String(data=text + '. Welcome!'))\n",
+            '        other = self.waiting.pop(msg.data[:-3], None)\n'
+            '        if other is None:\n'
+            '            self.waiting[msg.data[:-3]] = msg\n'
+            '            return\n'
+            '        for text in (other.data, msg.data):\n'
+            "            self.publisher.publish(String(data=text + '. Welcome!'))\n",
         ),
     ),
     wrong(
@@ -85,6 +87,7 @@ ANSWERS = [
     wrong('capital letter', 'Capital and small letters differ in names'),
     wrong('publishes twice', 'A message is answered more than once.'),
     wrong('another welcome', 'Capital and small letters differ', ("'. Welcome!'", "'. welcome!'")),
+    wrong('wrong type', 'Use the same type on both sides', outcome=ERROR),
     wrong(
         'in a process of their own',
         'the check sees in this notebook alone',
@@ -140,5 +143,9 @@ ANSWERS = [
             '    threading.Thread(target=executor.spin, daemon=True).start()\n',
         ),
     ),
-    right('joins the chain that is there', ("'names'", "'complete'")),
+    right(
+        'joins the chain that is there',
+        ("'names'", "'complete'"),
+        ("ada = lab.spin(Guest('ada', 'Ada'))\n", ''),
+    ),
 ]

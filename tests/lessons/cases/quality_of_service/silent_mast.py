@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cases import right, wrong
+from cases import ERROR, right, wrong
 
 __all__ = ['ANSWERS']
 
@@ -78,6 +78,7 @@ ANSWERS = [
         'Take the place of the mast that hears nothing',
         ('Int16, says, 10', "Int16, 'repaired', 10"),
     ),
+    wrong('in a namespace', 'not enough values to unpack', outcome=ERROR),
     wrong('publishes twice', 'the same number comes more than once'),
     wrong(
         'a number each second',
