@@ -1,10 +1,10 @@
-from itertools import pairwise
-
 from rclpy.node import Node
 from rclpy.qos import QoSCompatibility, qos_check_compatible, qos_profile_sensor_data
 from std_msgs.msg import Int16
 
 import labkit as lab
+
+LINKS = [('level', 'level_a'), ('level_a', 'level_b'), ('level_b', 'level_c')]
 
 
 class SpareMast(Node):
@@ -17,7 +17,7 @@ class SpareMast(Node):
         )
 
     def silent_link(self):
-        for hears, says in pairwise(['level', 'level_a', 'level_b', 'level_c']):
+        for hears, says in LINKS:
             (source,) = self.get_publishers_info_by_topic(hears)
             (mast,) = self.get_subscriptions_info_by_topic(hears)
             fits, reason = qos_check_compatible(source.qos_profile, mast.qos_profile)

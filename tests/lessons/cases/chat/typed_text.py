@@ -47,7 +47,11 @@ ANSWERS = [
         ("String(data=f'Ada: {text}')", "f'Ada: {text}'"),
         outcome=ERROR,
     ),
-    wrong('own process', 'The check types into this notebook'),
+    wrong(
+        'own process',
+        'The check types into this notebook',
+        refused='The name is not defined in the program.',
+    ),
     wrong('own process, by subprocess', 'The check types into this notebook'),
     wrong('own process, by asyncio', 'The check types into this notebook'),
     right('not spun'),

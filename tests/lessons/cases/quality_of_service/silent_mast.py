@@ -11,22 +11,24 @@ HEARS = (
     '            Int16, hears, self.on_level, qos_profile_sensor_data\n'
     '        )\n'
 )
+LINK = '        hears, says = self.silent_link()\n'
 # A program of its own has to find the others first.
 WAITS = (
-    '        hears, says = self.silent_link()\n',
-    "        topics = ['level', 'level_a', 'level_b', 'level_c']\n"
-    '        for count in (self.count_publishers, self.count_subscribers):\n'
-    '            while not all(map(count, topics)):\n'
-    '                time.sleep(0.1)\n'
-    '        hears, says = self.silent_link()\n',
+    LINK,
+    '        while not all(self.count_publishers(t) and self.count_subscribers(t) '
+    'for t, _ in LINKS):\n'
+    f'            rclpy.spin_once(self, timeout_sec=0.1)\n{LINK}',
 )
-TIME = ('from itertools import pairwise\n', 'import time\nfrom itertools import pairwise\n')
+IMPORT = 'from rclpy.qos import QoSCompatibility, qos_check_compatible, qos_profile_sensor_data\n'
+ONE_LINE = (
+    '        self.subscription = self.create_subscription(Int16, hears, self.on_level, {})\n'
+)
 
 ANSWERS = [
     wrong(
         'the default profile',
         'best effort publisher and reliable subscription',
-        ('hears, self.on_level, qos_profile_sensor_data', 'hears, self.on_level, 10'),
+        (HEARS, ONE_LINE.format(10)),
     ),
     wrong(
         'best effort, but transient local',
@@ -38,10 +40,10 @@ ANSWERS = [
             '            durability=DurabilityPolicy.TRANSIENT_LOCAL,\n        )\n'
             '        self.create_subscription(Int16, hears, self.on_level, profile)\n',
         ),
-        (', qos_profile_sensor_data\n', '\n'),
         (
-            'from std_msgs',
-            'from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy\nfrom std_msgs',
+            IMPORT,
+            'from rclpy.qos import (\n    DurabilityPolicy,\n    QoSCompatibility,\n'
+            '    QoSProfile,\n    ReliabilityPolicy,\n    qos_check_compatible,\n)\n',
         ),
     ),
     wrong(
@@ -53,30 +55,32 @@ ANSWERS = [
         'all three links at once',
         'the same number comes more than once',
         (
-            'spare_mast = lab.spin(SpareMast())',
+            'spare_mast = lab.spin(SpareMast())\n',
             'spare_mast = lab.spin(SpareMast())\n'
-            "for hears, says in pairwise(['level', 'level_a', 'level_b', 'level_c']):\n"
-            '    node = lab.spin(Node(f"to_{says}"))\n'
+            'for hears, says in LINKS:\n'
+            "    node = lab.spin(Node(f'to_{says}'))\n"
             '    publisher = node.create_publisher(Int16, says, 10)\n'
-            '    node.create_subscription(\n'
-            '        Int16, hears, publisher.publish, qos_profile_sensor_data\n    )\n',
+            '    node.create_subscription(Int16, hears, publisher.publish, '
+            'qos_profile_sensor_data)\n',
         ),
-        ('f"to_{says}"', "f'to_{says}'"),
     ),
     wrong(
         'hears its own topic',
         'The node hears what it says itself',
         ('Int16, hears, self', 'Int16, says, self'),
+        ('hears, says = self', '_, says = self'),
     ),
     wrong(
         'hears something else',
         'and does not hear',
         ('Int16, hears, self', "Int16, 'water', self"),
+        ('hears, says = self', '_, says = self'),
     ),
     wrong(
         'publishes elsewhere',
         'Take the place of the mast that hears nothing',
         ('Int16, says, 10', "Int16, 'repaired', 10"),
+        ('hears, says = self', 'hears, _ = self'),
     ),
     wrong('in a namespace', 'not enough values to unpack', outcome=ERROR),
     wrong('publishes twice', 'the same number comes more than once'),
@@ -96,16 +100,15 @@ ANSWERS = [
     right('functions'),
     right(
         'a profile of its own',
-        ('hears, self.on_level, qos_profile_sensor_data', 'hears, self.on_level, profile'),
         (
-            '        self.subscription',
+            HEARS,
             '        profile = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)\n'
-            '        self.subscription',
+            f'{ONE_LINE.format("profile")}',
         ),
-        (', qos_profile_sensor_data\n', '\n'),
         (
-            'from std_msgs',
-            'from rclpy.qos import QoSProfile, ReliabilityPolicy\nfrom std_msgs',
+            IMPORT,
+            'from rclpy.qos import (\n    QoSCompatibility,\n    QoSProfile,\n'
+            '    ReliabilityPolicy,\n    qos_check_compatible,\n)\n',
         ),
     ),
     right(
@@ -127,7 +130,7 @@ ANSWERS = [
             "        hears = 'level'\n        self.publisher = ",
         ),
     ),
-    right('own process', TIME, WAITS, run='process'),
-    right('own process, by subprocess', TIME, WAITS, run='subprocess'),
-    right('own process, by asyncio', TIME, WAITS, run='asyncio'),
+    right('own process', WAITS, run='process'),
+    right('own process, by subprocess', WAITS, run='subprocess'),
+    right('own process, by asyncio', WAITS, run='asyncio'),
 ]

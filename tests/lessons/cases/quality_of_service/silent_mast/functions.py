@@ -15,8 +15,7 @@ def offers(topic):
     return source.qos_profile.reliability.name
 
 
-for before, after in pairwise(TOPICS):
-    if offers(before) == 'BEST_EFFORT':
-        publisher = node.create_publisher(Int16, after, 10)
-        node.create_subscription(Int16, before, publisher.publish, qos_profile_sensor_data)
+((before, after),) = [pair for pair in pairwise(TOPICS) if offers(pair[0]) == 'BEST_EFFORT']
+publisher = node.create_publisher(Int16, after, 10)
+node.create_subscription(Int16, before, publisher.publish, qos_profile_sensor_data)
 lab.spin(node)
