@@ -54,8 +54,8 @@ class Solution:
 
     Attributes:
         module: `__file__` of the exercise's module.
-        name: Name of a file in the folder `solutions` beside it: a Python script, or an IPython
-            script (`.ipy`) if it has magics.
+        name: Name of a file in the folder `solutions` beside it: a Python script, an IPython
+            script (`.ipy`) if it has magics, or the lines of a terminal (`.sh`).
         reason: Explanation of the solution.
         changes: Replacements for a variant, as pairs of old and new text.
     """
@@ -81,6 +81,8 @@ class Solution:
 def read_answer(path: Path) -> str:
     """Return a file's code for a cell: without importing `lab`, which the setup cell does."""
     text = path.read_text(encoding='utf-8')
+    if path.suffix == '.sh':
+        return f'%%bash\n{text}'
     return _IMPORT_LAB.sub('', text, count=1).lstrip('\n')
 
 

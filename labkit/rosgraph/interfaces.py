@@ -53,6 +53,8 @@ def _extend_ament_path() -> None:
     paths = os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep)
     if sys.prefix not in paths:
         os.environ['AMENT_PREFIX_PATH'] = os.pathsep.join([*filter(None, paths), sys.prefix])
+        # colcon warns at each call of a folder there that is not a workspace of its own making.
+        os.environ.setdefault('COLCON_LOG_LEVEL', 'error')
 
 
 _extend_ament_path()

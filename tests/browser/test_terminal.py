@@ -1,28 +1,88 @@
-"""A terminal of JupyterLab: it has the commands of the environment."""
+"""Terminals of JupyterLab: they have the commands, and a notebook sees their nodes."""
 
 from __future__ import annotations
 
 import json
 import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 import websocket
 
+from labkit.lessons.package.listener import listener
 from labkit.setup.environment import PYTHON
+from tests.browser.jupyter import JupyterLab
+from tests.browser.page import Notebook
 from tests.conftest import TIMEOUT_SEC
 
 pytestmark = pytest.mark.slow('a page in the browser')
 
 
-def test_terminal_finds_the_commands_of_the_environment(jupyter, tmp_path):
-    told = tmp_path / 'path'
+class Terminal:
+    """A terminal of JupyterLab, in the learner's folder."""
+
+    def __init__(self, jupyter: JupyterLab, name: str) -> None:
+        address = jupyter.address(f'terminals/websocket/{name}').replace('http', 'ws', 1)
+        self._socket = websocket.create_connection(address, timeout=TIMEOUT_SEC)
+
+    def type(self, text: str) -> None:
+        """Type lines, with Enter after each."""
+        self._socket.send(json.dumps(['stdin', text.rstrip('\n').replace('\n', '\r') + '\r']))
+
+    def wait_for(self, path: Path) -> None:
+        """Wait until what is typed has made a file."""
+        end = time.monotonic() + TIMEOUT_SEC
+        while not path.exists() and time.monotonic() < end:
+            self._socket.recv()
+
+    def close(self) -> None:
+        """Close the connection; the terminal goes on."""
+        self._socket.close()
+
+
+@contextmanager
+def open_terminal(jupyter: JupyterLab) -> Iterator[Terminal]:
+    """Open a terminal, and end it with all that runs in it."""
     name = jupyter.request('api/terminals', 'POST')['name']
-    address = jupyter.address(f'terminals/websocket/{name}').replace('http', 'ws', 1)
-    terminal = websocket.create_connection(address, timeout=TIMEOUT_SEC)
-    terminal.send(json.dumps(['stdin', f'echo "$PATH" > {told}.new; mv {told}.new {told}\r']))
-    end = time.monotonic() + TIMEOUT_SEC
-    while not told.exists() and time.monotonic() < end:
-        terminal.recv()
-    terminal.close()
-    jupyter.request(f'api/terminals/{name}', 'DELETE')
+    terminal = Terminal(jupyter, name)
+    try:
+        yield terminal
+    finally:
+        terminal.close()
+        jupyter.request(f'api/terminals/{name}', 'DELETE')
+
+
+def test_terminal_finds_the_commands_of_the_environment(
+    jupyter: JupyterLab, tmp_path: Path
+) -> None:
+    told = tmp_path / 'path'
+    with open_terminal(jupyter) as terminal:
+        terminal.type(f'echo "$PATH" > {told}.new; mv {told}.new {told}')
+        terminal.wait_for(told)
     assert told.read_text().startswith(f'{PYTHON.parent}:')
+
+
+def test_an_exercise_is_solved_in_two_terminals(
+    jupyter: JupyterLab, open_cells: Callable[..., Notebook], tmp_path: Path
+) -> None:
+    notebook = open_cells(
+        setup="import labkit as lab\n\nlesson = lab.lesson('package')",
+        check='lesson.listener.check()',
+    )
+    notebook.run_cell('setup')
+    lines = listener.answer.code.removeprefix('%%bash\n')
+    package, _, start = lines.partition('source install/setup.bash\n')
+    run = start.partition(' >')[0]
+    assert run == 'ros2 run ears_lab listener'
+    built = tmp_path / 'built'
+    with open_terminal(jupyter) as first, open_terminal(jupyter) as second:
+        first.type(f'mkdir -p ros2_ws/src\n{package}\ntouch {built}')
+        first.wait_for(built)
+        assert 'No program of that name runs' in notebook.run_cell('check')
+        second.type(f'cd ros2_ws\nsource install/setup.bash\n{run}')
+        end = time.monotonic() + TIMEOUT_SEC
+        while 'PASS' not in (said := notebook.run_cell('check')) and time.monotonic() < end:
+            pass
+    assert 'PASS: listener' in said

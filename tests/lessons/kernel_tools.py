@@ -33,7 +33,7 @@ TIMEOUT_SEC = 60.0
 _before: weakref.WeakSet[Node] = weakref.WeakSet()
 _foreign_before: set[str] = set()
 _children_before: set[int] = set()
-_files_before: set[Path] = set()
+_files_before: dict[Path, bytes | None] = {}
 _names_before: dict[str, Any] = {}
 _scripts: list[subprocess.Popen[bytes]] = []
 
@@ -45,7 +45,7 @@ def mark() -> None:
     _before.update(existing_nodes())
     _foreign_before.update(runtime.foreign_nodes())
     _children_before.update(child.pid for child in _children())
-    _files_before.update(_files())
+    _files_before.update({path: _content(path) for path in _files()})
     _names_before.clear()
     _names_before.update(_names())
 
@@ -73,7 +73,8 @@ def run_script(code: str) -> None:
 def clean() -> None:
     """End the processes and nodes that an answer has left behind, and wait until they are gone.
 
-    Files that it has written are removed, so that the next one has to write its own.
+    Files that it has written are removed, so that the next one has to write its own. Those that
+    it has changed are as before.
     """
     processes = [child for child in _children() if child.pid not in _children_before]
     for process in processes:
@@ -92,11 +93,15 @@ def clean() -> None:
     # Between two callbacks: one of the last answer may sleep, and is not to be taken for the next.
     runtime.wait(_alone, 25.0)
     assert wait_for(_alone, TIMEOUT_SEC), f'there are still others in {_graph()}'
-    for path in sorted(_files() - _files_before, reverse=True):
+    for path in sorted(_files() - _files_before.keys(), reverse=True):
         if path.is_dir() and not path.is_symlink():
             shutil.rmtree(path)  # with its hidden files
         else:
             path.unlink()
+    for path, content in _files_before.items():
+        if content is not None and content != _content(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
 
 
 def forget_names() -> None:
@@ -164,6 +169,10 @@ def _files() -> set[Path]:
     return {path for path in Path().rglob('[!.]*') if not path.parts[0].startswith('.')}
 
 
+def _content(path: Path) -> bytes | None:
+    return path.read_bytes() if path.is_file() else None
+
+
 def _nodes_of(pid: int) -> list[str]:
     """Return the nodes of a process that are in the graph: a GUID holds the id of its process."""
     infos = runtime.helper.get_publishers_info_by_topic('/parameter_events')
@@ -196,4 +205,11 @@ def _alone() -> bool:
 
 
 def _children() -> list[psutil.Process]:
-    return psutil.Process().children(recursive=True)
+    """Return the processes of this kernel, with those that a shell has left behind."""
+    own = psutil.Process()
+    children = own.children(recursive=True)
+    for process in psutil.process_iter():
+        with contextlib.suppress(ProcessLookupError):
+            if os.getpgid(process.pid) == os.getpgrp() and process != own:
+                children.append(process)
+    return list(dict.fromkeys(children))

@@ -1,4 +1,4 @@
-"""Lesson 11: its workspace is a folder of its own, and goes with the process."""
+"""Lesson 11: its workspace stays beside the notebook, and that of others goes with the process."""
 
 from __future__ import annotations
 
@@ -10,31 +10,55 @@ from pathlib import Path
 import built_once
 import pytest
 
+from labkit.lessons.package.made import make_broken
+from labkit.lessons.package.workspace import workspace
 from labkit.packages.skeleton import Part, Skeleton
 
 WORKSPACE = """
-from labkit.lessons.package.made import make_broken
 from labkit.lessons.package.workspace import make_workspace, workspace
 
 assert workspace() is None
 made = make_workspace()
 assert made == make_workspace() == workspace(), 'another one'
-setup = make_broken()
-text = setup.read_text()
-setup.write_text('')
-assert make_broken().read_text() == text, 'not made anew'
-print(made, text.count(',\\n'), setup.is_relative_to(made))
+print(made)
 """
 
 
-def test_the_workspace_is_made_once_and_goes_with_the_process(script, tmp_path):
+def test_a_workspace_is_made_once_and_goes_with_the_process(script, tmp_path):
     place = tmp_path / 'temporary'
     place.mkdir()
     result = script(WORKSPACE, TMPDIR=str(place))
     assert result.exit_code == 0, result.stderr
-    made, _, inside = result.stdout.split()
-    assert Path(made).name == 'ros2_ws' and inside == 'True'
-    assert Path(made).is_relative_to(place) and list(place.iterdir()) == []
+    made = Path(result.stdout.strip())
+    assert made.name == 'ros2_ws'
+    assert made.is_relative_to(place) and list(place.iterdir()) == []
+
+
+def test_the_workspace_of_the_learner_is_found_beside_the_notebook_and_from_inside(
+    tmp_path, monkeypatch
+):
+    own, elsewhere = tmp_path / 'work' / 'ros2_ws', tmp_path / 'other'
+    elsewhere.mkdir()
+    (own / 'src' / 'ears_lab').mkdir(parents=True)
+    for folder, found in [
+        (own.parent, own),
+        (own, own),
+        (own / 'src' / 'ears_lab', own),
+        (elsewhere, None),
+        (tmp_path, None),
+    ]:
+        monkeypatch.chdir(folder)
+        assert workspace() == found, folder
+
+
+def test_the_broken_package_is_made_anew_only_when_that_is_asked_for(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    setup = Path(make_broken())
+    assert setup == Path('ros2_ws/src/broken_lab/setup.py')
+    broken = setup.read_text()
+    setup.write_text('repaired')
+    assert Path(make_broken()).read_text() == 'repaired'
+    assert Path(make_broken(overwrite=True)).read_text() == broken
 
 
 def test_what_is_recorded_has_a_workspace_that_is_always_called_the_same(script, tmp_path):

@@ -52,7 +52,9 @@ def equivalents() -> dict[str, dict[str, str]]:
 def mutants_of(lesson: Lesson, exercise: Exercise) -> list[Mutant]:
     """Return the mutants of an exercise, each change once, none that is equal to the solution."""
     code = exercise.answer.code
-    if code.lstrip().startswith('%'):
+    if code.startswith('%%'):
+        solution, found = code.strip(), _of_terminal(code.strip(), _task(lesson, exercise))
+    elif code.startswith('%'):
         solution, found = code.strip(), _of_commands(code.strip())
     else:
         solution = ast.unparse(parsed(code))
@@ -86,6 +88,26 @@ def _task(lesson: Lesson, exercise: Exercise) -> str:
 def _of_commands(code: str) -> Iterator[tuple[str, str, str]]:
     for kind, mutant in command_changes(code):
         yield kind, mutant, _diff(code, mutant)
+
+
+def _of_terminal(code: str, task: str) -> Iterator[tuple[str, str, str]]:
+    """Give what is made of the first program that lines of a terminal write into a file.
+
+    If they write none, a line is missing, or comes later.
+    """
+    before, begin, rest = code.partition('<< END\n')
+    if begin:
+        program, end, after = rest.partition('END\n')
+        for kind, mutant, diff in _of_program(ast.unparse(ast.parse(program)), task):
+            yield kind, f'{before}{begin}{mutant}\n{end}{after}', diff
+        return
+    magic, *lines = [line for line in code.splitlines() if not line.startswith('#')]
+    solution = '\n'.join([magic, *lines])
+    for i, line in enumerate(lines):
+        left = [*lines[:i], *lines[i + 1 :]]
+        for kind, others in ('removed', left), ('later', [*left[: i + 1], line, *left[i + 1 :]]):
+            mutant = '\n'.join([magic, *others])
+            yield kind, mutant, _diff(solution, mutant)
 
 
 def _of_program(code: str, task: str) -> Iterator[tuple[str, str, str]]:

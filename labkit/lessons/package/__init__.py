@@ -17,8 +17,8 @@ LESSON = Lesson(
     title='From notebook to package',
     minutes=85,
     teaches=(
-        'make a package, build it with colcon, run it from a terminal, break and repair '
-        'it; turn the class of a notebook into a package'
+        'make a package with an editor and two terminals, build it with colcon, run, break and '
+        'repair it; turn the class of a notebook into a package'
     ),
     exercises=[listener, repair, counter, beacon],
     quizzes=[WARM_UP, QUIZ],

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from labkit.exercises import Exercise, Fail, Mistake, Solution
 from labkit.exercises.clauses import Asked
-from labkit.lessons.package.content import Built, InAWorkspace, Runs, Tested, Work
+from labkit.lessons.package.content import Built, InAWorkspace, Tested, Work
+from labkit.lessons.package.running import Running
 
 __all__ = ['beacon']
 
@@ -49,7 +50,7 @@ beacon = Exercise(
     task='Make the package beacon_lab, whose node says once that it is lit, and test it.',
     clauses=(
         Built(PACKAGE),
-        Runs('beacon', 'beacon', PACKAGE),
+        Running('beacon', 'beacon', PACKAGE),
         Asked(
             'a subscriber that comes late to `/lit` (`std_msgs/msg/Bool`), with durability '
             'transient local, gets `True`',
@@ -62,12 +63,14 @@ beacon = Exercise(
     hints=[
         'Lesson 08 has the profile: QoSProfile with a depth and a durability.',
         'The node publishes once, in its __init__. A publisher that is TRANSIENT_LOCAL keeps it.',
-        'lab.export adds a test. Build first, then !colcon test --packages-select beacon_lab',
+        'Take the three tests away that ros2 pkg create has made, and write test/test_beacon.py, '
+        'as in this lesson. Build first, then colcon test --packages-select beacon_lab',
     ],
     answer=Solution(
         __file__,
-        'beacon.ipy',
-        'The profile is a constant of the cell, and comes along. The test that lab.export adds '
-        'makes the node, and looks at its name.',
+        'beacon.sh',
+        'The publisher keeps its one message for those who come late. The test makes the node, '
+        'and looks at its name. This cell does it all at once: cat writes a file, and & stands '
+        'for a second terminal.',
     ),
 )

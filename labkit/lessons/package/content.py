@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, NoReturn
 from labkit import stop_button
 from labkit.errors import nearest
 from labkit.exercises import Clause, Fail, Mistake, NotAttempted, Probe, Stage, words
-from labkit.exercises.exercise import NOTHING_YET
 from labkit.exercises.expect.timing import FOUND_SEC
 from labkit.exercises.life import Life, live
 from labkit.exercises.watch import Lived
@@ -26,7 +25,17 @@ if TYPE_CHECKING:
     from labkit.programs.child_processes import Process
     from labkit.rosgraph.endpoints import Endpoint
 
-__all__ = ['Built', 'InAWorkspace', 'Runs', 'Tested', 'Work', 'dependencies']
+__all__ = [
+    'APPEAR_SEC',
+    'NODE_NAME',
+    'Built',
+    'InAWorkspace',
+    'Runs',
+    'Tested',
+    'Work',
+    'dependencies',
+    'refuse_program',
+]
 
 APPEAR_SEC = 15.0
 # How long a node is watched that keeps a time of its own, s of real time.
@@ -34,13 +43,17 @@ WATCH_SEC = 8.0
 # The packages of the lesson, some of which have names that are close to each other.
 PACKAGES = ('beacon_lab', 'broken_lab', 'counter_lab', 'ears_lab', 'odds_lab', 'robot_basics_lab')
 _SOURCES = ('.py', '.xml', '.cfg')
+_NOT_YET = 'Not attempted yet. {} Do what the task says, then run this cell again.'
 
 NO_PACKAGE = Mistake(
     'package/none',
     'A node of a notebook ends with the notebook.',
-    "lab.export(..., package='{package}', folder='src', overwrite=True)",
+    "lab.export(..., package='{package}', folder='ros2_ws/src', overwrite=True)",
 )
-_CREATE = "ros2 pkg create {package} --destination-directory src, or lab.export(..., folder='src')"
+_CREATE = (
+    'In ros2_ws/src: ros2 pkg create {package} ... Or, in a cell: '
+    "lab.export(..., package='{package}', folder='ros2_ws/src')"
+)
 BESIDE_SRC = Mistake(
     'package/beside-src', 'Packages lie in the folder src of a workspace.', _CREATE
 )
@@ -48,27 +61,27 @@ OTHER_NAME = Mistake('package/other-name', 'The name is close, and it is another
 NOT_BUILT = Mistake(
     'package/not-built',
     'colcon build has not been run since.',
-    'Run !colcon build in the workspace.',
+    'Run colcon build in the workspace.',
 )
 FAILED_BUILD = Mistake(
     'package/failed-build',
     'Its last build has failed.',
-    'Run !colcon build in the workspace, and read what it says under stderr.',
+    'Run colcon build in the workspace, and read what it says under stderr.',
 )
 OLD_BUILD = Mistake(
     'package/old-build',
     'A change in src reaches install only with the next build that succeeds.',
-    'Run !colcon build once more, and read what it says.',
+    'Run colcon build once more, and read what it says.',
 )
 NO_TEST_SINCE = Mistake(
     'package/no-test-since',
     'colcon build does not run tests.',
-    '!colcon test --packages-select {package}',
+    'In the workspace: colcon test --packages-select {package}',
 )
 TEST_FAILED = Mistake(
     'package/test-failed',
     'A test says that something is not as it should be.',
-    '!colcon test-result --verbose shows which one, and why.',
+    'In the workspace: colcon test-result --verbose shows which one, and why.',
 )
 NO_TEST = Mistake(
     'package/no-test',
@@ -92,7 +105,7 @@ NO_ENTRY = Mistake(
 RUNS_ALREADY = Mistake(
     'package/runs-already',
     '',
-    'End it: lab.processes().stop(), and lab.remove for a node of a cell.',
+    'End it: Ctrl-C in its terminal, lab.processes().stop(), or lab.remove for a node of a cell.',
 )
 _CORRECT = 'Correct the file in src, build again, and check again.'
 NO_FUNCTION = Mistake(
@@ -159,8 +172,17 @@ class Work:
     @property
     def programs(self) -> list[str]:
         """Return what `ros2 run` can start of it."""
-        found = self.folder / 'install' / self.package / 'lib' / self.package
+        found = self.program('')
         return sorted(path.name for path in found.glob('*')) if found.is_dir() else []
+
+    @property
+    def changed(self) -> float:
+        """Return when its source was changed last, s since 1970."""
+        return max(_written(path) for path in self.source.rglob('*') if _is_source(path))
+
+    def program(self, name: str) -> Path:
+        """Return the path of what `ros2 run` starts."""
+        return self.folder / 'install' / self.package / 'lib' / self.package / name
 
     def sourced(self) -> dict[str, str]:
         """Return the variables of a terminal that has sourced the workspace."""
@@ -185,10 +207,11 @@ class Work:
         from labkit.programs.child_processes import start_process
         from labkit.rosgraph.snapshot import node_names
 
-        path = self.folder / 'install' / self.package / 'lib' / self.package / program
         self.stop()  # it may have a node of the same name
         before = node_names(self.probe.spun_node)
-        process = start_process(f'{self.package} {program}', [str(path)], self.sourced())
+        process = start_process(
+            f'{self.package} {program}', [str(self.program(program))], self.sourced()
+        )
         self.running, self.ran = process, [*self.ran, program]
         process.wait_for_nodes(self.probe.spun_node, before, APPEAR_SEC)
         return process
@@ -233,8 +256,10 @@ class Work:
             Fail: There is none, or it has another type.
         """
         publishes = kind == 'publisher'
-        ends = self.probe.all_publishers() if publishes else self.probe.all_subscriptions()
-        own = {end.topic: end for end in ends if end.node == node}
+        ends = self.probe.all_publishers if publishes else self.probe.all_subscriptions
+        # The graph may know the node, and not yet all of its ends.
+        self.wait(lambda: any(end.node == node and end.topic == topic for end in ends()))
+        own = {end.topic: end for end in ends() if end.node == node}
         package, _, name = msg_type.replace('/msg/', '/').partition('/')
         told = {'kind': kind, 'topic': topic, 'msg_type': name, 'package': package}
         if topic not in own:
@@ -272,7 +297,7 @@ class Built(Clause[Work]):
         if not (work.source / 'package.xml').is_file():
             _refuse_misplaced(work)
             # Classes that wait in cells are no traces here: the lesson itself has some.
-            raise NotAttempted(NOTHING_YET)
+            raise NotAttempted(_NOT_YET.format(f'There is no {self.package} in ros2_ws/src.'))
         wanted = f'the package {self.package}, built'
         share = work.folder / 'install' / self.package / 'share' / self.package
         if not (share / 'package.xml').is_file():
@@ -282,8 +307,7 @@ class Built(Clause[Work]):
                 f'no package in install/{self.package}',
                 NOT_BUILT if result in ('', '0') else FAILED_BUILD,
             )
-        changed = max(_written(path) for path in work.source.rglob('*') if _is_source(path))
-        if _ended(work.build / 'colcon_build.rc') < changed:
+        if _ended(work.build / 'colcon_build.rc') < work.changed:
             raise Fail(
                 wanted,
                 'files in src that are newer than the last build that went well',
@@ -312,7 +336,7 @@ class Runs(Clause[Work]):
 
         wanted = f'the node /{self.node}, after: ros2 run {self.package} {self.program}'
         if self.program not in work.programs:
-            _refuse_program(self.program, work)
+            refuse_program(self.program, work)
         if f'/{self.node}' in node_names(work.probe.node):
             raise Fail(
                 f'no node of the name /{self.node} before the check starts one',
@@ -385,10 +409,10 @@ class InAWorkspace(Stage[Work]):
         """Give the package, and end what was started of it."""
         folder = workspace()
         if folder is None:
-            raise NotAttempted(NOTHING_YET)
+            raise NotAttempted(_NOT_YET.format('There is no folder ros2_ws/src.'))
         work = Work(probe, self.package, folder)
         if self.is_untouched(work):
-            raise NotAttempted(NOTHING_YET)
+            raise NotAttempted(_NOT_YET.format(f'{self.package} is as it was made.'))
         _refuse_without_package(work, clauses)
         try:
             yield [work]
@@ -453,7 +477,7 @@ def _is_in_source(path: Path) -> bool:
     return not {'build', 'install', 'log'} & {*path.parts}
 
 
-def _refuse_program(program: str, work: Work) -> NoReturn:
+def refuse_program(program: str, work: Work) -> NoReturn:
     """Say why an executable is not there."""
     names = work.programs
     near = nearest(program, names)

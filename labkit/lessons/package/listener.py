@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from labkit.exercises import Exercise, Fail, Mistake, Solution
 from labkit.exercises.clauses import Asked, Evidence, Logs
-from labkit.lessons.package.content import Built, InAWorkspace, Runs, Work, dependencies
+from labkit.lessons.package.content import Built, InAWorkspace, Work, dependencies
+from labkit.lessons.package.running import Running
 
 __all__ = ['listener']
 
@@ -15,7 +16,7 @@ NO_DEPENDENCIES = Mistake(
     'It builds here, because this machine has them. On another machine nobody would know what to '
     'install.',
     '<depend>{missing}</depend>, or --dependencies when the package is made.',
-    change=[(' --dependencies rclpy std_msgs', '')],
+    change=[(' \\\n    --dependencies rclpy std_msgs', '')],
 )
 
 
@@ -47,11 +48,11 @@ def _logs(work: Work) -> None:
 
 listener = Exercise(
     name='listener',
-    task='Make the package ears_lab with a listener, and build it.',
+    task='Make the package ears_lab with a listener, build it, and run it in a terminal.',
     clauses=(
         Built(PACKAGE),
         Asked('its package.xml names `rclpy` and `std_msgs` as dependencies', _needs),
-        Runs('listener', 'listener', PACKAGE),
+        Running('listener', 'listener', PACKAGE),
         Asked(LOGS.text, _logs),
     ),
     stage=InAWorkspace(PACKAGE),
@@ -60,14 +61,15 @@ listener = Exercise(
     hints=[
         'ros2 pkg create with --node-name listener makes the module and its entry in setup.py.',
         '--dependencies rclpy std_msgs goes into package.xml. Give --build-type ament_python, '
-        'and --destination-directory src.',
-        'Then put your own listener into src/ears_lab/ears_lab/listener.py, with main(), and run '
-        '!colcon build --packages-select ears_lab',
+        'and be in ros2_ws/src.',
+        'Then put your own listener into ears_lab/ears_lab/listener.py, with main(). In ros2_ws: '
+        'colcon build --packages-select ears_lab, source install/setup.bash, and ros2 run.',
     ],
     answer=Solution(
         __file__,
-        'listener.ipy',
+        'listener.sh',
         'The command makes the files, with an entry for listener. The module is replaced by one '
-        'with a node, and main() spins it until it is interrupted.',
+        'with a node, and main() spins it until Ctrl-C. This cell does it all at once: cat writes '
+        'a file, and & stands for a second terminal.',
     ),
 )

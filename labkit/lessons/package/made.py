@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from pathlib import Path
 
-from labkit.lessons.package.workspace import make_workspace
+from labkit.lessons.package.workspace import NAME, workspace
 
 __all__ = ['BROKEN', 'make_broken']
 
@@ -35,51 +36,56 @@ def main(args=None):
         node.destroy_node()
         rclpy.try_shutdown()
 """
-_TALKER = _NODE.format(
-    name='Talker',
-    node='talker',
+_TELLER = _NODE.format(
+    name='Teller',
+    node='teller',
     body="self.publisher = self.create_publisher(String, 'news', 10)\n"
     '        self.timer = self.create_timer(0.2, self.on_timer)',
     method="on_timer(self):\n        self.publisher.publish(String(data='news'))",
 )
-_LISTENER = _NODE.format(
-    name='Listener',
-    node='listener',
+_HEARER = _NODE.format(
+    name='Hearer',
+    node='hearer',
     body="self.subscription = self.create_subscription(String, 'news', self.on_news, 10)",
     method='on_news(self, msg):\n        self.get_logger().info(msg.data)',
 )
 
 
-def make_broken() -> Path:
-    """Make the package `broken_lab` in the workspace anew, with a fault in each of two lines.
+def make_broken(*, overwrite: bool = False) -> str:
+    """Make the package `broken_lab` in the workspace, with a fault in each of two lines.
+
+    Args:
+        overwrite: Whether to make it anew if it is there.
 
     Returns:
-        Its setup.py, where both faults are.
+        Where its setup.py is.
     """
     from labkit.packages.skeleton import Part, Skeleton
 
-    folder = make_workspace() / 'src' / BROKEN
+    folder = (workspace() or Path(NAME)) / 'src' / BROKEN
+    path = folder / 'setup.py'
+    if folder.exists() and not overwrite:
+        return os.path.relpath(path)
     shutil.rmtree(folder, ignore_errors=True)
     package = Skeleton(
         name=BROKEN,
         maintainer='me',
         email='me@example.org',
-        description='A talker and a listener',
+        description='A teller and a hearer',
         license='Apache-2.0',
         dependencies=['rclpy', 'std_msgs'],
         test_dependencies=['python3-pytest'],
         scripts=[
-            ('talker', f'{BROKEN}.talker:main'),
-            ('listener', f'{BROKEN}.listener:mian'),
+            ('teller', f'{BROKEN}.teller:main'),
+            ('hearer', f'{BROKEN}.hearer:mian'),
         ],
     )
     parts = [
         *package.parts(),
-        Part(f'{BROKEN}/talker.py', _TALKER),
-        Part(f'{BROKEN}/listener.py', _LISTENER),
+        Part(f'{BROKEN}/teller.py', _TELLER),
+        Part(f'{BROKEN}/hearer.py', _HEARER),
     ]
     for part in parts:
         part.write(folder)
-    path = folder / 'setup.py'
-    path.write_text(path.read_text().replace("talker:main',\n", "talker:main'\n"))
-    return path
+    path.write_text(path.read_text().replace("teller:main',\n", "teller:main'\n"))
+    return os.path.relpath(path)

@@ -3,9 +3,9 @@
 A mistake that an exercise has a change for is a wrong answer, and must be told in its own words.
 `cases/<lesson>/<exercise>.py` is the table of the others: `ANSWERS`, of rows made by `wrong` and
 `right`. A row says what is changed in the exercise's solution. Where there is a file
-`cases/<lesson>/<exercise>/<name_of_the_row>.py` (`.ipy` if it has magics), that program stands in
-the place of the solution. What every exercise has is generated from its solution, see `generic`: a
-row of such a name, without changes, says what becomes of it here.
+`cases/<lesson>/<exercise>/<name_of_the_row>.py` (`.ipy` if it has magics, `.sh` for a terminal),
+that program stands in the place of the solution. What every exercise has is generated from its
+solution, see `generic`: a row of such a name, without changes, says what becomes of it here.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ __all__ = ['ERROR', 'NOT_ATTEMPTED', 'Answer', 'Row', 'answers_of', 'right', 'sl
 
 HERE = Path(__file__).resolve().parent
 ERROR, NOT_ATTEMPTED = Outcome.ERROR, Outcome.NOT_ATTEMPTED
-SUFFIXES = ('.py', '.ipy')
+SUFFIXES = ('.py', '.ipy', '.sh')
 
 
 @dataclass(frozen=True)
@@ -161,7 +161,7 @@ def _row_of(mistake: Mistake) -> Row:
 
 def _code(row: Row, rows: Mapping[str, Row], exercise: Exercise, folder: Path) -> tuple[str, str]:
     """Return the code of a row in a cell, and how it is started."""
-    own = [path for path in folder.glob(f'{slug(row.name)}.*py') if path.suffix in SUFFIXES]
+    own = [path for path in folder.glob(f'{slug(row.name)}.*') if path.suffix in SUFFIXES]
     if row.of:
         code, _ = _code(rows[row.of], rows, exercise, folder)
     elif own:

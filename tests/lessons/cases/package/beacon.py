@@ -6,31 +6,18 @@ from cases import right, wrong
 
 __all__ = ['ANSWERS']
 
+BUILD = 'colcon build --packages-select beacon_lab\n'
+TEST = 'colcon test --packages-select beacon_lab\n'
+RUN = 'ros2 run beacon_lab beacon > beacon.log 2>&1 &\n'
+
 ANSWERS = [
-    wrong(
-        'not built',
-        'colcon build has not been run',
-        (
-            '!colcon build --packages-select beacon_lab\n'
-            '!colcon test --packages-select beacon_lab\n',
-            '',
-        ),
-    ),
-    wrong(
-        'not tested',
-        'colcon build does not run tests.',
-        ('!colcon test --packages-select beacon_lab\n', ''),
-    ),
+    wrong('not built', 'colcon build has not been run', (BUILD, ''), (TEST, '')),
+    wrong('not started', 'No program of that name runs on this machine just now.', (RUN, '')),
+    wrong('not tested', 'colcon build does not run tests.', (TEST, '')),
     wrong(
         'built after the test',
         'no result of a test since the last build',
-        (
-            '!colcon build --packages-select beacon_lab\n'
-            '!colcon test --packages-select beacon_lab\n',
-            '!colcon build --packages-select beacon_lab\n'
-            '!colcon test --packages-select beacon_lab\n'
-            '!colcon build --packages-select beacon_lab\n',
-        ),
+        (TEST, f'{TEST}{BUILD}'),
     ),
     wrong('another topic', 'it publishes on: /light', ("'lit'", "'light'")),
     wrong(
@@ -38,30 +25,10 @@ ANSWERS = [
         'The name of the node is what super().__init__() gets.',
         ("__init__('beacon')", "__init__('lamp')"),
     ),
-    wrong(
-        'a test that fails',
-        '1 failures and 0 errors in 1 tests',
-        ('from rclpy.node', 'from pathlib import Path\n\nfrom rclpy.node'),
-        (
-            '!colcon build --packages-select beacon_lab\n',
-            "Path('src/beacon_lab/test/test_beacon.py').write_text('def "
-            "test_sum():\\n    assert 1 + 1 == 3\\n')\n"
-            '!colcon build --packages-select beacon_lab\n',
-        ),
-    ),
-    wrong(
-        'a test that is not found',
-        'no test that has run',
-        ('from rclpy.node', 'from pathlib import Path\n\nfrom rclpy.node'),
-        (
-            '!colcon build --packages-select beacon_lab\n',
-            "Path('src/beacon_lab/test/test_beacon.py').write_text('assert 1 + 1 "
-            "== 2\\n')\n!colcon build --packages-select beacon_lab\n",
-        ),
-    ),
-    right(
-        'the whole workspace', ('!colcon build --packages-select beacon_lab\n', '!colcon build\n')
-    ),
+    wrong('a test that fails', '1 failures and 0 errors in 1 tests', ("== 'beacon'", "== 'lamp'")),
+    wrong('a test that is not found', 'no test that has run', ('def test_name', 'def name')),
+    right('lab.export'),
+    right('the whole workspace', (BUILD, 'colcon build\n')),
     right(
         'the profile inside',
         ('\nLATE = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)\n', ''),
@@ -79,16 +46,6 @@ ANSWERS = [
             '        self.publisher.publish(Bool(data=True))\n',
             '        self.create_timer(0.5, self.on_timer)\n\n    def on_timer(self):\n'
             '        self.publisher.publish(Bool(data=True))\n',
-        ),
-    ),
-    right(
-        'a test of its own',
-        ('from rclpy.node', 'from pathlib import Path\n\nfrom rclpy.node'),
-        (
-            '!colcon build --packages-select beacon_lab\n',
-            "Path('src/beacon_lab/test/test_beacon.py').write_text('def "
-            "test_sum():\\n    assert 1 + 1 == 2\\n')\n"
-            '!colcon build --packages-select beacon_lab\n',
         ),
     ),
 ]

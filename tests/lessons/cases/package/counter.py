@@ -11,17 +11,21 @@ ANSWERS = [
         'not exported',
         'runs in this notebook, and there is no package',
         (
-            "lab.export(Counter, package='counter_lab', folder='src', overwrite=True)\n"
-            '!colcon build --packages-select counter_lab\n',
+            "lab.export(Counter, package='counter_lab', folder='ros2_ws/src', overwrite=True)\n"
+            '!cd ros2_ws && colcon build --packages-select counter_lab\n',
             'lab.spin(Counter())\n',
         ),
     ),
     wrong(
         'not built',
         'colcon build has not been run since',
-        ('!colcon build --packages-select counter_lab\n', ''),
+        ('!cd ros2_ws && colcon build --packages-select counter_lab\n', ''),
     ),
-    wrong('beside src', 'Packages lie in the folder src of a workspace.', (", folder='src'", '')),
+    wrong(
+        'beside src',
+        'Packages lie in the folder src of a workspace.',
+        ("'ros2_ws/src'", "'ros2_ws'"),
+    ),
     wrong(
         'leans on the notebook',
         "it uses 'lab'",
@@ -33,8 +37,8 @@ ANSWERS = [
         'executables: count',
         ('class Counter(Node):\n', 'class Count(Node):\n'),
         (
-            "lab.export(Counter, package='counter_lab', folder='src', overwrite=True)\n",
-            "lab.export(Count, package='counter_lab', folder='src', overwrite=True)\n",
+            "lab.export(Counter, package='counter_lab', folder='ros2_ws/src', overwrite=True)\n",
+            "lab.export(Count, package='counter_lab', folder='ros2_ws/src', overwrite=True)\n",
         ),
     ),
     wrong(
@@ -57,7 +61,11 @@ ANSWERS = [
         ('Float64, Int16', 'Int16'),
     ),
     right(
-        'the whole workspace', ('!colcon build --packages-select counter_lab\n', '!colcon build\n')
+        'the whole workspace',
+        (
+            '!cd ros2_ws && colcon build --packages-select counter_lab\n',
+            '!cd ros2_ws && colcon build\n',
+        ),
     ),
     right(
         'a constant and a function of other lines',

@@ -2,64 +2,58 @@
 
 from __future__ import annotations
 
-from cases import ERROR, right, wrong
+from cases import right, wrong
 
 __all__ = ['ANSWERS']
 
+BUILD = 'colcon build --packages-select ears_lab\n'
+RUN = 'ros2 run ears_lab listener > listener.log 2>&1 &\n'
+# As if the module had been changed, and built once more, a while after the start.
+LATER = 'touch -d "5 seconds" src/*/*/listener.py\ntouch -d "9 seconds" build/*/colcon_build.rc\n'
+
 ANSWERS = [
+    wrong('not built', 'colcon build has not been run since', (BUILD, '')),
+    wrong('not started', 'No program of that name runs on this machine just now.', (RUN, '')),
     wrong(
-        'not built',
-        'colcon build has not been run since',
-        ('!colcon build --packages-select ears_lab\n', ''),
+        'in another domain',
+        'Nodes find each other only within one domain.',
+        (RUN, f'ROS_DOMAIN_ID=220 {RUN}'),
     ),
+    wrong(
+        'started twice',
+        '2 nodes of the name /listener',
+        (RUN, f'{RUN}{RUN}until [ $(ros2 node list | grep -c listener) -ge 2 ]; do :; done\n'),
+    ),
+    wrong(
+        'changed while it runs',
+        'A program keeps the code with which it was started.',
+        (RUN, f'{RUN}{LATER}'),
+    ),
+    wrong('in the notebook', 'A node of that name is there, of another program.'),
     wrong(
         'built too early',
         'files in src that are newer than the last build that went well',
-        (
-            "Path('src/ears_lab/ears_lab/listener.py').write_text(LISTENER)\n"
-            '!colcon build --packages-select ears_lab\n',
-            '!colcon build --packages-select ears_lab\n'
-            "Path('src/ears_lab/ears_lab/listener.py').write_text(LISTENER)\n",
-        ),
+        (BUILD, f'{BUILD}touch src/ears_lab/ears_lab/listener.py\n'),
     ),
     wrong(
         'beside src',
         'Packages lie in the folder src of a workspace.',
-        (' --destination-directory src', ''),
-        ('src/ears_lab', 'ears_lab'),
+        ('cd ros2_ws/src\n', 'cd ros2_ws\n'),
+        ('cd ..\n', ''),
     ),
-    wrong(
-        'another name',
-        'The name is close, and it is another one.',
-        (
-            "shutil.rmtree('src/ears_lab', ignore_errors=True)\n"
-            '%ros2 pkg create ears_lab --build-type ament_python '
-            '--destination-directory src \\\n',
-            "shutil.rmtree('src/ear_lab', ignore_errors=True)\n"
-            '%ros2 pkg create ear_lab --build-type ament_python '
-            '--destination-directory src \\\n',
-        ),
-        (
-            "Path('src/ears_lab/ears_lab/listener.py').write_text(LISTENER)\n"
-            '!colcon build --packages-select ears_lab\n',
-            "Path('src/ear_lab/ear_lab/listener.py').write_text(LISTENER)\n"
-            '!colcon build --packages-select ear_lab\n',
-        ),
-    ),
-    wrong(
-        'no entry',
-        'A module alone cannot be run',
-        ('    --node-name listener --dep', '    --dep'),
-    ),
-    wrong(
-        'another function',
-        'The entry in setup.py names a function that the module does not have.',
-        ('def main()', 'def run()'),
-    ),
+    wrong('another name', 'The name is close, and it is another one.', ('ears_lab', 'ear_lab')),
+    wrong('no entry', 'A module alone cannot be run', (' --node-name listener', '')),
+    wrong('another function', 'If it ends at once, read there why.', ('def main()', 'def run()')),
     wrong(
         'does not spin',
-        'main() returned at once',
+        'If it ends at once, read there why.',
         ('        rclpy.spin(node)', '        print(node)'),
+    ),
+    wrong(
+        'sleeps',
+        'is on the graph, and does not answer',
+        ('import rclpy\n', 'import time\n\nimport rclpy\n'),
+        ('        rclpy.spin(node)', '        time.sleep(1000)'),
     ),
     wrong(
         'the name of the class',
@@ -104,30 +98,17 @@ ANSWERS = [
         ),
         ('    node = Listener()\n', '    node = Listener()\n    node.begin()\n'),
     ),
-    wrong(
-        'raises', "has no attribute 'rmtre'", ('shutil.rmtree(', 'shutil.rmtre('), outcome=ERROR
-    ),
     right('lab.export'),
-    right(
-        'the whole workspace', ('!colcon build --packages-select ears_lab\n', '!colcon build\n')
-    ),
-    right(
-        'links instead of copies',
-        (
-            '!colcon build --packages-select ears_lab\n',
-            '!colcon build --packages-select ears_lab --symlink-install\n',
-        ),
-    ),
+    right('the whole workspace', (BUILD, 'colcon build\n')),
+    right('links instead of copies', (BUILD, BUILD.replace('\n', ' --symlink-install\n'))),
     right(
         'an entry by hand, and another name of the module',
-        ('    --node-name listener --dep', '    --dep'),
-        ('ears_lab/listener.py', 'ears_lab/hearing.py'),
+        (' --node-name listener', ''),
+        ('cat > ears_lab/ears_lab/listener.py', 'cat > ears_lab/ears_lab/hearing.py'),
         (
-            '!colcon build --packages-select ears_lab\n',
-            "setup = Path('src/ears_lab/setup.py')\n"
-            "entry = \"'console_scripts': ['listener = ears_lab.hearing:main'\"\n"
-            'text = setup.read_text().replace("\'console_scripts\': [", entry)\n'
-            'setup.write_text(text)\n!colcon build --packages-select ears_lab\n',
+            'cd ..\n',
+            'entry="\'listener = ears_lab.hearing:main\'"\n'
+            'sed -i "s/\'console_scripts\': \\[/&$entry/" ears_lab/setup.py\ncd ..\n',
         ),
     ),
 ]

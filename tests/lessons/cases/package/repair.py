@@ -6,110 +6,52 @@ from cases import right, wrong
 
 __all__ = ['ANSWERS']
 
+COMMA, NAME = "s/teller:main'/teller:main',/", 's/hearer:mian/hearer:main/'
+BUILD = 'colcon build --packages-select broken_lab\n'
+TALK = 'ros2 run broken_lab teller > teller.log 2>&1 &\n'
+LISTEN = 'ros2 run broken_lab hearer > hearer.log 2>&1 &\n'
+
 ANSWERS = [
-    wrong(
-        'not built',
-        'colcon build has not been run since',
-        ('!colcon build --packages-select broken_lab\n', ''),
-    ),
-    wrong(
-        'as it was, built',
-        'Its last build has failed.',
-        (
-            'text = text.replace("talker:main\'", "talker:main\',")\n'
-            "text = text.replace('listener:mian', 'listener:main')\n",
-            '',
-        ),
-    ),
+    wrong('not built', 'colcon build has not been run since', (BUILD, '')),
+    wrong('as it was, built', 'Its last build has failed.', (f'{COMMA}; {NAME}', '')),
     wrong(
         'the comma alone',
-        'The entry in setup.py names a function that the module does not have.',
-        ("text = text.replace('listener:mian', 'listener:main')\n", ''),
+        'If it ends at once, read there why.',
+        (f'; {NAME}', ''),
     ),
-    wrong(
-        'the name alone',
-        'Its last build has failed.',
-        ('text = text.replace("talker:main\'", "talker:main\',")\n', ''),
-    ),
-    wrong(
-        'without the talker',
-        'executables: listener',
-        (
-            'text = text.replace("talker:main\'", "talker:main\',")\n',
-            "text = text.replace(\"'talker = broken_lab.talker:main'\", '')\n",
-        ),
-    ),
-    wrong(
-        'without the listener',
-        'executables: talker',
-        (
-            "text = text.replace('listener:mian', 'listener:main')\n",
-            "text = text.replace(\"'listener = broken_lab.listener:mian'\", '')\n",
-        ),
-    ),
+    wrong('the name alone', 'Its last build has failed.', (f'{COMMA}; ', '')),
+    wrong('without the teller', 'executables: hearer', (COMMA, '/teller:main/d')),
+    wrong('without the hearer', 'executables: teller', (NAME, '/hearer:mian/d')),
     wrong(
         'one for both',
-        'The name of the node is what super().__init__() gets.',
-        (
-            "text = text.replace('listener:mian', 'listener:main')\n",
-            "text = text.replace('listener:mian', 'talker:main')\n",
-        ),
+        'A node of that name is there, of another program.',
+        (NAME, 's/hearer:mian/teller:main/'),
+        (TALK, ''),
+        (LISTEN, f'{LISTEN}until ros2 node list | grep -q teller; do :; done\n'),
     ),
     wrong(
         'another module',
-        'names a module that is not there',
-        (
-            "text = text.replace('listener:mian', 'listener:main')\n",
-            "text = text.replace('listener:mian', 'listner:main')\n",
-        ),
+        'If it ends at once, read there why.',
+        (NAME, 's/hearer:mian/listner:main/'),
     ),
     wrong(
         'another name for ros2 run',
         'What stands before = in setup.py is the name for ros2 run.',
-        (
-            "text = text.replace('listener:mian', 'listener:main')\n",
-            "text = text.replace('listener:mian', 'listener:main')\n"
-            "text = text.replace('listener =', 'listner =')\n",
-        ),
+        (NAME, f'{NAME}; s/hearer =/herer =/'),
     ),
     wrong(
         'changed after the build',
         'Its last build has failed.',
-        (
-            'setup.write_text(text)\n!colcon build --packages-select broken_lab\n',
-            '!colcon build --packages-select broken_lab\nsetup.write_text(text)\n',
-        ),
+        (BUILD, ''),
+        ('cd ros2_ws\n', f'cd ros2_ws\n{BUILD}'),
     ),
-    right(
-        'regular expression',
-        ('from labkit', 'import re\n\nfrom labkit'),
-        (
-            'text = text.replace("talker:main\'", "talker:main\',")\n',
-            "text = re.sub(r\"(talker:main')$\", r'\\1,', text, flags=re.MULTILINE)\n",
-        ),
-    ),
-    right(
-        'the whole workspace', ('!colcon build --packages-select broken_lab\n', '!colcon build\n')
-    ),
-    right(
-        'a list of its own',
-        (
-            'text = text.replace("talker:main\'", "talker:main\',")\n'
-            "text = text.replace('listener:mian', 'listener:main')\n",
-            "entries = [\n    'talker = broken_lab.talker:main',\n"
-            "    'listener = broken_lab.listener:main',\n]\n"
-            "before, _, after = text.partition('[\\n            ')\n"
-            'text = f\'{before}{entries!r}{after.partition("]")[2]}\'\n',
-        ),
-    ),
+    wrong('one terminal', '/hearer on the graph', (LISTEN, '')),
+    right('the whole workspace', (BUILD, 'colcon build\n')),
+    right('links instead of copies', (BUILD, BUILD.replace('\n', ' --symlink-install\n'))),
     right(
         'the other function',
-        ("text = text.replace('listener:mian', 'listener:main')\n", ''),
-        (
-            '!colcon build --packages-select broken_lab\n',
-            "module = setup.with_name('broken_lab') / 'listener.py'\n"
-            "module.write_text(module.read_text().replace('main(', 'mian('))\n"
-            '!colcon build --packages-select broken_lab\n',
-        ),
+        (f'; {NAME}', ''),
+        (BUILD, f"sed -i 's/main(/mian(/' src/broken_lab/broken_lab/hearer.py\n{BUILD}"),
     ),
+    right('from the notebook'),
 ]

@@ -1,7 +1,9 @@
-import shutil
-from pathlib import Path
-
-LISTENER = """
+# In a terminal:
+cd ros2_ws/src
+ros2 pkg create ears_lab --build-type ament_python --node-name listener \
+    --dependencies rclpy std_msgs
+# In the editor, instead of what is in ears_lab/ears_lab/listener.py:
+cat > ears_lab/ears_lab/listener.py << END
 import rclpy
 from rclpy.node import Node
 from std_msgs.msg import String
@@ -26,10 +28,10 @@ def main():
     finally:
         node.destroy_node()
         rclpy.try_shutdown()
-"""
-
-shutil.rmtree('src/ears_lab', ignore_errors=True)
-%ros2 pkg create ears_lab --build-type ament_python --destination-directory src \
-    --node-name listener --dependencies rclpy std_msgs
-Path('src/ears_lab/ears_lab/listener.py').write_text(LISTENER)
-!colcon build --packages-select ears_lab
+END
+# In the terminal:
+cd ..
+colcon build --packages-select ears_lab
+# In the second terminal, after: cd ros2_ws
+source install/setup.bash
+ros2 run ears_lab listener > listener.log 2>&1 &
