@@ -20,7 +20,8 @@ from labkit.exercises.verdict import LearnerError
 __all__ = ['typed_text']
 
 TOPIC, STRING, WHO = '/hall', 'std_msgs/msg/String', 'Ada'
-# How long a line may take to arrive, s of real time; and what comes afterwards, s of the nodes'.
+# How long a line may take to arrive, s of real time, as the task says; then the nodes live for a
+# while, since a timer may say more, s of their own time.
 ARRIVES_SEC, AFTER_SEC = 3.0, 5.0
 NOTHING = Words('for a line that is empty, or all spaces, publish nothing')
 
@@ -50,7 +51,7 @@ ELSEWHERE = Mistake(
 )
 SILENT = Mistake(
     'typed-text/silent',
-    'The line was typed, and nothing was published for it.',
+    f'The line was typed, and nothing was published for it within {ARRIVES_SEC:g} s.',
     _ASK,
     change=[('        teller.say(text)', '        print(text)')],
 )
@@ -129,7 +130,7 @@ class _Says(GraphClause):
 
     text = (
         f'the line is published on `{TOPIC}` (`{STRING}`), without spaces at its ends, as '
-        f'`{WHO}: <text>`, once'
+        f'`{WHO}: <text>`, once, within {ARRIVES_SEC:g} s'
     )
     recognises = (*MISTAKES, SILENT, EMPTY_TOO)
 
