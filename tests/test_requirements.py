@@ -146,7 +146,10 @@ def third_party(folder: str) -> dict[str, str]:
     known.add('lab_interfaces')  # lesson 12 builds it
     found = {}
     for path in sorted((ROOT / folder).rglob('*')):
-        if path.suffix in ('.py', '.ipynb') and '.ipynb_checkpoints' not in path.parts:
+        # What Jupyter and lesson 11 put beside the notebooks is not the course's.
+        if {'.ipynb_checkpoints', 'ros2_ws'} & {*path.parts}:
+            continue
+        if path.suffix in ('.py', '.ipynb'):
             for tree in code_of(path):
                 for one in imports(tree):
                     module = one.target.partition('.')[0]
