@@ -6,8 +6,8 @@ from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
 from labkit.lessons.interfaces_and_actions.asker import asker
 from labkit.lessons.interfaces_and_actions.countdown import countdown
+from labkit.lessons.interfaces_and_actions.leg import leg
 from labkit.lessons.interfaces_and_actions.quiz import QUIZ, WARM_UP
-from labkit.lessons.interfaces_and_actions.squares import squares
 from labkit.lessons.interfaces_and_actions.stairs import stairs
 
 __all__ = ['LESSON']
@@ -21,7 +21,7 @@ LESSON = Lesson(
         'work that takes long: goal, feedback, result, cancel; types of your own, built '
         'by colcon (this part needs a C++ compiler)'
     ),
-    exercises=[squares, stairs, countdown, asker],
+    exercises=[stairs, countdown, asker, leg],
     quizzes=[WARM_UP, QUIZ],
     topics=[
         *ROBOT_TOPICS,
