@@ -21,8 +21,9 @@ def sources() -> dict[str, str]:
 
 
 def missing_files(page: Path) -> list[str]:
-    """Return the links to files that are not there."""
-    links = LINK.findall(page.read_text(encoding='utf-8'))
+    """Return the links to files that are not there; a badge is that of a workflow."""
+    text = page.read_text(encoding='utf-8').replace('/badge.svg)', ')')
+    links = [link.replace('../../actions/', '.github/') for link in LINK.findall(text)]
     return [link for link in links if not (page.parent / link).exists()]
 
 

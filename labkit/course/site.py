@@ -6,6 +6,7 @@ sources, which become files of the site, and the front page is README.md.
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import tempfile
@@ -47,6 +48,9 @@ def build_site(folder: Path) -> str:
         for path in (path for name in _FILES for path in ROOT.glob(name)):
             shutil.copy(path, copy)
         shutil.move(copy / 'docs' / 'site' / 'index.md', copy)
+        # A badge is a page beside the one that shows the repository, which the site is not.
+        readme = copy / 'README.md'
+        readme.write_text(re.sub(r'(?m)^\[!\[.*\n', '', readme.read_text('utf-8')), 'utf-8')
         new = Path(place) / 'site'
         command = [str(python), '-m', 'sphinx', '-q', '-W', '--keep-going']
         command += ['-c', str(copy / 'docs' / 'site'), str(copy), str(new)]
