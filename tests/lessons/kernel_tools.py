@@ -13,6 +13,7 @@ import sys
 import tempfile
 import threading
 import weakref
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -23,12 +24,16 @@ from rclpy.node import Node
 from labkit.background.nodes import existing_nodes
 from labkit.background.runtime import remove, runtime
 from labkit.background.wait import wait_for
+from labkit.packages import workspace
 from labkit.rosgraph.names import UNKNOWN_NODE, full_node_name
 from labkit.rosgraph.whose import process_id
 
 # Generous: it is there to end a hang. An answer's callback may never return, so `wait_for` does
 # not look between callbacks, as `runtime.wait` does.
 TIMEOUT_SEC = 60.0
+
+_HERE = Path(__file__).resolve().parent
+_colcon = workspace.colcon
 
 _before: weakref.WeakSet[Node] = weakref.WeakSet()
 _foreign_before: set[str] = set()
@@ -51,10 +56,23 @@ def mark() -> None:
 
 
 def _build_once() -> None:
-    """Let `colcon` be the one of `built_once`."""
-    folder = str(Path(__file__).resolve().parent / '.colcon')
+    """Let `colcon` be the one of `built_once`, and `lab.build` build the same text once."""
+    workspace.colcon = _colcon_once
+    folder = str(_HERE / '.colcon')
     paths = os.environ.get('PATH', os.defpath).split(os.pathsep)
     os.environ['PATH'] = os.pathsep.join([folder, *(path for path in paths if path != folder)])
+
+
+def _colcon_once(folder: Path, packages: list[str], **options: Any) -> None:
+    """Do what `workspace.colcon` does; of the same text it is there already, as it was built."""
+    text = [(path, path.read_bytes()) for path in sorted(folder.rglob('src/**/*.*'))]
+    kept = _HERE / '.colcon' / sha256(repr(text).encode()).hexdigest()
+    if not kept.is_dir():
+        _colcon(folder, packages, **options)
+        for name in ('build', 'install'):
+            shutil.copytree(folder / name, kept / name, symlinks=True)
+    else:
+        shutil.copytree(kept, folder, symlinks=True, dirs_exist_ok=True)
 
 
 def run_script(code: str) -> None:
