@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 
 __all__ = [
     'INT16',
+    'MANY',
     'draw_float',
     'draw_for',
     'draw_int16s',

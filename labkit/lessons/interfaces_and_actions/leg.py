@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, Solution, anything
 from labkit.exercises.clauses import WITHIN, Answers, Evidence, GraphClause, Named
-from labkit.exercises.draws import draw_float
+from labkit.exercises.draws import MANY, draw_float, in_a_row
 
 __all__ = ['fields_of', 'leg']
 
@@ -93,9 +93,8 @@ def _shown(fields: dict[str, str]) -> str:
 
 def _draw() -> Sequence[float]:
     # Ahead and back, left and right, the same twice in a row, and none at all.
-    ahead, back = draw_float(0.05, 0.2), draw_float(-0.2, -0.05)
-    more = [draw_float(-0.2, 0.2) for _ in range(4)]
-    return [ahead, ahead, back, 0.0, *more, ahead]
+    plain = [draw_float(0.05, 0.2), draw_float(-0.2, -0.05)]
+    return in_a_row(plain, [0.0], [draw_float(-0.2, 0.2) for _ in range(MANY)])
 
 
 leg = Exercise(
