@@ -29,7 +29,11 @@ ELSEWHERE = Mistake(
     'silent-mast/elsewhere',
     'Nothing comes on {topic}, and none of your nodes publishes there.',
     f'Look for the first topic that is silent. {_COMPARE}',
-    change=[('fits == QoSCompatibility.ERROR', 'fits != QoSCompatibility.ERROR')],
+    # From behind: a node in front of the silent mast may be what that mast can hear.
+    change=[
+        ('in LINKS:', 'in reversed(LINKS):'),
+        ('fits == QoSCompatibility.ERROR', 'fits != QoSCompatibility.ERROR'),
+    ],
 )
 NO_EAR = Mistake(
     'silent-mast/no-ear',
