@@ -286,6 +286,7 @@ def test_after_a_killed_build_the_next_one_begins_anew(start_builder, tmp_path):
     first.wait()
     second = start_builder()
     said, _ = second.communicate('\n')
+    assert second.returncode == 0, said
     builds, name = said.splitlines()
     assert builds == 'builds'
     assert {path.name for path in (tmp_path / 'types').iterdir()} == {name, 'lock', 'lock-queue'}
