@@ -1,6 +1,5 @@
 // The graph as the kernel has drawn it. Dots show messages that pass; each part can be asked.
 
-const SVG = 'http://www.w3.org/2000/svg';
 const LETTERS_PX = 14; // what JupyterLab has unless it is set; drawings are made for it
 const TRAVEL_MS = 650;
 // Dots of an arrow are apart: faster than that, one stands for several messages.
@@ -8,12 +7,6 @@ const APART_MS = 200;
 const MOST_DOTS = 80;
 const TICK_MS = 100; // see graph_live.py
 const STILL = window.matchMedia('(prefers-reduced-motion: reduce)');
-
-function svgElement(tag, attributes) {
-  const made = document.createElementNS(SVG, tag);
-  Object.entries(attributes).forEach(([name, value]) => made.setAttribute(name, value));
-  return made;
-}
 
 // Dots on their way along arrows. They rest as long as there are none.
 class Dots {

@@ -150,15 +150,12 @@ class Sheet {
 }
 
 function swatch(number) {
-  const make = (name, attributes) => {
-    const made = document.createElementNS('http://www.w3.org/2000/svg', name);
-    Object.entries(attributes).forEach(([key, value]) => made.setAttribute(key, value));
-    return made;
-  };
-  const box = make('svg', { width: 34, height: 10, 'aria-hidden': 'true' });
-  const line = make('path', { d: 'M0 5h34', fill: 'none', 'stroke-width': 2 });
+  const box = svgElement('svg', { width: 34, height: 10, 'aria-hidden': 'true' });
+  const dashes = DASHES[number].join(' ') || 'none';
+  const line = svgElement('path', {
+    d: 'M0 5h34', fill: 'none', 'stroke-width': 2, 'stroke-dasharray': dashes,
+  });
   line.style.stroke = `var(--labkit-line-${number})`;
-  line.setAttribute('stroke-dasharray', DASHES[number].join(' ') || 'none');
   box.append(line);
   return box;
 }

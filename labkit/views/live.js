@@ -11,6 +11,12 @@ function element(tag, properties = {}, ...children) {
   return made;
 }
 
+function svgElement(tag, attributes) {
+  const made = document.createElementNS('http://www.w3.org/2000/svg', tag);
+  Object.entries(attributes).forEach(([name, value]) => made.setAttribute(name, value));
+  return made;
+}
+
 // Only what is new: a screen reader speaks what is set, even if it is the same.
 function setText(place, text) {
   if (place.textContent !== text) place.textContent = text;

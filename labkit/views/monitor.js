@@ -1,6 +1,7 @@
 // The last message of a topic as a tree, and what is known of the topic.
 
 const AGE_MS = 200;
+const SAMPLES = 60; // see monitor.py
 
 // A row of the tree. Those with parts can be opened and closed, by mouse and by keyboard.
 function makeRow([, name, type, hasParts], path, closed) {
@@ -19,6 +20,8 @@ function makeRow([, name, type, hasParts], path, closed) {
 // Build the tree anew. Returns the places of the values.
 function buildTree(tree, fields, closed) {
   const places = [];
+  const heads = () => [...tree.querySelectorAll('summary')];
+  const focused = heads().indexOf(document.activeElement);
   const open = [tree];
   const names = [];
   const rows = fields.map((field) => {
@@ -36,6 +39,7 @@ function buildTree(tree, fields, closed) {
     open[depth].append(row);
     open.push(row);
   }
+  heads()[focused]?.focus({ preventScroll: true });
   return places;
 }
 
@@ -47,6 +51,28 @@ function age(seconds) {
 function figure(name) {
   const place = element('dd', { textContent: '–' });
   return { place, box: element('div', {}, element('dt', { textContent: name }), place) };
+}
+
+// The course of a rate from zero on, the latest at the right. Its numbers stand beside it, as text.
+function makeCourse() {
+  const { box, place } = figure('Rate in the last minute');
+  const line = svgElement('polyline', { 'vector-effect': 'non-scaling-stroke' });
+  const svg = svgElement('svg', {
+    class: 'labkit-monitor-course', viewBox: `0 0 ${SAMPLES - 1} 1`, preserveAspectRatio: 'none',
+    'aria-hidden': 'true',
+  });
+  svg.append(line);
+  const words = element('span');
+  place.replaceChildren(svg, words);
+  const show = (rates, range) => {
+    const most = Math.max(...rates) || 1;
+    const at = (rate, index) => `${SAMPLES - rates.length + index},${1 - (0.8 * rate) / most}`;
+    line.setAttribute('points', rates.map(at).join(' '));
+    setText(words, `${range} Hz`);
+    box.hidden = rates.length < 2;
+  };
+  show([], '');
+  return { box, show };
 }
 
 function publishersTable() {
@@ -73,7 +99,8 @@ function render({ model, el }) {
   const topic = element('span', { className: 'labkit-monitor-topic' });
   const type = element('span', { className: 'labkit-monitor-type' });
   const [rate, count, last] = ['Rate', 'Messages', 'Last one came'].map(figure);
-  const figures = element('dl', {}, rate.box, count.box, last.box);
+  const course = makeCourse();
+  const figures = element('dl', {}, rate.box, count.box, last.box, course.box);
   const tree = element('div', { className: 'labkit-monitor-tree' });
   const publishers = publishersTable();
   const closed = new Set();
@@ -88,6 +115,7 @@ function render({ model, el }) {
     }
     if (news.type !== undefined) type.textContent = news.type;
     if (news.rate !== undefined) setText(rate.place, news.rate ? `${news.rate} Hz` : '–');
+    if (news.course) course.show(...news.course);
     if (news.count !== undefined) setText(count.place, `${news.count}`);
     if (news.publishers) publishers.show(news.publishers);
     if (news.age !== undefined) heardAt = performance.now() - 1000 * news.age;

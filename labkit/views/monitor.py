@@ -1,14 +1,14 @@
 """A live view of one topic: `lab.monitor(topic)`.
 
-The last message as a tree, the rate, the publishers, and the reason for silence. Messages arrive
-as
-bytes; only one that is shown is deserialized.
+The last message as a tree, the rate and its course over the last minute, the publishers, and the
+reason for silence. Messages arrive as bytes; only one that is shown is deserialized.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, Any
 
 from labkit.errors import LabError, quoted
@@ -30,6 +30,8 @@ __all__ = ['Monitor', 'monitor']
 
 # Topics at which one looks when a robot stands.
 _OF_ROBOTS = ('cmd_vel', 'odom')
+# The course of the rate: so many samples, and the time between two, s.
+SAMPLES, SAMPLE_SEC = 60, 1.0
 
 
 class Monitor(LivePage):
@@ -60,6 +62,8 @@ class Monitor(LivePage):
         self.topic = self._feed.topic
         self._last_message: tuple[type | None, bytes] | None = None
         self._wanted = count
+        self._rates: deque[float] = deque(maxlen=SAMPLES)
+        self._sampled_at = 0.0
         self._timed_out = _timed_out_beside(self.topic)
         super().__init__([self._feed, *self._timed_out])
         self._text = '' if self._watched else self._wait_for_text()
@@ -88,6 +92,13 @@ class Monitor(LivePage):
                 *_standing(self._timed_out),
             ]
         )
+
+    def _open(self) -> None:
+        with self._lock:
+            super()._open()
+            # While nobody looked, nothing was counted.
+            self._rates.clear()
+            self._sampled_at = time.monotonic()
 
     def _new_feed(self, topic: str, callback: Callable[[bytes], None]) -> Feed:
         return Feed(
@@ -130,10 +141,14 @@ class Monitor(LivePage):
         now, feed = time.monotonic(), self._feed
         known = [*_standing(self._timed_out), *_faults(self.topic)]
         rate = feed.rate()
+        while now - self._sampled_at >= SAMPLE_SEC:
+            self._sampled_at += SAMPLE_SEC
+            self._rates += [] if rate is None else [rate]
         state: dict[str, Any] = {
             'topic': self.topic,
             'type': type_name(feed.msg_type) if feed.msg_type else '',
-            'rate': '' if rate is None else f'{rate:.3g}' if rate < 99.5 else f'{rate:.0f}',
+            'rate': '' if rate is None else _number(rate),
+            'course': [[round(each, 3) for each in self._rates], _range(self._rates)],
             'note': ' '.join(filter(None, [feed.silence(guess=not known), *known])),
             'publishers': _publisher_rows(feed.publishers),
             'count': feed.count,
@@ -155,9 +170,8 @@ def monitor(
 ) -> Monitor:
     """Show a topic: the last message, the rate, the publishers, or why nothing arrives.
 
-    In a notebook it is live, and subscribes while it is visible. Elsewhere it is the next message
-    as
-    text.
+    In a notebook it is live, with the course of the rate over the last minute, and subscribes
+    while it is visible. Elsewhere it is the next message as text.
 
     Args:
         topic: Name of the topic. It need not exist yet.
@@ -183,6 +197,15 @@ def _timed_out_beside(topic: str) -> list[TimedOut]:
 
 def _standing(feeds: list[TimedOut]) -> list[str]:
     return [f'The robot stands: {feed.words}.' for feed in feeds if feed.words]
+
+
+def _number(rate: float) -> str:
+    return f'{rate:.3g}' if rate < 99.5 else f'{rate:.0f}'
+
+
+def _range(rates: Collection[float]) -> str:
+    ends = map(_number, (min(rates), max(rates))) if rates else []
+    return ' to '.join(dict.fromkeys(ends))
 
 
 def _faults(topic: str) -> list[str]:

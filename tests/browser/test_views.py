@@ -42,6 +42,16 @@ def ears(topic='/odds'):
     'odom': "lab.monitor('/odom')",
     'texts': "lab.monitor('/texts')",
     'say': "talker.texts.publish(String(data='<img src=x onerror=alert(1)>'))",
+    'poses': "lab.monitor('/poses')",
+    'one-or-two': """
+from geometry_msgs.msg import Pose, PoseArray
+poses = talker.create_publisher(PoseArray, 'poses', 10)
+def tell():
+    tell.count = 3 - tell.count
+    poses.publish(PoseArray(poses=[Pose()] * tell.count))
+tell.count = 1
+talker.create_timer(0.3, tell)
+""",
     'plot': "lab.plot('/odds.data', '/odom.pose.pose.position.x', seconds=5)",
     'one': "lab.plot('/odds.data')",
     'remove': "lab.remove('talker')",
@@ -123,6 +133,10 @@ def test_monitor_counts_and_says_why_nothing_comes(stage):
     stage.wait("v => parseFloat(v.querySelector('dd').textContent) > 5", monitor)
     expect(monitor.locator('dd').first).to_contain_text('Hz')
     expect(monitor.locator('.labkit-monitor-type')).to_have_text('std_msgs/msg/Int16')
+    # The course of the rate, with its numbers as text.
+    expect(monitor.locator('polyline')).to_have_attribute('points', re.compile(r'58,.* 59,'))
+    course = monitor.locator('dl > div', has_text='Rate in the last minute').locator('dd')
+    expect(course).to_have_text(re.compile(r'^[\d.]+( to [\d.]+)? Hz$'))
     expect(monitor.locator('td')).to_have_text(['/talker', 'reliable', 'volatile'])
     stage.run('remove')
     stage.view('monitor')
@@ -152,6 +166,19 @@ def test_tree_is_worked_by_keyboard_and_follows(stage):
     for key in ('a', 'b', 'x', 'd', 'd'):
         stage.page.keyboard.press(key)
     assert len(stage.notebook.cells()) == count
+    expect(head).to_be_focused()
+
+
+def test_tree_of_another_shape_stays_folded_and_keeps_the_focus(stage):
+    stage.run('talker', 'one-or-two', 'poses')
+    monitor = stage.view('poses')
+    head = monitor.locator('summary', has_text='[0]')
+    head.focus()
+    stage.page.keyboard.press('Enter')
+    expect(monitor.locator('summary', has_text='position').first).to_be_hidden()
+    for count in (2, 1, 2):
+        expect(monitor.locator('summary', has_text='position')).to_have_count(count)
+    expect(monitor.locator('summary', has_text='position').first).to_be_hidden()
     expect(head).to_be_focused()
 
 
