@@ -6,6 +6,9 @@ const TRAVEL_MS = 650;
 const APART_MS = 200;
 const MOST_DOTS = 80;
 const TICK_MS = 100; // see graph_live.py
+// How large it is, as a part of what was drawn. With less than the first, letters are hard to read:
+// rather than that, what is too high for the screen scrolls. What is too wide shrinks.
+const [READABLE, SMALLEST, LARGEST, STEP] = [0.7, 0.1, 4, 1.25];
 const STILL = window.matchMedia('(prefers-reduced-motion: reduce)');
 
 // Dots on their way along arrows. They rest as long as there are none.
@@ -61,6 +64,8 @@ class Drawing {
     this.parts = {};
     this.rates = {};
     this.chosen = '';
+    // null: its letters can be read; 0: all of it is seen.
+    this.scale = null;
     // Part -> when its last dot starts.
     this.startedAt = {};
     this.place.addEventListener('keydown', (event) => this.onKey(event));
@@ -70,6 +75,51 @@ class Drawing {
     });
     this.place.addEventListener('focusin', (event) => this.choose(this.partAt(event.target)));
     this.place.addEventListener('focusout', () => this.choose(''));
+    this.place.addEventListener('wheel', (event) => {
+      if (!event.ctrlKey) return;
+      event.preventDefault();
+      this.zoom(Math.exp(-event.deltaY / 400), event.clientX, event.clientY);
+    }, { passive: false });
+    this.place.addEventListener('pointermove', (event) => {
+      // A finger moves it anyway.
+      if (event.buttons === 1 && event.pointerType !== 'touch') {
+        this.place.scrollBy(-event.movementX, -event.movementY);
+      }
+    });
+  }
+
+  get svg() {
+    return this.place.querySelector('svg');
+  }
+
+  resize() {
+    if (!this.svg) return;
+    const [width, height] = ['width', 'height'].map((name) => this.svg.getAttribute(name));
+    // As large as the letters of the page: its width is in theirs, not in its own.
+    const letters = width / LETTERS_PX;
+    const least = this.scale === null ? READABLE * letters : 0;
+    const whole = `${width / height} * var(--labkit-graph-high)`;
+    this.svg.style.maxWidth = 'none';
+    this.svg.style.width = this.scale ? `${this.scale * letters}em`
+      : `min(${letters}em, 100%, max(${least}em, ${whole}))`;
+  }
+
+  // Make it larger by a factor. A point of the page stays where it is.
+  zoom(factor, x, y) {
+    if (!this.svg) return;
+    const [place, before] = [this.place.getBoundingClientRect(), this.svg.getBoundingClientRect()];
+    const letters = Number.parseFloat(getComputedStyle(this.svg).fontSize);
+    const scale = (factor * before.width * LETTERS_PX) / (letters * this.svg.getAttribute('width'));
+    this.scale = Math.max(SMALLEST, Math.min(LARGEST, scale));
+    this.resize();
+    const grown = this.svg.getBoundingClientRect().width / before.width - 1;
+    this.place.scrollBy(grown * ((x ?? place.x + place.width / 2) - before.x),
+      grown * ((y ?? place.y + place.height / 2) - before.y));
+  }
+
+  showAll() {
+    this.scale = 0;
+    this.resize();
   }
 
   partAt(target) {
@@ -89,6 +139,7 @@ class Drawing {
   draw(text, parts) {
     const had = this.parts[this.partAt(document.activeElement)]?.[0];
     this.parts = parts;
+    const { scrollLeft, scrollTop } = this.place;
     this.place.replaceChildren();
     this.chosen = '';
     this.tell([]);
@@ -99,14 +150,14 @@ class Drawing {
     svg.removeAttribute('aria-labelledby');
     svg.setAttribute('role', 'group');
     svg.setAttribute('aria-label', 'Nodes and topics');
-    // As large as the letters of the page: its width is in theirs, not in its own.
     svg.lastElementChild.setAttribute('font-size', svg.getAttribute('font-size'));
     svg.removeAttribute('font-size');
-    svg.style.width = `${svg.getAttribute('width') / LETTERS_PX}em`;
     svg.style.height = '';
     const layer = svgElement('g', { 'aria-hidden': 'true' });
     svg.lastElementChild.append(layer);
     this.place.append(svg);
+    this.resize();
+    this.place.scrollTo(scrollLeft, scrollTop);
     this.dots.restart(layer);
     this.all.forEach((part, index) => {
       part.setAttribute('role', 'img');
@@ -146,6 +197,10 @@ class Drawing {
   }
 
   onKey(event) {
+    if (event.ctrlKey || event.metaKey) return; // the browser zooms
+    if (event.key === '0') this.showAll();
+    const factor = { '+': STEP, '=': STEP, '-': 1 / STEP }[event.key];
+    if (factor) this.zoom(factor);
     const parts = this.all;
     const here = parts.indexOf(document.activeElement);
     const steps = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 };
@@ -176,6 +231,19 @@ class Drawing {
       }
     });
   }
+}
+
+function zoomButtons(drawing) {
+  const button = (text, label, act) => {
+    const made = element('button', { type: 'button', textContent: text, title: label });
+    made.setAttribute('aria-label', label);
+    made.addEventListener('click', act);
+    return made;
+  };
+  return element('div', { className: 'labkit-graph-zoom' },
+    button('−', 'Zoom out (key -)', () => drawing.zoom(1 / STEP)),
+    button('+', 'Zoom in (key +)', () => drawing.zoom(STEP)),
+    button('Fit', 'Fit all of it (key 0)', () => drawing.showAll()));
 }
 
 // Switches for what is there besides topics.
@@ -225,6 +293,7 @@ function render({ model, el }) {
   });
   const send = (content) => kernel.send(content);
   const switches = makeSwitches(send);
+  const zoom = zoomButtons(drawing);
   const back = element('button', { type: 'button', textContent: 'Show it' });
   const since = element('span');
   const changed = element('p', { className: 'labkit-graph-changed', hidden: true }, since, back);
@@ -245,7 +314,7 @@ function render({ model, el }) {
       known.svg = news.svg ?? known.svg;
       drawing.draw(known.svg, news.parts ?? drawing.parts);
       empty.hidden = Boolean(known.svg);
-      details.hidden = !known.svg;
+      details.hidden = zoom.hidden = !known.svg;
     }
     if (news.told !== undefined) setText(told, news.told);
     if (news.switches) switches.show(news.switches);
@@ -256,7 +325,7 @@ function render({ model, el }) {
   });
   drawing.tell([]);
   el.append(told, drawing.place, empty, kernel.note, changed,
-    element('div', { className: 'labkit-graph-foot' }, details, switches.place));
+    element('div', { className: 'labkit-graph-foot' }, details, switches.place, zoom));
 
   // Only what can be seen is counted.
   let inView = false;
@@ -276,7 +345,7 @@ function render({ model, el }) {
   const sizes = new ResizeObserver(() => {
     const letters = Number.parseFloat(getComputedStyle(el).fontSize);
     // In steps, so that a page that is being resized asks now and then.
-    const fits = Math.floor(((drawing.place.clientWidth / letters) * LETTERS_PX) / 20) * 20;
+    const fits = Math.floor(((drawing.place.offsetWidth / letters) * LETTERS_PX) / 20) * 20;
     if (fits && fits !== width) send({ width: fits });
     width = fits || width;
   });

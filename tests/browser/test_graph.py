@@ -8,6 +8,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Locator, expect
 
+from tests.browser.accessibility import violations
 from tests.browser.page import Notebook
 
 pytestmark = pytest.mark.slow('a page in the browser')
@@ -42,6 +43,12 @@ sonar.create_publisher(Int16, 'range', qos_profile_sensor_data)
 listener.create_subscription(Int16, 'range', print, 10)
 """,
     'many': '[lab.spin(Node(f"node_{number}")) for number in range(12)]',
+    'crowd': """
+crowd = [lab.spin(Node(f'worker_{number}')) for number in range(30)]
+for number, node in enumerate(crowd):
+    node.create_publisher(String, f'result_{number // 3}', 10)
+    node.create_subscription(String, f'task_{number // 10}', print, 10)
+""",
     'still': 'lab.graph(live=False)',
     'ways': 'print(len(traffic._open))',
     'remove': 'lab.remove("listener")',
@@ -196,6 +203,54 @@ def test_nothing_is_cut_off_and_nothing_scrolls(notebook: Notebook):
         assert live(notebook).evaluate(SCROLLS) == []
     assert live(notebook).locator('.cross').count() == 1
     expect(live(notebook)).to_contain_text('Best effort publisher and')
+
+
+def test_a_large_one_is_a_screen_high_and_can_be_moved(notebook: Notebook):
+    notebook.page.set_viewport_size({'width': 1280, 'height': 900})
+    for cell in ('nodes', 'crowd', 'graph'):
+        notebook.run_cell(cell)
+    view = live(notebook)
+    place, svg = view.locator('.labkit-graph-drawing'), view.locator('svg')
+    scale = 'svg => svg.clientWidth / svg.getAttribute("width")'
+    hidden = 'place => place.scrollHeight - place.clientHeight'
+    expect(part(view, 'Node /worker_29')).to_have_count(1)
+    assert view.evaluate('view => view.clientHeight') < 900
+    # What does not fit is beside it: letters are not smaller than one can read.
+    assert svg.evaluate(scale) > 0.69 and place.evaluate(hidden) > 100
+    view.get_by_role('button', name='Fit').click()
+    assert place.evaluate(hidden) <= 1
+    whole = svg.evaluate(scale)
+    part(view, 'Node /worker_29').focus()
+    for _ in range(6):
+        notebook.page.keyboard.press('+')
+    assert svg.evaluate(scale) / whole == pytest.approx(1.25**6, rel=0.02)
+    notebook.page.keyboard.press('-')
+    # The wheel makes it larger where the pointer is, and not the page.
+    place.hover()
+    letters = notebook.page.evaluate('window.devicePixelRatio')
+    before = svg.evaluate(scale)
+    notebook.page.keyboard.down('Control')
+    notebook.page.mouse.wheel(0, -200)
+    notebook.page.keyboard.up('Control')
+    notebook.page.wait_for_function(
+        f'svg => ({scale})(svg) > {1.3 * before}', arg=svg.element_handle()
+    )
+    assert notebook.page.evaluate('window.devicePixelRatio') == letters
+    # It is dragged, and stays as it is when nodes come.
+    place.evaluate('place => place.scrollTo(0, 0)')
+    x, y = place.evaluate('p => [p.getBoundingClientRect().x, p.getBoundingClientRect().y]')
+    notebook.page.mouse.move(x + 200, y + 200)
+    notebook.page.mouse.down()
+    notebook.page.mouse.move(x + 120, y + 140, steps=4)
+    notebook.page.mouse.up()
+    left_top = 'place => [place.scrollLeft, place.scrollTop]'
+    assert place.evaluate(left_top) == [80, 60]
+    before = svg.evaluate(scale)
+    notebook.run_cell('more')
+    expect(part(live(notebook), 'Node /another')).to_have_count(1)
+    assert svg.evaluate(scale) == pytest.approx(before, rel=0.02)
+    assert place.evaluate(left_top) == [80, 60]
+    assert violations(notebook, 'graph') == []
 
 
 def test_it_counts_only_while_it_can_be_seen(notebook: Notebook):
