@@ -10,21 +10,6 @@ const SPOKEN_MS = 1000; // a screen reader has to be able to speak what it is to
 const RATES = [0.1, 0.5, 1, 2, 5, 10, 50, 100];
 const JUMP = 0.5; // a longer way at once is none that was driven, m; see arena_robot.py
 
-function inSeconds(time) {
-  return `${time.toFixed(2)} s`;
-}
-
-// The last index at which `times` is not above `time`, -1 if there is none.
-function indexAt(times, time) {
-  let [low, high] = [0, times.length];
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (times[middle] <= time) low = middle + 1;
-    else high = middle;
-  }
-  return low - 1;
-}
-
 // A copy: the bytes may lie anywhere in the message, numbers only at multiples of their size.
 function numbersOf(data, Kind) {
   return new Kind(data.buffer.slice(data.byteOffset, data.byteOffset + data.byteLength));
@@ -48,14 +33,7 @@ class Replay extends Sheet {
   drawAt(time, lines, seconds) {
     this.time = time;
     this.draw(lines, 0, seconds || 1);
-    const { context } = this;
-    context.strokeStyle = this.colour('ink');
-    context.setLineDash([]);
-    context.lineWidth = 1;
-    context.beginPath();
-    context.moveTo(this.px(time), TOP);
-    context.lineTo(this.px(time), this.height - BOTTOM);
-    context.stroke();
+    this.cursor(time);
   }
 }
 

@@ -28,6 +28,21 @@ function short(number) {
   return Number.isFinite(number) ? text : '–';
 }
 
+function inSeconds(time) {
+  return `${time.toFixed(2)} s`;
+}
+
+// The last index at which `times` is not above `time`, -1 if there is none.
+function indexAt(times, time) {
+  let [low, high] = [0, times.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (times[middle] <= time) low = middle + 1;
+    else high = middle;
+  }
+  return low - 1;
+}
+
 // What an axis shows of these lines.
 function limits(lines) {
   let [low, high] = [Infinity, -Infinity];
@@ -85,6 +100,23 @@ class Sheet {
     context.textAlign = 'center';
     times.forEach((time) => context.fillText(short(time), this.px(time), height - BOTTOM + 16));
     context.fillText('time [s]', (LEFT + width - RIGHT) / 2, height - 5);
+  }
+
+  cursor(time) {
+    const { context } = this;
+    context.strokeStyle = this.colour('ink');
+    context.setLineDash([]);
+    context.lineWidth = 1;
+    context.beginPath();
+    context.moveTo(this.px(time), TOP);
+    context.lineTo(this.px(time), this.height - BOTTOM);
+    context.stroke();
+  }
+
+  // Where a pixel of the canvas is between the two times, from 0 to 1.
+  partAt(x) {
+    const inner = (x * this.width) / this.canvas.clientWidth - LEFT;
+    return Math.max(0, Math.min(1, inner / (this.width - LEFT - RIGHT)));
   }
 
   panel(lines, unit, top, height, times) {
@@ -163,11 +195,13 @@ function swatch(number) {
 // The legend: a table that says in numbers what the lines show.
 class Legend {
   constructor() {
-    const heads = ['Field', 'Last', 'Least', 'Greatest', 'Unit'];
-    this.body = element('tbody');
-    this.table = element('table', {}, element('thead', {}, element('tr', {}, ...heads.map(
+    const heads = ['Field', 'Last', 'Least', 'Greatest', 'Unit'].map(
       (text) => element('th', { textContent: text, scope: 'col' }),
-    ))), this.body);
+    );
+    this.last = heads[1];
+    this.body = element('tbody');
+    this.table = element('table', {},
+      element('thead', {}, element('tr', {}, ...heads)), this.body);
   }
 
   build(lines) {
@@ -177,21 +211,31 @@ class Legend {
       element('td', { textContent: unit || '–' }))));
   }
 
-  tell(lines) {
-    lines.forEach(({ values }, row) => {
+  // The last values, or those at the time of a cursor.
+  tell(lines, time = null) {
+    setText(this.last, time === null ? 'Last' : `At ${inSeconds(time)}`);
+    lines.forEach(({ times, values }, row) => {
       const finite = values.filter(Number.isFinite);
       const least = finite.reduce((a, b) => Math.min(a, b), Infinity);
       const greatest = finite.reduce((a, b) => Math.max(a, b), -Infinity);
       // As exact as the greatest of them asks for, so that they can be compared.
       const size = Math.log10(Math.max(Math.abs(least), Math.abs(greatest)) || 1);
       const digits = Math.max(0, 3 - Math.floor(size));
-      [finite.at(-1), least, greatest].forEach((number, column) => {
+      const last = time === null ? finite.at(-1) : values[indexAt(times, time)];
+      [last, least, greatest].forEach((number, column) => {
         // toFixed() takes at most 100 digits, and rounds nothing from 1e21 on.
         const rounds = Number.isFinite(number) && digits <= 100 && size < 21;
         const text = rounds ? `${Number(number.toFixed(digits))}` : short(number ?? NaN);
         setText(this.cells[row][column], text);
       });
     });
+  }
+
+  // The first column, as a sentence.
+  words() {
+    const rows = [...this.body.rows].map(({ cells: [name, value] }) => (
+      `${name.textContent.trim()} ${value.textContent}`));
+    return `${this.last.textContent}: ${rows.join(', ')}`;
   }
 }
 

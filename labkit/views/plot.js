@@ -75,26 +75,43 @@ function render({ model, el }) {
   const canvas = element('canvas');
   canvas.setAttribute('role', 'img');
   const button = element('button', { type: 'button', textContent: 'Pause' });
+  const slider = element('input', { type: 'range', min: 0, max: 1, step: 0.005, hidden: true });
+  slider.setAttribute('aria-label', 'Time of the cursor');
   const data = new Lines();
   const legend = new Legend();
   const sheet = new Sheet(canvas);
-  let [paused, frame, drawnAt, toldAt] = [null, 0, 0, 0];
+  // `at` is where the cursor is between the edges, from 0 to 1; null without one.
+  let [paused, at, frame, drawnAt, toldAt] = [null, null, 0, 0, 0];
 
   const draw = (moment) => {
     frame = requestAnimationFrame(draw);
     if (moment - drawnAt < FRAME_MS || !data.lines.length || !canvas.clientWidth) return;
     drawnAt = moment;
-    const { end } = data;
-    sheet.draw(...(paused ?? [data.lines, end - data.seconds, end]));
+    const [lines, begin, end] = paused ?? [data.lines, data.end - data.seconds, data.end];
+    const time = at === null ? null : begin + at * (end - begin);
+    sheet.draw(lines, begin, end);
+    if (time !== null) sheet.cursor(time);
     if (moment - toldAt > WORDS_MS) {
       toldAt = moment;
-      legend.tell((paused ?? [data.lines])[0]);
+      legend.tell(lines, time);
+      if (paused) slider.setAttribute('aria-valuetext', legend.words());
     }
     // For those who look on from outside, such as tests.
     canvas.dataset.frames = Number(canvas.dataset.frames ?? 0) + 1;
   };
+  const point = (part) => {
+    [at, toldAt] = [part, 0];
+    if (part !== null) slider.value = part;
+  };
+  canvas.addEventListener('pointermove', (event) => point(sheet.partAt(event.offsetX)));
+  canvas.addEventListener('pointerleave', () => {
+    if (!paused) point(null);
+  });
+  slider.addEventListener('input', () => point(Number(slider.value)));
   button.addEventListener('click', () => {
     paused = paused ? null : data.frozen();
+    point(paused ? 1 : null);
+    slider.hidden = !paused;
     button.textContent = paused ? 'Resume' : 'Pause';
     el.classList.toggle('labkit-plot-paused', paused !== null);
   });
@@ -108,7 +125,7 @@ function render({ model, el }) {
       `Lines over the last ${data.seconds} s: ${names.join(', ')}. The table has the numbers.`);
     canvas.style.height = `${heightOf(data.lines)}em`;
   });
-  el.append(element('div', { className: 'labkit-live-header' }, legend.table, button), note, canvas);
+  el.append(element('div', { className: 'labkit-live-header' }, legend.table, button), note, canvas, slider);
   frame = requestAnimationFrame(draw);
   return () => {
     cancelAnimationFrame(frame);

@@ -198,7 +198,8 @@ def plot(*fields: str, seconds: float = 10.0, count: int = 10) -> Plot:
     """Plot message fields over time.
 
     A field is the topic, a dot and the path in the message: `'/odom.pose.pose.position.x'`, or
-    `'/scan.ranges[0]'`. In a notebook the plot is live, and subscribes while it is visible.
+    `'/scan.ranges[0]'`. In a notebook the plot is live, and subscribes while it is visible. A
+    cursor at the pointer tells the values at its time; while the plot is paused, keys move it too.
     Elsewhere it is a picture and a text of the next messages.
 
     Args:

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Locator, expect
 
+from tests.browser.accessibility import violations
 from tests.browser.page import Notebook, open_notebook
 
 pytestmark = pytest.mark.slow('a page in the browser')
@@ -54,6 +55,15 @@ talker.create_timer(0.3, tell)
 """,
     'plot': "lab.plot('/odds.data', '/odom.pose.pose.position.x', seconds=5)",
     'one': "lab.plot('/odds.data')",
+    'minute': "lab.plot('/odds.data', seconds=60)",
+    'two-numbers': """
+import time
+lab.wait_until(talker.numbers.get_subscription_count)
+talker.numbers.publish(Int16(data=-1))
+time.sleep(2.5)  # what is closer together than that, a step of the cursor may pass by
+talker.numbers.publish(Int16(data=-2))
+""",
+    'slow': 'talker = lab.spin(Talker(3600.0))',
     'remove': "lab.remove('talker')",
     'ears': 'print("listening:", ears())',
     'no-ears': """
@@ -78,6 +88,21 @@ FRAMES = """([view, seconds]) => new Promise((resolve) => {
   };
   requestAnimationFrame(next);
 })"""
+# What the table says while the cursor goes from the right to the left.
+WALK = """async slider => {
+  const view = slider.closest('.labkit-plot'), canvas = view.querySelector('canvas');
+  const frames = () => Number(canvas.dataset.frames);
+  const seen = [];
+  for (let part = 1; part > -0.01; part -= 0.02) {
+    slider.value = part;
+    slider.dispatchEvent(new Event('input'));
+    const before = frames();
+    while (frames() < before + 2) await new Promise(requestAnimationFrame);
+    const text = view.querySelector('tbody td').textContent;
+    if (text !== seen.at(-1)) seen.push(text);
+  }
+  return seen;
+}"""
 # How well what is written can be told from what is behind it, by WCAG 2.
 CONTRAST = """element => {
   const numbers = (colour) => colour.match(/[\\d.]+/g).map(Number);
@@ -226,6 +251,33 @@ def test_plot_moves_and_can_be_paused_by_keyboard(stage):
     expect(plot.get_by_role('button', name='Pause')).to_be_focused()
     wait_frames(12)
     assert canvas.evaluate(picture) != seen
+
+
+def test_cursor_tells_the_values_at_its_time(stage):
+    stage.run('slow', 'minute')
+    plot = stage.view('minute')
+    last = plot.locator('thead th').nth(1)
+    expect(plot.locator('tbody th')).to_have_text(' /odds.data', use_inner_text=True)
+    stage.run('two-numbers')
+    plot = stage.view('minute')
+    expect(plot.locator('tbody td').first).to_have_text('-2')
+    # The pointer is enough; it need not be paused.
+    plot.get_by_role('img').hover()
+    expect(last).to_have_text(re.compile(r'^At \d+\.\d\d s$'))
+    stage.page.mouse.move(0, 0)
+    expect(last).to_have_text('Last')
+    slider = plot.get_by_role('slider', name='Time of the cursor')
+    expect(slider).to_be_hidden()
+    plot.get_by_role('button', name='Pause').click()
+    assert slider.evaluate(WALK) == ['-2', '-1', '–']
+    slider.focus()
+    stage.page.keyboard.press('End')
+    words = re.compile(r'^At \d+\.\d\d s: /odds\.data -2$')
+    expect(slider).to_have_attribute('aria-valuetext', words)
+    assert violations(stage.notebook, 'minute') == []
+    plot.get_by_role('button', name='Resume').click()
+    expect(slider).to_be_hidden()
+    expect(last).to_have_text('Last')
 
 
 def test_cleared_output_leaves_no_subscription(stage):
