@@ -12,11 +12,12 @@ from __future__ import annotations
 
 import functools
 import html
-from base64 import b64encode
 from collections.abc import Mapping
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from labkit.views.themed import as_source, picture
 
 if TYPE_CHECKING:
     from labkit.views.widget import PageWidget
@@ -69,9 +70,7 @@ class Stored:
         for kind, data in self._shown.items():
             if kind.startswith('image/'):
                 # As a separate image: its ids must not clash with those of the live one.
-                source = data if kind == 'image/png' else b64encode(data.encode()).decode()
-                words = html.escape(text)
-                body = f'<img src="data:{kind};base64,{source}" alt="{words}">'
+                body = picture(text, as_source(kind, data))
         docked = DOCKED.format(type(self._widget).__name__.removesuffix('Page').lower())
         now = datetime.now()
         words = f'Stored on {now.day} {now:%B %Y} at {now:%H:%M:%S}. <span>{TODO}</span>'

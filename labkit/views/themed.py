@@ -1,7 +1,8 @@
 """Still pictures in the colours of the page: JupyterLab shows images the same in any theme.
 
-An inline SVG can use the page's variables, an image can't. A page that does not trust a notebook
-strips inline drawings; for such a page, the plain image stands beside the drawing.
+An inline SVG can use the page's variables, an image can't: one of a drawing is inverted on a dark
+page. A page that does not trust a notebook strips inline drawings; for such a page, the plain
+image stands beside the drawing.
 """
 
 from __future__ import annotations
@@ -22,6 +23,11 @@ _THEME = {
     '#9e9e9e': 'var(--jp-border-color0, #9e9e9e)',
     '#e0e0e0': 'var(--jp-border-color2, #e0e0e0)',
 }
+# White becomes nearly black, black light, and colours keep their hue. On paper nothing is dark.
+_NIGHT = (
+    '<style>@media screen { [data-jp-theme-light="false"] .labkit-drawing '
+    '{ filter: invert(0.93) hue-rotate(180deg) } }</style>'
+)
 _STYLE = 'max-width: 100%; height: auto'
 _TAG = re.compile(r'<[a-z][^<>]*>')
 _PAINT = re.compile(r' (fill|stroke)="(#[0-9a-f]{6})"')
@@ -59,10 +65,25 @@ def _with_style(tag: re.Match[str]) -> str:
 
 
 def picture(words: str, source: str) -> str:
-    """Return an image as HTML, with a text alternative; see `as_source`."""
-    return f'<img alt="{escape(words)}" src="{source}" style="{_STYLE}">'
+    """Return an image as HTML, with a text alternative; see `as_source`.
+
+    A drawing, which is an SVG, is dark on a dark page. A photograph stays as it is.
+    """
+    if source.startswith('data:image/svg+xml'):
+        night, mark = _NIGHT, ' class="labkit-drawing"'
+    else:
+        night, mark = '', ''
+    return f'{night}<img{mark} alt="{escape(words)}" src="{source}" style="{_STYLE}">'
 
 
-def as_source(kind: str, data: bytes) -> str:
-    """Return a file of a kind such as `image/png` as a data URL."""
-    return f'data:{kind};base64,{b64encode(data).decode()}'
+def as_source(kind: str, data: bytes | str) -> str:
+    """Return a file of a kind such as `image/png` as a data URL.
+
+    Args:
+        kind: Its type.
+        data: Its bytes, or its text as outputs hold it: an SVG, or something else in base64.
+    """
+    if isinstance(data, str) and kind == 'image/svg+xml':
+        data = data.encode()
+    text = data if isinstance(data, str) else b64encode(data).decode()
+    return f'data:{kind};base64,{text}'

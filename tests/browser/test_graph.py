@@ -278,6 +278,13 @@ def test_without_a_kernel_it_is_a_picture(notebook: Notebook):
     picture = notebook.output('still').locator('img')
     assert picture.evaluate('img => img.decode().then(() => img.naturalWidth)') > 400
     expect(picture).to_have_attribute('alt', re.compile('/talker'))
+    # Its own ground is white, which would be glaring in a dark page.
+    expect(picture).to_have_css('filter', 'none')
+    notebook.execute('apputils:change-theme', theme='JupyterLab Dark')
+    try:
+        expect(picture).to_have_css('filter', re.compile('invert'))
+    finally:
+        notebook.execute('apputils:change-theme', theme='JupyterLab Light')
     # What a viewer gets that knows nothing of widgets is the same drawing.
     shown = notebook.cells()[notebook._index('still')]['outputs'][0]['data']
     assert sorted(shown) == ['image/svg+xml', 'text/html', 'text/plain']

@@ -7,7 +7,7 @@ from html.parser import HTMLParser
 
 from labkit.sim.kinematics import Pose
 from labkit.views.arena_picture import Scene, row
-from labkit.views.themed import as_source, themed
+from labkit.views.themed import as_source, picture, themed
 
 
 def test_colours_of_a_drawing_are_those_of_the_page() -> None:
@@ -24,6 +24,15 @@ def test_colours_of_a_drawing_are_those_of_the_page() -> None:
     assert len(re.findall('<[a-z]', inline)) == len(re.findall('<[a-z]', drawing)) + 1
     for tag in re.findall('<[a-z][^<>]*>', inline):
         assert tag.count('style=') <= 1, tag
+
+
+def test_image_of_a_drawing_turns_by_night_and_a_photograph_does_not() -> None:
+    drawing = picture('a drive', as_source('image/svg+xml', '<svg></svg>'))
+    assert 'src="data:image/svg+xml;base64,PHN2Zz48L3N2Zz4="' in drawing
+    assert 'class="labkit-drawing"' in drawing and '@media screen' in drawing
+    photograph = picture('a wall', as_source('image/png', 'cGljdHVyZQ=='))
+    assert photograph == picture('a wall', as_source('image/png', b'picture'))
+    assert 'class' not in photograph and 'filter' not in photograph
 
 
 def test_words_of_others_are_only_words() -> None:
