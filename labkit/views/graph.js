@@ -200,7 +200,10 @@ class Drawing {
     if (event.ctrlKey || event.metaKey) return; // the browser zooms
     if (event.key === '0') this.showAll();
     const factor = { '+': STEP, '=': STEP, '-': 1 / STEP }[event.key];
-    if (factor) this.zoom(factor);
+    if (factor) {
+      const { x, y, width, height } = document.activeElement.getBoundingClientRect();
+      this.zoom(factor, x + width / 2, y + height / 2);
+    }
     const parts = this.all;
     const here = parts.indexOf(document.activeElement);
     const steps = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 };

@@ -67,6 +67,10 @@ CUT_OFF = """svg => {
   });
   return cut;
 }"""
+IN_SIGHT = """part => {
+  const [a, b] = [part, part.closest('div')].map((each) => each.getBoundingClientRect());
+  return a.left >= b.left && a.right <= b.right && a.top >= b.top && a.bottom <= b.bottom;
+}"""
 SCROLLS = """view => {
   const wide = (element) => element.scrollWidth > element.clientWidth + 1;
   return [view, ...view.querySelectorAll('div, p')].filter((each) => wide(each)
@@ -224,6 +228,8 @@ def test_a_large_one_is_a_screen_high_and_can_be_moved(notebook: Notebook):
     for _ in range(6):
         notebook.page.keyboard.press('+')
     assert svg.evaluate(scale) / whole == pytest.approx(1.25**6, rel=0.02)
+    # By keys, what has the focus stays where it is.
+    assert part(view, 'Node /worker_29').evaluate(IN_SIGHT)
     notebook.page.keyboard.press('-')
     # The wheel makes it larger where the pointer is, and not the page.
     place.hover()
