@@ -24,13 +24,19 @@ __all__ = ['Clause', 'Stage', 'find', 'judge', 'naming']
 Seen = TypeVar('Seen')
 
 
-class Clause(ABC, Generic[Seen]):
-    """One thing that a task asks for. `Seen` is what the stage of the exercise shows."""
+class Clause(Generic[Seen]):
+    """One thing that a task asks for. `Seen` is what the stage of the exercise shows.
+
+    Attributes:
+        words: What is asked for, where the task itself says it.
+    """
+
+    words: str
 
     @property
-    @abstractmethod
     def text(self) -> str:
         """What is asked for, in words of the task. The notebook says it in the same words."""
+        return self.words
 
     @property
     def roles(self) -> dict[Role, str]:

@@ -104,11 +104,6 @@ class Pursues(GraphClause):
     seconds: float = LIFE_SEC
     own_life = True
 
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
-
     def judge(self, evidence: Evidence) -> str:
         """Send goals, and judge what becomes of them."""
         from rclpy.action.client import ActionClient

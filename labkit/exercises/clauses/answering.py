@@ -154,11 +154,6 @@ class Answers(GraphClause):
     judges_parts = True
 
     @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
-
-    @property
     def roles(self) -> dict[Role, str]:
         """It subscribes to one topic, and publishes on another one."""
         return {

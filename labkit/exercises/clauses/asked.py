@@ -23,11 +23,6 @@ class Asked(Clause[Seen]):
     words: str
     look: Callable[[Seen], None]
 
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
-
     def judge(self, seen: Seen) -> str:
         """Look at it."""
         self.look(seen)
@@ -43,8 +38,3 @@ class Words(Clause[Any]):
     """
 
     words: str
-
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words

@@ -49,11 +49,6 @@ class Logs(GraphClause):
     named: Callable[[str | None], str] = lambda text: ''
 
     @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
-
-    @property
     def roles(self) -> dict[Role, str]:
         """It subscribes."""
         return {(SUBSCRIPTION, self.topic): self.msg_type}

@@ -34,11 +34,6 @@ class Messages(GraphClause):
     mistakes: Sequence[Mistake] = ()
 
     @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
-
-    @property
     def recognises(self) -> Sequence[Mistake]:
         """Those that a task has named."""
         return self.mistakes

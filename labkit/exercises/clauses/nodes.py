@@ -112,11 +112,6 @@ class Runs(GraphClause):
     node: str = ''
     topic: str = ''
 
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
-
     def find(self, evidence: Evidence) -> None:
         """Ask the node."""
         probe = evidence.probe

@@ -53,11 +53,6 @@ class HasParameter(GraphClause):
     words: str
     limits: tuple[float, float] | None = None
 
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
-
     def find(self, evidence: Evidence) -> None:
         """Ask the node for the parameter and its descriptor."""
         from labkit.asking.parameters import describe_parameters, parameter_names
@@ -135,11 +130,6 @@ class Follows(GraphClause):
     hz: Callable[[Values], float]
     rule: Callable[[Values, Stream], None] = lambda _values, _stream: None
     own_life = True
-
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
 
     def find(self, evidence: Evidence) -> None:
         """Look for the publisher."""
@@ -267,11 +257,6 @@ class Refuses(GraphClause):
     words: str
     draw: Callable[[], tuple[Values, Sequence[Values]]]
     follows: Follows | None = None
-
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
 
     def judge(self, evidence: Evidence) -> str:
         """Try to set each of them."""

@@ -44,11 +44,6 @@ class Matches(GraphClause):
     subscribes: bool = False
     is_as_given: Callable[[Any], bool] = lambda profile: True
 
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
-
     def find(self, evidence: Evidence) -> None:
         """Compare the two ends, as the graph knows them."""
         mine = (
@@ -122,11 +117,6 @@ class Latched(GraphClause):
     topic: str
     words: str
     field: str = 'data'
-
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
 
     def find(self, evidence: Evidence) -> None:
         """Look at what the publisher offers."""

@@ -92,11 +92,6 @@ class Responds(GraphClause):
     draw: Callable[[], Sequence[Sequence[Mapping[str, Any]]]]
     rule: Callable[[Sequence[Call]], None]
 
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
-
     def judge(self, evidence: Evidence) -> str:
         """Call the service, and judge the responses."""
         from labkit.rosgraph.interfaces import service_class

@@ -92,11 +92,6 @@ class RunsNode(Clause[System]):
     node: str
     words: str
 
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
-
     def judge(self, system: System) -> str:
         """Raise Fail if it does not."""
         refuse_missing(system, self.node.format_map(system.values))
@@ -109,11 +104,6 @@ class OnlyNodes(Clause[System]):
 
     nodes: Sequence[str]
     words: str
-
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
 
     def judge(self, system: System) -> str:
         """Raise Fail if one is missing, or one is too many."""
@@ -165,11 +155,6 @@ class _HasTopic(Clause[System]):
     topic: str
     code: str
     words: str
-
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
 
     def _has(self, system: System, does: str, found: Mapping[str, set[str]]) -> None:
         node, topic = (name.format_map(system.values) for name in (self.node, self.topic))
@@ -227,11 +212,6 @@ class HasParameters(Clause[System]):
     values: Mapping[str, float | str]
     words: str
     defaults: Mapping[str, float] = field(default_factory=dict)
-
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return self.words
 
     def judge(self, system: System) -> str:
         """Raise Fail if one has another value."""
