@@ -73,9 +73,10 @@ an `Asked`: words of the task, and a function that raises `Fail` if what is show
 
 The mistakes
 ------------
-A `Mistake` has an id, the words for a misconception, a model of what a program with it sends, and
-the change of the solution that makes such a program. `Answers(mistakes=...)` names the first one
-whose model answers as the node did; another judge raises it: `Fail(expected, seen, MISTAKE)`, or
+A `Mistake` has an id, which begins with the name of its exercise, the words for a misconception, a
+model of what a program with it sends, and the change of the solution that makes such a program:
+the proof makes each of them. `Answers(mistakes=...)` names the first one whose model answers as
+the node did; another judge raises it: `Fail(expected, seen, MISTAKE)`, or
 `MISTAKE.of(name=value)` where its words have names in braces. Those that can be made in any
 exercise are in `words`. A cause is named only if it was seen.
 

@@ -17,7 +17,6 @@ from labkit.exercises.history import history
 from labkit.exercises.judging import Clause, Stage, judge
 from labkit.exercises.learner_errors import explain_error, last_cell
 from labkit.exercises.lesson_progress import next_steps
-from labkit.exercises.mistakes import Mistake
 from labkit.exercises.other_time import other_times
 from labkit.exercises.pending import Pending, learner_task_runs
 from labkit.exercises.probe import Probe
@@ -103,7 +102,6 @@ class Exercise:
             publisher fails the check at any time.
         reliable: Topics whose subscribers request reliable delivery, as the robot does: they
             receive nothing from a best effort publisher.
-        mistakes: Typical mistakes, in addition to those that the clauses recognise.
         hints: Hints from a nudge to nearly the answer.
         answer: The solution to show.
         given: Full names of nodes that the lesson itself leaves running for this exercise, with
@@ -123,7 +121,6 @@ class Exercise:
     answer: Solution
     clauses: Sequence[Clause[Any]] = ()
     stage: Stage[Any] = field(default_factory=Graph)
-    mistakes: Sequence[Mistake] = ()
     publishes: Mapping[str, str] = field(default_factory=dict)
     subscribes: Mapping[str, str] = field(default_factory=dict)
     serves: Mapping[str, str] = field(default_factory=dict)
@@ -145,7 +142,6 @@ class Exercise:
         roles: dict[Role, str] = {}
         for clause in self.clauses:
             roles.update(clause.roles)
-            self.mistakes = (*self.mistakes, *clause.recognises)
 
         def asked(kind: str, more: Mapping[str, str]) -> dict[str, str]:
             return {name: roles[what, name] for what, name in roles if what == kind} | {**more}

@@ -16,7 +16,6 @@ from labkit.exercises.scope import Role
 from labkit.exercises.verdict import Fail
 
 if TYPE_CHECKING:
-    from labkit.exercises.mistakes import Mistake
     from labkit.exercises.probe import Probe
 
 __all__ = ['Clause', 'Stage', 'find', 'judge', 'naming']
@@ -45,11 +44,6 @@ class Clause(Generic[Seen]):
         What an exercise looks for is read off its clauses.
         """
         return {}
-
-    @property
-    def recognises(self) -> Sequence[Mistake]:
-        """The mistakes that it tells by their models."""
-        return ()
 
     @property
     def listens(self) -> Collection[str]:

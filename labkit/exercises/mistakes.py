@@ -37,7 +37,8 @@ class Mistake:
     """A misconception: its words, and what a program that has it does.
 
     Attributes:
-        id: Its name, unique in the course, such as `'odds/passed-on'`; empty if it has none.
+        id: Its name, unique in the course, such as `'evens/passed-on'`: that of its exercise and
+            its own; empty if it has none.
         why: The misconception, in one or two sentences that a beginner understands. Values of the
             moment have a name in braces, as `str.format` has them.
         todo: The next step, likewise.

@@ -8,8 +8,10 @@ from types import SimpleNamespace
 
 import cases
 import pytest
-from cases import answers_of, right, slug
+from cases import answers_of, changes_of, right, slug
 from proof import lessons
+
+from labkit.exercises.mistakes import known_mistakes
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -29,6 +31,14 @@ def test_every_program_is_an_answer() -> None:
     assert written - named == set()
 
 
+def test_a_change_is_of_the_exercise_after_which_its_mistake_is_named() -> None:
+    tried = {
+        each.id for lesson in lessons() for one in lesson.exercises for each in changes_of(one)
+    }
+    told = {each.id for each in known_mistakes().values() if each.change}
+    assert told - tried == set()
+
+
 @pytest.mark.parametrize(
     ('rows', 'complaint'),
     [
@@ -43,6 +53,6 @@ def test_a_table_that_does_not_fit_is_refused(
     table = SimpleNamespace(ANSWERS=rows)
     monkeypatch.setattr(importlib, 'import_module', lambda name: table)
     answer = SimpleNamespace(code='a = 1\n', name='x.py')
-    exercise = SimpleNamespace(lesson='odds', name='x', answer=answer, mistakes=(), once=False)
+    exercise = SimpleNamespace(lesson='odds', name='x', answer=answer, once=False)
     with pytest.raises(ValueError, match=complaint):
         answers_of.__wrapped__(exercise)

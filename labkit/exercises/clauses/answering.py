@@ -167,11 +167,6 @@ class Answers(GraphClause):
         return (self.inner, self.outer)
 
     @property
-    def recognises(self) -> Sequence[Mistake]:
-        """Those that a task has named."""
-        return self.mistakes
-
-    @property
     def _shown(self) -> str:
         return self.field if isinstance(self.field, str) else ', '.join(self.field)
 

@@ -58,11 +58,6 @@ class Logs(GraphClause):
         """Where it hears."""
         return (self.topic,)
 
-    @property
-    def recognises(self) -> Sequence[Mistake]:
-        """Those that a task has named."""
-        return self.mistakes
-
     def find(self, evidence: Evidence) -> None:
         """Look for the subscription."""
         evidence.subscription(self.topic)

@@ -24,19 +24,12 @@ class Messages(GraphClause):
         words: What is asked for, in words of the task.
         rule: Gets the messages, and raises Fail if they say something else.
         by: Full name of the node; any node if empty.
-        mistakes: What the rule may tell as a reason.
     """
 
     topic: str
     words: str
     rule: Callable[[Stream], str | None]
     by: str = ''
-    mistakes: Sequence[Mistake] = ()
-
-    @property
-    def recognises(self) -> Sequence[Mistake]:
-        """Those that a task has named."""
-        return self.mistakes
 
     def judge(self, evidence: Evidence) -> str:
         """Judge the messages."""
@@ -67,11 +60,6 @@ class Says(GraphClause):
     def text(self) -> str:
         """What is asked for."""
         return self.words.format(self.value)
-
-    @property
-    def recognises(self) -> Sequence[Mistake]:
-        """Those that a task has named."""
-        return self.mistakes
 
     def judge(self, evidence: Evidence) -> str:
         """Judge the values."""

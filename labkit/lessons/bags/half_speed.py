@@ -163,7 +163,6 @@ half_speed = Exercise(
             _values,
         ),
     ),
-    mistakes=(TOO_FEW, TOO_MANY, *VALUES),
     stage=InABag(PATH, OUTER),
     publishes={OUTER: TWIST},
     subscribes={INNER: TWIST},

@@ -71,7 +71,6 @@ one_topic = Exercise(
         Asked(f'it has at least {LEAST} messages, with none left out in between', _enough),
         Asked('it is stored as sqlite3', _storage),
     ),
-    mistakes=(TOO_FEW, MCAP),
     stage=InABag(PATH, TOPIC),
     given={'/weather': 'weather'},
     hints=[

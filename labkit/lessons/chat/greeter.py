@@ -88,7 +88,6 @@ class _UsedOnce(GraphClause):
     """Each reply comes from a publisher that was made for it, and is gone afterwards."""
 
     text = 'each reply comes from a publisher of its own, which is destroyed afterwards'
-    recognises = (KEPT, LEFT_BEHIND)
 
     def judge(self, evidence: Evidence) -> str:
         """Look at the numbers of the messages, which each publisher counts from 1, and for it."""

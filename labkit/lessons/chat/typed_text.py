@@ -100,7 +100,6 @@ class _Typed(GraphClause):
         'a function `ask()` of this notebook asks for a line with `input()`, once each time it '
         'is called'
     )
-    recognises = (NOT_ASKED, ASKS_AGAIN)
     own_life = True
 
     def judge(self, evidence: Evidence) -> str:
@@ -132,7 +131,6 @@ class _Says(GraphClause):
         f'the line is published on `{TOPIC}` (`{STRING}`), without spaces at its ends, as '
         f'`{WHO}: <text>`, once, within {ARRIVES_SEC:g} s'
     )
-    recognises = (*MISTAKES, SILENT, EMPTY_TOO)
 
     @property
     def roles(self) -> dict[Role, str]:

@@ -182,7 +182,6 @@ drive = Exercise(
             f'{in_words(HZ)} a second (`--rate {HZ}`); the check allows {ALLOWED}', _expect_rate
         ),
     ),
-    mistakes=(*(mistake for _, mistake in FIELDS), NO_END, TOO_FEW, OTHER_RATE),
     shared=[WHERE.topic],
     reliable=[WHERE.topic],
     records=[WHERE.topic],

@@ -128,7 +128,6 @@ odds = Exercise(
         Asked('one message for each number', _expect_once),
         Asked(f'{", then ".join(map(str, WANTED))}, and nothing after them', _expect_numbers),
     ),
-    mistakes=(REPEATED, EVEN, MISSING, OTHER_ORDER),
     shared=[TOPIC],
     stage=Commands(
         _WHERE,

@@ -143,7 +143,6 @@ asker = Exercise(
             explain=lambda order, came: NOT_ASKED,
         ),
     ),
-    mistakes=(NO_GOAL, TWO_GOALS, SOME_GOALS, OTHER_GOALS, NOT_ASKED),
     hints=[
         'Nothing may wait here. There are two answers to wait for: accepted, and the result.',
         'send_goal_async(...).add_done_callback(self.on_accepted); its result is a goal handle.',

@@ -170,7 +170,6 @@ countdown = Exercise(
             LONGEST_SEC,
         ),
     ),
-    mistakes=(NO_FEEDBACK, ALL_AT_ONCE, TOO_SLOW, EMPTY_RESULT),
     hints=[
         'The server of this lesson awaits a tick before each number. So can yours.',
         'cancel_callback accepts the request. Who ends the goal? The loop, which has to look.',

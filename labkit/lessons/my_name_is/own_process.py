@@ -30,7 +30,6 @@ class _InAnotherProcess(GraphClause):
     """The publisher is not in this notebook's process."""
 
     text = 'the publisher is in another process than this notebook'
-    recognises = (IN_THE_NOTEBOOK, FAILED, ENDED)
 
     def find(self, evidence: Evidence) -> None:
         """Look where the publisher is."""

@@ -64,7 +64,6 @@ def _variant(*, ending: str = ENDING) -> Exercise:
                 explain=_trouble,
             ),
         ),
-        mistakes=[GOES_PAST],
         hints=[
             'Stage three is like stage two: it hears one topic and publishes on another one.',
             f'It hears {HEARS}. Stages one and two need not be changed.',

@@ -46,7 +46,6 @@ class _TwoNodes(GraphClause):
     """Each stage is a node."""
 
     text = 'the two stages are two nodes'
-    recognises = (ONE_NODE,)
 
     def find(self, evidence: Evidence) -> None:
         """Compare their names."""

@@ -100,7 +100,6 @@ class _ThreeNodes(GraphClause):
         'two nodes of this notebook append a first name each, and another one of it appends '
         f'`{ENDING}`'
     )
-    recognises = (ALL_IN_ONE, SEVERAL_HOSTS, APART, REPLACED, PASSED_ON)
 
     def find(self, evidence: Evidence) -> None:
         """Look for the host by its topic, and for the guests by what it hears."""
@@ -186,7 +185,6 @@ class _OneIsEnough(GraphClause):
         'no guest hears the other one, and the host answers each text by itself: so each guest '
         'can go'
     )
-    recognises = (HEARS_THE_OTHER, WAITS)
 
     def find(self, evidence: Evidence) -> None:
         """Look at what the guests hear."""
@@ -217,7 +215,6 @@ class _NamesDiffer(GraphClause):
     """Each guest has a first name of its own."""
 
     text = 'the two names are different, and each node keeps its own'
-    recognises = (SHARED,)
 
     def judge(self, evidence: Evidence) -> str:
         """Compare what was made of the first text."""

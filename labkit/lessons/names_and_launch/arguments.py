@@ -84,7 +84,6 @@ arguments = Exercise(
         _NothingElse(('/{robot}/driver',), 'no other node is started'),
     ),
     stage=Launched('arguments', arguments=_draw, defaults=DEFAULTS),
-    mistakes=(ALWAYS, NEVER),
     hints=[
         'Three tags <arg>, each with a default.',
         '$(var robot) stands for the value of an argument, wherever the file takes a value.',

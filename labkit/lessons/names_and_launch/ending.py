@@ -109,7 +109,6 @@ ending = Exercise(
         _DriverEndsAll(),
     ),
     stage=Launched('ending'),
-    mistakes=(NO_RESPAWN, ALL_RESPAWN, ALL_END, LIMITED, GOES_ON),
     hints=[
         'Two attributes of a node say what happens at its end: respawn and on_exit.',
         'One node says respawn="true", another on_exit="shutdown", and the third one nothing.',

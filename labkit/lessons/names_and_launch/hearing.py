@@ -111,7 +111,6 @@ hearing = Exercise(
         _HearsTheOther('robot2'),
     ),
     stage=Launched('hearing', GIVEN),
-    mistakes=(HEARS_ITSELF, ABSOLUTE_FROM, RELATIVE_TO, HEARS_BOTH, HEARS_NOBODY),
     hints=[
         'Launch it, and look at ros2 topic list. Which names are there that nobody meant?',
         'from is read as a name in the namespace of the node, and so is to. What does a / in '

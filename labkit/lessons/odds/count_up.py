@@ -58,7 +58,6 @@ ANOTHER_START = Mistake(
         ('        msg = Int16()', '        self.number += 2\n        msg = Int16()'),
     ],
 )
-MISTAKES = (SAME, IN_TURN, EVEN, STARTS_OVER, ANOTHER_STEP, ANOTHER_START)
 
 
 def _judge(stream: Stream, first: int, step: int, words: str) -> str:
@@ -100,7 +99,6 @@ def _variant(*, first: int = 1, step: int = 2, hz: float = 5.0) -> Exercise:
                 TOPIC,
                 f'the odd numbers {words}, one in each message',
                 lambda stream: _judge(stream, first, step, words),
-                mistakes=MISTAKES,
             ),
         ),
         hints=[

@@ -64,8 +64,6 @@ class _NamesTheGate(GraphClause):
         'nothing else'
     )
 
-    recognises = (SEVERAL, IN_ORDER, ALTERED, TYPE, A_TOPIC, EMPTY, NO_GATE)
-
     def find(self, evidence: Evidence) -> None:
         """Look whether there is a gate to be found."""
         if not wrong_gates():

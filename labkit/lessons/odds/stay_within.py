@@ -87,16 +87,6 @@ STOPS_LATER = Mistake(
     'The count starts over, and then it stops.',
     'Stop at the limit, or go on without end.',
 )
-MISTAKES = (
-    HELD,
-    BELOW_ZERO,
-    REMAINDER,
-    EVEN,
-    TOO_EARLY,
-    ANOTHER_START,
-    FIRST_NOT_USED,
-    ENDS_EARLY,
-)
 
 
 @dataclass(frozen=True)
@@ -286,7 +276,6 @@ stay_within = Exercise(
             f'the numbers are {FIRST}, {FIRST + 2}, {FIRST + 4}, ..., {LARGEST}, one in each '
             f'message; {LARGEST - 2} as the last one is right, too',
             _up_to_the_limit,
-            mistakes=MISTAKES,
         ),
         _AfterTheLimit(),
     ),

@@ -59,7 +59,6 @@ beacon = Exercise(
         Tested(),
     ),
     stage=InAWorkspace(PACKAGE),
-    mistakes=(VOLATILE, NOTHING, FALSE),
     hints=[
         'Lesson 08 has the profile: QoSProfile with a depth and a durability.',
         'The node publishes once, in its __init__. A publisher that is TRANSIENT_LOCAL keeps it.',

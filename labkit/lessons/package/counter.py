@@ -131,7 +131,6 @@ counter = Exercise(
         Asked('it publishes half of each of them on `/half` (`std_msgs/msg/Float64`)', _halves),
     ),
     stage=InAWorkspace(PACKAGE),
-    mistakes=(TOO_FEW, TOO_OFTEN, OTHER_STEP, CUT_OFF),
     hints=[
         'A node may have as many publishers as it likes, each with a type and a topic.',
         'First write the class, as in the lessons before. One timer may publish on both topics.',

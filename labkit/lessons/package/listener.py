@@ -57,7 +57,6 @@ listener = Exercise(
     ),
     stage=InAWorkspace(PACKAGE),
     subscribes={TOPIC: STRING},
-    mistakes=(NO_DEPENDENCIES,),
     hints=[
         'ros2 pkg create with --node-name listener makes the module and its entry in setup.py.',
         '--dependencies rclpy std_msgs goes into package.xml. Give --build-type ament_python, '

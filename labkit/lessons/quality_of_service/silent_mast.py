@@ -78,7 +78,6 @@ class _Carries(GraphClause):
         f'each number that `{NODES[0]}` publishes on `{LEVEL}` comes on '
         f'{", ".join(f"`{topic}`" for topic in SAID[:-1])} and `{SAID[-1]}`'
     )
-    recognises = (ELSEWHERE, NOT_SAID, OTHERS, MISSING)
     own_life = True
 
     @property
@@ -154,7 +153,6 @@ class _Once(GraphClause):
     """No number comes twice."""
 
     text = 'on each of these topics, it comes once'
-    recognises = (TWICE,)
 
     def judge(self, evidence: Evidence) -> str:
         """Count them."""

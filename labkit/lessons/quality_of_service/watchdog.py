@@ -257,7 +257,6 @@ watchdog = Exercise(
     task='Listen to /heartbeat, and publish a text on /alarm when it is silent.',
     publishes={ALARM: STRING},
     clauses=CLAUSES,
-    mistakes=(NOISE, HASTE),
     stage=_AHeart(),
     hints=[
         'A deadline says how much time may pass between two messages. Who tells the node that '

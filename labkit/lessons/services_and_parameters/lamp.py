@@ -134,7 +134,6 @@ lamp = Exercise(
         ),
         _TELLS_CHANGES,
     ),
-    mistakes=(ALWAYS, AS_ASKED, REVERSED, BEFORE, EMPTY, EXACTLY),
     hints=[
         'The node has to remember whether the lamp is on: an attribute of self.',
         "create_service(SetBool, 'switch_lamp', self.on_switch), and on_switch gets request and "

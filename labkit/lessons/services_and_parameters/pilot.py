@@ -113,7 +113,6 @@ pilot = Exercise(
             _FOLLOWS,
         ),
     ),
-    mistakes=(MORE_FIELDS, AT_THE_LIMIT),
     hints=[
         'A range has fixed ends. Here the limit may change, so a callback has to decide.',
         'The callback of add_on_set_parameters_callback() gets all parameters that are set at '

@@ -111,7 +111,6 @@ class _Calls(GraphClause):
         f"for each message on `{WISH}` (`{BOOL}`), call `{SERVICE}` once, with the message's "
         '`data` as that of the request'
     )
-    recognises = (NO_CALL, CALLS_MORE, CALLS_SOME, SAME_REQUEST, OPPOSITE)
 
     def find(self, evidence: Evidence) -> None:
         """Look for the subscription and for the door, and let somebody else keep it."""

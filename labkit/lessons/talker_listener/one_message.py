@@ -149,7 +149,6 @@ say_once = Exercise(
         _SilentBefore(),
         _SilentAfter(),
     ),
-    mistakes=(NOT_HEARD, TOO_EARLY, GOES_ON),
     hints=[
         'The node must look again and again whether somebody is there. What calls a callback '
         'again and again?',

@@ -142,7 +142,6 @@ bot = Exercise(
         ),
         STOPS,
     ),
-    mistakes=[SPEED_FOR_PLACE, Y_FOR_X, WRONG_SIGN, TURNS, GAIN, NOT_COUNTED],
     # A right drive takes 2 s.
     stage=Drives(SIGN, _draw, _tell, seconds=5.0),
     hints=[

@@ -232,7 +232,6 @@ go_to = Exercise(
             partial(look_at_end, may_pause=True),
         ),
     ),
-    mistakes=[EXCHANGED, WRONG_SIGN, HALF, TOO_EARLY, DRIVES_ON],
     stage=Drives(SIGN, _draw, _tell, seconds=SECONDS),
     hints=[
         'dx and dy lead from the robot to the goal. math.hypot(dx, dy) is how far it is, '

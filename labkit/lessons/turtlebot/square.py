@@ -220,7 +220,6 @@ _USUAL = Exercise(
     name='square',
     shared=['/cmd_vel'],
     reliable=['/cmd_vel'],
-    mistakes=[FIVE_SIDES, LAST_SIDE, NO_RIGHT_ANGLE],
     answer=Solution(
         __file__,
         'square.py',

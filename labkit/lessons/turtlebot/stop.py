@@ -175,7 +175,6 @@ _USUAL = Exercise(
     name='stop',
     shared=['/cmd_vel'],
     reliable=['/cmd_vel'],
-    mistakes=[OTHER_SPEED, STANDS, TURNS, NO_STOP],
     hints=[
         'Which method of a node is called when it is removed? You can write your own version.',
         'A new Twist() has 0.0 in all of its fields: it says stop.',

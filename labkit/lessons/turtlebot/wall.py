@@ -246,17 +246,6 @@ wall = Exercise(
         ),
         STOPS,
     ),
-    mistakes=[
-        RELIABLE,
-        BACKWARDS,
-        OTHER_SPEED,
-        SAID_ONCE,
-        TOO_NEAR,
-        ZERO,
-        NO_NUMBER,
-        BESIDE,
-        TOO_EARLY,
-    ],
     # The longest drive is 1 m, which takes 5 s.
     stage=Drives(SIGN, _draw, _tell, seconds=9.0),
     hints=[

@@ -57,7 +57,6 @@ manifest = Exercise(
         Runs('courier', 'courier', COURIER),
     ),
     stage=InAWorkspace(COURIER, _is_untouched),
-    mistakes=(MISSING, OF_PYTHON),
     hints=[
         'Read the lines of courier.py that begin with import or from.',
         'In from geometry_msgs.msg import Point, the package is geometry_msgs.',

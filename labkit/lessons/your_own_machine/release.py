@@ -159,10 +159,6 @@ release = Exercise(
         Asked(f'`{ARCHIVE}` in the workspace is the archive of that tag', _is_archived),
     ),
     stage=InARepository(COURIER, _is_untouched),
-    mistakes=(
-        *(TWO_VERSIONS, ELSEWHERE, NO_TAG, NOT_ADDED, LATER),
-        *(MADE_BY_COLCON, NO_ARCHIVE, OTHER_FILES),
-    ),
     hints=[
         'First the version in both files, then the commit, then the tag, and last the archive.',
         'A cell or a terminal in the workspace does: git add .gitignore src, and git commit.',

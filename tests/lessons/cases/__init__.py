@@ -1,6 +1,7 @@
 """Answers to the exercises, right ones and wrong ones, and what each of them must get.
 
-A mistake that an exercise has a change for is a wrong answer, and must be told in its own words.
+A mistake whose id begins with the name of an exercise, and that has a change of its solution, is a
+wrong answer to it, and must be told in its own words.
 `cases/<lesson>/<exercise>.py` is the table of the others: `ANSWERS`, of rows made by `wrong` and
 `right`. A row says what is changed in the exercise's solution. Where there is a file
 `cases/<lesson>/<exercise>/<name_of_the_row>.py` (`.ipy` if it has magics, `.sh` for a terminal),
@@ -21,9 +22,19 @@ from cases.generic import KINDS, generated, usual
 from cases.scripts import RUNS
 from labkit.exercises import Exercise, Outcome
 from labkit.exercises.exercise import read_answer
-from labkit.exercises.mistakes import HOLE, Mistake
+from labkit.exercises.mistakes import HOLE, Mistake, known_mistakes
 
-__all__ = ['ERROR', 'NOT_ATTEMPTED', 'Answer', 'Row', 'answers_of', 'right', 'slug', 'wrong']
+__all__ = [
+    'ERROR',
+    'NOT_ATTEMPTED',
+    'Answer',
+    'Row',
+    'answers_of',
+    'changes_of',
+    'right',
+    'slug',
+    'wrong',
+]
 
 HERE = Path(__file__).resolve().parent
 ERROR, NOT_ATTEMPTED = Outcome.ERROR, Outcome.NOT_ATTEMPTED
@@ -114,7 +125,7 @@ def answers_of(exercise: Exercise) -> list[Answer]:
     """
     name = f'{exercise.lesson}.{exercise.name}'
     table: Sequence[Row] = [
-        *map(_row_of, (each for each in exercise.mistakes if each.change)),
+        *map(_row_of, changes_of(exercise)),
         *_table(name),
     ]
     rows = {row.name: row for row in table}
@@ -136,6 +147,21 @@ def answers_of(exercise: Exercise) -> list[Answer]:
         )
         for row in rows.values()
         for code, run in [_code(row, rows, exercise, folder)]
+    ]
+
+
+def changes_of(exercise: Exercise) -> list[Mistake]:
+    """Return the mistakes of an exercise, which are named after it, as far as one can make them.
+
+    Some lessons have an underscore in those ids, as in the name; the others have a dash. The
+    lesson of the tests has exercises of the same names as others, so its ids begin with `demo-`.
+    """
+    own = 'demo-' * (exercise.lesson == 'demo')
+    begin = own + exercise.name.replace('_', '-')
+    return [
+        mistake
+        for name, mistake in known_mistakes().items()
+        if mistake.change and name.partition('/')[0].replace('_', '-') == begin
     ]
 
 

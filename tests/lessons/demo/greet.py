@@ -9,7 +9,7 @@ STRING = 'std_msgs/msg/String'
 
 
 MADE_ONCE = Mistake(
-    'greet/made-once',
+    'demo-greet/made-once',
     'The text that came in is not used.',
     'Put msg.data before the name.',
     model=anything,
