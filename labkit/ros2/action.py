@@ -170,27 +170,19 @@ def _name_argument(parser: Parser, text: str) -> None:
 
 
 def _types_option(parser: Parser) -> None:
-    parser.add('-t', '--show-types', action='store_true', help='Additionally show the action type')
+    parser.flag('-t, --show-types', 'Additionally show the action type')
 
 
 def _list_arguments(parser: Parser) -> None:
     add_discovery_options(parser)
     _types_option(parser)
-    parser.add(
-        *('-c', '--count-actions'),
-        action='store_true',
-        help='Only display the number of actions discovered',
-    )
+    parser.flag('-c, --count-actions', 'Only display the number of actions discovered')
 
 
 def _info_arguments(parser: Parser) -> None:
     _name_argument(parser, "Name of the ROS action to get info (e.g. '/fibonacci')")
     _types_option(parser)
-    parser.add(
-        *('-c', '--count'),
-        action='store_true',
-        help='Only display the number of action clients and action servers',
-    )
+    parser.flag('-c, --count', 'Only display the number of action clients and action servers')
 
 
 def _type_arguments(parser: Parser) -> None:
@@ -211,8 +203,8 @@ def _goal_arguments(parser: Parser) -> None:
         help="Goal request values in YAML format (e.g. '{order: 10}')",
         complete=_prototype,
     )
-    parser.add('--stdin', action='store_true', help='Read goal from standard input')
-    parser.add('-f', '--feedback', action='store_true', help='Echo feedback messages for the goal')
+    parser.flag('--stdin', 'Read goal from standard input')
+    parser.flag('-f, --feedback', 'Echo feedback messages for the goal')
 
 
 COMMAND = Command(

@@ -44,12 +44,8 @@ def add_discovery_options(parser: Parser) -> None:
         metavar='SPIN_TIME',
         help='seconds to wait for discovery, if ROS was started just now',
     )
-    parser.add('-s', '--use-sim-time', action='store_true', help='accepted, without effect')
-    parser.add(
-        '--no-daemon',
-        action='store_true',
-        help='look for nodes anew, and do not ask a running notebook',
-    )
+    parser.flag('-s, --use-sim-time', 'accepted, without effect')
+    parser.flag('--no-daemon', 'look for nodes anew, and do not ask a running notebook')
 
 
 def asking_node(args: Namespace) -> Node:

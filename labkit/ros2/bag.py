@@ -47,21 +47,13 @@ def _list_arguments(parser: Parser) -> None:
         choices=['storage', 'converter', 'compressor', 'decompressor'],
         help='lists available plugins',
     )
-    parser.add(
-        *('-v', '--verbose'),
-        action='store_true',
-        help='output verbose information about the available plugin',
-    )
+    parser.flag('-v, --verbose', 'output verbose information about the available plugin')
 
 
 def _info_arguments(parser: Parser) -> None:
     add_reader_arguments(parser)
-    parser.add('-t', '--topic-name', action='store_true', help='Only display topic names.')
-    parser.add(
-        *('-v', '--verbose'),
-        action='store_true',
-        help='Display request/response information for services',
-    )
+    parser.flag('-t, --topic-name', 'Only display topic names.')
+    parser.flag('-v, --verbose', 'Display request/response information for services')
 
 
 COMMAND = Command(

@@ -159,10 +159,9 @@ def _arguments(parser: Parser) -> None:
         ),
     ):
         parser.add(*names, default='', help=text)
-    parser.add(
-        *('-l', '--loop'),
-        action='store_true',
-        help='enables loop playback when playing a bagfile: it starts back at the beginning on '
+    parser.flag(
+        '-l, --loop',
+        'enables loop playback when playing a bagfile: it starts back at the beginning on '
         'reaching the end and plays indefinitely.',
     )
     parser.add(
@@ -183,11 +182,7 @@ def _arguments(parser: Parser) -> None:
         'Value must be positive. Defaults to not publishing. If specified, /clock topic in the '
         'bag file is excluded to publish.',
     )
-    parser.add(
-        *('-p', '--start-paused'),
-        action='store_true',
-        help='Start the playback player in a paused state.',
-    )
+    parser.flag('-p, --start-paused', 'Start the playback player in a paused state.')
     for names, text in (
         (['--start-offset'], 'Start the playback player this many seconds into the bag file.'),
         (['-d', '--delay'], 'Sleep duration before play, in seconds.'),

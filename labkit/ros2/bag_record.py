@@ -174,15 +174,12 @@ def _arguments(parser: Parser) -> None:
         help="Storage identifier to be used, defaults to 'mcap'.",
     )
     _topic_arguments(parser)
-    for names, text in (
-        (['--include-hidden-topics'], 'Discover and record hidden topics as well.'),
-        (
-            ['--no-discovery'],
-            'Disables topic auto discovery during recording: only topics present at startup '
-            'will be recorded.',
-        ),
-    ):
-        parser.add(*names, action='store_true', help=text)
+    parser.flag('--include-hidden-topics', 'Discover and record hidden topics as well.')
+    parser.flag(
+        '--no-discovery',
+        'Disables topic auto discovery during recording: only topics present at startup will be '
+        'recorded.',
+    )
     for names, default, text in (
         (
             ['-b', '--max-bag-size'],
@@ -212,10 +209,9 @@ def _more_arguments(parser: Parser) -> None:
         metavar='FILE',
         help='Path to a yaml file defining overrides of the QoS profile for specific topics.',
     )
-    parser.add(
+    parser.flag(
         '--use-sim-time',
-        action='store_true',
-        help='Use simulation time for message timestamps by subscribing to the /clock topic. '
+        'Use simulation time for message timestamps by subscribing to the /clock topic. '
         'Until first /clock message is received, no messages will be written to bag.',
     )
     parser.add(
@@ -256,12 +252,9 @@ def _topic_arguments(parser: Parser) -> None:
         parser.add(
             name, default=[], metavar='ServiceName', nargs='+', complete=service_names, help=text
         )
-    for names, text in (
-        (['-a', '--all'], 'Record all topics and services (Exclude hidden topic).'),
-        (['--all-services'], 'Record all services via service event topics.'),
-        (['--all-topics'], 'Record all topics (Exclude hidden topic).'),
-    ):
-        parser.add(*names, action='store_true', help=text)
+    parser.flag('-a, --all', 'Record all topics and services (Exclude hidden topic).')
+    parser.flag('--all-services', 'Record all services via service event topics.')
+    parser.flag('--all-topics', 'Record all topics (Exclude hidden topic).')
     parser.add(
         *('-e', '--regex'),
         default='',

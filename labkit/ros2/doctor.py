@@ -190,11 +190,10 @@ def _interfaces() -> list[tuple[str, int, int]]:
 
 def _arguments(parser: Parser) -> None:
     add_discovery_options(parser)
-    parser.add('-r', '--report', action='store_true', help='Print all reports.')
-    parser.add(
-        *('-iw', '--include-warnings'),
-        action='store_true',
-        help='Include warnings as failed checks. Warnings are ignored by default.',
+    parser.flag('-r, --report', 'Print all reports.')
+    parser.flag(
+        '-iw, --include-warnings',
+        'Include warnings as failed checks. Warnings are ignored by default.',
     )
 
 

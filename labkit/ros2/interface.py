@@ -95,11 +95,8 @@ def _kinds(args: Namespace) -> list[str]:
 
 def _kind_options(parser: Parser) -> None:
     for kind, word in _ONLY.items():
-        parser.add(
-            *(f'-{word[0]}', f'--only-{word}'),
-            action='store_true',
-            help=f'Print out only the {_WORDS[kind]} types',
-        )
+        text = f'Print out only the {_WORDS[kind]} types'
+        parser.flag(f'-{word[0]}, --only-{word}', text)
 
 
 def _package_arguments(parser: Parser) -> None:
@@ -118,12 +115,8 @@ def _show_arguments(parser: Parser) -> None:
         "argument from stdin (e.g. 'ros2 topic type /chatter | ros2 interface show -').",
         complete=lambda _: interfaces.names(),
     )
-    parser.add(
-        '--all-comments',
-        action='store_true',
-        help='Show all comments, including for nested interface definitions',
-    )
-    parser.add('--no-comments', action='store_true', help='Show no comments or whitespace')
+    parser.flag('--all-comments', 'Show all comments, including for nested interface definitions')
+    parser.flag('--no-comments', 'Show no comments or whitespace')
 
 
 def _proto_arguments(parser: Parser) -> None:
@@ -132,7 +125,7 @@ def _proto_arguments(parser: Parser) -> None:
         help='Show an interface definition (e.g. "std_msgs/msg/String")',
         complete=lambda _: interfaces.names(),
     )
-    parser.add('--no-quotes', action='store_true', help='if true output has no outer quotes.')
+    parser.flag('--no-quotes', 'if true output has no outer quotes.')
 
 
 COMMAND = Command(

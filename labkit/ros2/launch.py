@@ -108,34 +108,28 @@ def _second(args: Namespace) -> Iterable[str]:
 
 
 def _arguments(parser: Parser) -> None:
-    parser.add(
-        *('-n', '--noninteractive'),
-        action='store_true',
-        help='Run the launch system non-interactively, with no terminal associated',
+    parser.flag(
+        '-n, --noninteractive',
+        'Run the launch system non-interactively, with no terminal associated',
     )
-    parser.add(
-        *('-d', '--debug'),
-        action='store_true',
-        help='Put the launch system in debug mode, provides more verbose output.',
+    parser.flag(
+        '-d, --debug', 'Put the launch system in debug mode, provides more verbose output.'
     )
-    parser.add(
-        *('-p', '--print', '--print-description'),
+    parser.flag(
+        '-p, --print, --print-description',
+        'Print the launch description to the console without launching it.',
         dest='print_description',
-        action='store_true',
-        help='Print the launch description to the console without launching it.',
     )
-    parser.add(
-        *('-s', '--show-args', '--show-arguments'),
+    parser.flag(
+        '-s, --show-args, --show-arguments',
+        'Show arguments that may be given to the launch file.',
         dest='show_args',
-        action='store_true',
-        help='Show arguments that may be given to the launch file.',
     )
-    parser.add(
-        *('-a', '--show-all-subprocesses-output'),
-        dest='all_output',
-        action='store_true',
-        help="Show all launched subprocesses' output by overriding their output configuration "
+    parser.flag(
+        '-a, --show-all-subprocesses-output',
+        "Show all launched subprocesses' output by overriding their output configuration "
         'using the OVERRIDE_LAUNCH_PROCESS_OUTPUT envvar.',
+        dest='all_output',
     )
     parser.add(
         'package_name',

@@ -83,12 +83,8 @@ def _shown(names: Iterable[str], include_hidden: bool) -> list[str]:
 
 def _list_arguments(parser: Parser) -> None:
     add_discovery_options(parser)
-    parser.add('-a', '--all', action='store_true', help='Display all nodes even hidden ones')
-    parser.add(
-        *('-c', '--count-nodes'),
-        action='store_true',
-        help='Only display the number of nodes discovered',
-    )
+    parser.flag('-a, --all', 'Display all nodes even hidden ones')
+    parser.flag('-c, --count-nodes', 'Only display the number of nodes discovered')
 
 
 def _info_arguments(parser: Parser) -> None:
@@ -98,11 +94,7 @@ def _info_arguments(parser: Parser) -> None:
         help='Fully qualified node name to request information',
         complete=node_names,
     )
-    parser.add(
-        '--include-hidden',
-        action='store_true',
-        help='Display hidden topics, services, and actions as well',
-    )
+    parser.flag('--include-hidden', 'Display hidden topics, services, and actions as well')
 
 
 COMMAND = Command(

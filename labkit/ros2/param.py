@@ -223,7 +223,7 @@ def _node_arguments(parser: Parser, *, optional: bool = False) -> None:
         complete=node_names,
         **({'nargs': '?'} if optional else {}),
     )
-    parser.add('--include-hidden-nodes', action='store_true', help='Consider hidden nodes as well')
+    parser.flag('--include-hidden-nodes', 'Consider hidden nodes as well')
     parser.add(
         '--timeout', metavar='N', type=positive_float, help='accepted; 1 s is waited for a node'
     )
@@ -243,9 +243,7 @@ def _list_arguments(parser: Parser) -> None:
         default=[],
         help='Only list parameters with the provided prefixes',
     )
-    parser.add(
-        '--param-type', action='store_true', help='Print parameter types with parameter names'
-    )
+    parser.flag('--param-type', 'Print parameter types with parameter names')
 
 
 def _parameter_arguments(parser: Parser) -> None:
@@ -255,7 +253,7 @@ def _parameter_arguments(parser: Parser) -> None:
 
 def _get_arguments(parser: Parser) -> None:
     _parameter_arguments(parser)
-    parser.add('--hide-type', action='store_true', help='Hide the type information')
+    parser.flag('--hide-type', 'Hide the type information')
 
 
 def _set_arguments(parser: Parser) -> None:
@@ -271,11 +269,7 @@ def _describe_arguments(parser: Parser) -> None:
 def _load_arguments(parser: Parser) -> None:
     _node_arguments(parser)
     parser.add('parameter_file', help='Parameter file')
-    parser.add(
-        '--no-use-wildcard',
-        action='store_true',
-        help="Do not load parameters in the '/**' namespace into the node",
-    )
+    parser.flag('--no-use-wildcard', "Do not load parameters in the '/**' namespace into the node")
 
 
 COMMAND = Command(

@@ -113,6 +113,10 @@ class Parser(argparse.ArgumentParser):
         action.complete = complete  # type: ignore[attr-defined]
         return action
 
+    def flag(self, names: str, help: str, **options: Any) -> None:
+        """Add an option without a value: `flag('-v, --verbose', 'Say more')`."""
+        self.add(*names.split(', '), action='store_true', help=help, **options)
+
     def accept(self, *names: str, flag: bool = False) -> None:
         """Add an option of the real verb that has no effect here."""
         form: dict[str, Any] = {'action': 'store_true'} if flag else {'metavar': 'X'}

@@ -71,7 +71,7 @@ def _package_argument(parser: Parser) -> None:
 
 def _prefix_arguments(parser: Parser) -> None:
     _package_argument(parser)
-    parser.add('--share', action='store_true', help='show share directory for the package')
+    parser.flag('--share', 'show share directory for the package')
 
 
 def _xml_arguments(parser: Parser) -> None:
@@ -86,7 +86,7 @@ def _executables_arguments(parser: Parser) -> None:
         help='The package name',
         complete=lambda _: with_executables(),
     )
-    parser.add('--full-path', action='store_true', help='Show full path of each executable')
+    parser.flag('--full-path', 'Show full path of each executable')
 
 
 COMMAND = Command(

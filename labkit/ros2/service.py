@@ -136,15 +136,11 @@ def _prototype(args: Namespace) -> Iterable[str]:
 
 def _hidden_option(parser: Parser, *, shown: bool) -> None:
     text = 'Consider hidden services as well' if shown else argparse.SUPPRESS
-    parser.add(HIDDEN, action='store_true', help=text)
+    parser.flag(HIDDEN, text)
 
 
 def _count_option(parser: Parser) -> None:
-    parser.add(
-        *('-c', '--count-services'),
-        action='store_true',
-        help='Only display the number of services discovered',
-    )
+    parser.flag('-c, --count-services', 'Only display the number of services discovered')
 
 
 def _name_argument(parser: Parser, text: str) -> None:
@@ -155,9 +151,7 @@ def _name_argument(parser: Parser, text: str) -> None:
 
 def _list_arguments(parser: Parser) -> None:
     add_discovery_options(parser)
-    parser.add(
-        '-t', '--show-types', action='store_true', help='Additionally show the service type'
-    )
+    parser.flag('-t, --show-types', 'Additionally show the service type')
     _count_option(parser)
     _hidden_option(parser, shown=True)
 
@@ -197,7 +191,7 @@ def _call_arguments(parser: Parser) -> None:
         'otherwise the service request will be published with default values',
         complete=_prototype,
     )
-    parser.add('--stdin', action='store_true', help='Read values from standard input')
+    parser.flag('--stdin', 'Read values from standard input')
     parser.add(
         *('-r', '--rate'),
         metavar='N',

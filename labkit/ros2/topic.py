@@ -109,18 +109,14 @@ def _print_each(infos: list[TopicEndpointInfo]) -> None:
 
 def _hidden_options(parser: Parser, *, shown: bool) -> None:
     text = 'Consider hidden topics as well' if shown else argparse.SUPPRESS
-    parser.add(HIDDEN, action='store_true', help=text)
+    parser.flag(HIDDEN, text)
 
 
 def _list_arguments(parser: Parser) -> None:
     add_discovery_options(parser)
-    parser.add('-t', '--show-types', action='store_true', help='Additionally show the topic type')
-    parser.add(
-        *('-c', '--count-topics'),
-        action='store_true',
-        help='Only display the number of topics discovered',
-    )
-    parser.add('-v', '--verbose', action='store_true', help='List full details about each topic')
+    parser.flag('-t, --show-types', 'Additionally show the topic type')
+    parser.flag('-c, --count-topics', 'Only display the number of topics discovered')
+    parser.flag('-v, --verbose', 'List full details about each topic')
     _hidden_options(parser, shown=True)
 
 
@@ -131,10 +127,9 @@ def _name_argument(parser: Parser, text: str) -> None:
 def _info_arguments(parser: Parser) -> None:
     add_discovery_options(parser)
     _name_argument(parser, "Name of the ROS topic to get info (e.g. '/chatter')")
-    parser.add(
-        *('-v', '--verbose'),
-        action='store_true',
-        help='Prints detailed information like the node name, node namespace, topic type, topic '
+    parser.flag(
+        '-v, --verbose',
+        'Prints detailed information like the node name, node namespace, topic type, topic '
         'type hash, GUID, and QoS Profile of the publishers and subscribers to this topic',
     )
     _hidden_options(parser, shown=False)
@@ -153,12 +148,8 @@ def _find_arguments(parser: Parser) -> None:
         help="Name of the ROS topic type to filter for (e.g. 'std_msgs/msg/String')",
         complete=lambda _: interfaces.names('msg'),
     )
-    parser.add(
-        *('-c', '--count-topics'),
-        action='store_true',
-        help='Only display the number of topics discovered',
-    )
-    parser.add(HIDDEN, action='store_true', help='Consider hidden topics as well')
+    parser.flag('-c, --count-topics', 'Only display the number of topics discovered')
+    parser.flag(HIDDEN, 'Consider hidden topics as well')
 
 
 COMMAND = Command(

@@ -189,15 +189,10 @@ def _fields(args: Namespace) -> Iterable[str]:
 
 def add_form_options(parser: Parser) -> None:
     """Add the options that say how a message is printed."""
-    parser.add(
-        '--csv',
-        action='store_true',
-        help='Output all recursive fields separated by commas (e.g. for plotting)',
-    )
-    parser.add(
-        *('-f', '--full-length'),
-        action='store_true',
-        help='Output all elements for arrays, bytes, and string with a length > '
+    parser.flag('--csv', 'Output all recursive fields separated by commas (e.g. for plotting)')
+    parser.flag(
+        '-f, --full-length',
+        'Output all elements for arrays, bytes, and string with a length > '
         "'--truncate-length'; by default they are cut",
     )
     parser.add(
@@ -212,7 +207,7 @@ def add_form_options(parser: Parser) -> None:
         ('--no-str', "Don't print string fields of messages"),
         ('--flow-style', 'Print each list on one line (not available with csv format)'),
     ):
-        parser.add(name, action='store_true', help=text)
+        parser.flag(name, text)
 
 
 def _arguments(parser: Parser) -> None:
@@ -241,18 +236,14 @@ def _arguments(parser: Parser) -> None:
         ('--raw', 'Echo the raw binary representation'),
         ('--once', 'Print the first message received and then exit.'),
     ):
-        parser.add(name, action='store_true', help=text)
+        parser.flag(name, text)
     parser.add(
         '--timeout', metavar='N', type=positive_float, help='Set a timeout in seconds for waiting'
     )
     parser.add('--count', metavar='N', type=positive_int, help='Exit after N messages (only here)')
-    parser.add(
-        *('-i', '--include-message-info'),
-        action='store_true',
-        help='Shows the associated message info.',
-    )
+    parser.flag('-i, --include-message-info', 'Shows the associated message info.')
     add_filter_option(parser)
-    parser.add('--include-hidden-topics', action='store_true', help=argparse.SUPPRESS)
+    parser.flag('--include-hidden-topics', argparse.SUPPRESS)
 
 
 ECHO = Verb(

@@ -204,7 +204,7 @@ def _arguments(parser: Parser) -> None:
         'header `auto`',
         complete=_prototype,
     )
-    parser.add('--stdin', action='store_true', help='Read values from standard input')
+    parser.flag('--stdin', 'Read values from standard input')
     parser.add(
         *('-r', '--rate'),
         metavar='N',
@@ -219,7 +219,7 @@ def _arguments(parser: Parser) -> None:
         default=1,
         help='Only print every N-th published message (default: 1)',
     )
-    parser.add('-1', '--once', action='store_true', help='Publish one message and exit')
+    parser.flag('-1, --once', 'Publish one message and exit')
     parser.add(
         *('-t', '--times'),
         metavar='N',
@@ -254,7 +254,7 @@ def _arguments(parser: Parser) -> None:
     )
     add_qos_options(parser, 'default')
     add_discovery_options(parser)
-    parser.add('--include-hidden-topics', action='store_true', help=argparse.SUPPRESS)
+    parser.flag('--include-hidden-topics', argparse.SUPPRESS)
 
 
 PUB = Verb(

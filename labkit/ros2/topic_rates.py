@@ -213,9 +213,9 @@ def _arguments(
         help=f'window size, in # of messages, for calculating rate (default: {window})',
     )
     for name, text in more:
-        parser.add(name, action='store_true', help=text)
+        parser.flag(name, text)
     add_stop_options(parser, 'reports')
-    parser.add('--include-hidden-topics', action='store_true', help=argparse.SUPPRESS)
+    parser.flag('--include-hidden-topics', argparse.SUPPRESS)
 
 
 def _hz_arguments(parser: Parser) -> None:
