@@ -19,6 +19,7 @@ from labkit.ros2.asking import (
     asking_node,
     full_name,
     known_names,
+    print_names,
     unknown,
     values_text,
 )
@@ -52,11 +53,7 @@ _STATUS = {
 def list_actions(args: Namespace) -> None:
     """Print the names of the actions."""
     found = known_names(args, 'actions')
-    if args.count_actions:
-        print(len(found))
-        return
-    for name, types in found:
-        print(f'{name} [{", ".join(types)}]' if args.show_types else name)
+    print_names(args, found, args.count_actions)
 
 
 def show_info(args: Namespace) -> None:

@@ -13,7 +13,7 @@ from labkit.asking.notebook_graph import KINDS, ask_notebook
 from labkit.background.runtime import runtime
 from labkit.errors import LabError, nearest
 from labkit.ros2.parser import Parser, Usage, positive_float, real_one
-from labkit.rosgraph.interfaces import type_name
+from labkit.rosgraph.interfaces import check_exists, type_name
 from labkit.rosgraph.listings import NamesAndTypes
 from labkit.rosgraph.matching import other_type_here
 from labkit.rosgraph.names import full_topic_name, is_hidden
@@ -30,6 +30,8 @@ __all__ = [
     'full_name',
     'known_names',
     'other_type',
+    'print_names',
+    'print_names_of',
     'unknown',
     'values_text',
 ]
@@ -69,6 +71,31 @@ def known_names(args: Namespace, kind: str, *, include_hidden: bool = False) -> 
     told = None if own else ask_notebook(kind)
     found = KINDS[kind](asking_node(args)) if told is None else told
     return [each for each in found if include_hidden or not is_hidden(each[0])]
+
+
+def print_names(args: Namespace, found: NamesAndTypes, count: bool) -> None:
+    """Print names, with their types if the verb was asked to, or how many they are."""
+    if count:
+        print(len(found))
+        return
+    for name, types in found:
+        print(f'{name} [{", ".join(types)}]' if args.show_types else name)
+
+
+def print_names_of(msg_type: str, kind: str, found: NamesAndTypes, count: bool) -> None:
+    """Print the names that have a type, or how many they are.
+
+    Args:
+        msg_type: Name of the type.
+        kind: Its kind, `'msg'` or `'srv'`.
+        found: The names to choose from.
+        count: Whether to print the number alone.
+    """
+    names = [name for name, types in found if msg_type in types]
+    if not names:
+        with real_one(says='', shows='0' if count else '', code=0):
+            check_exists(msg_type, kind)
+    print(len(names)) if count else print('\n'.join(names), end='\n' * bool(names))
 
 
 def check_node_name(node: Node, name: str, *, timeout_sec: float = SOON_SEC) -> str:

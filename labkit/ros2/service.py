@@ -19,6 +19,8 @@ from labkit.ros2.asking import (
     asking_node,
     full_name,
     known_names,
+    print_names,
+    print_names_of,
     unknown,
     values_text,
 )
@@ -43,11 +45,7 @@ WAITING = 'waiting for service to become available...'
 def list_services(args: Namespace) -> None:
     """Print the names of the services."""
     found = known_names(args, 'services', include_hidden=args.include_hidden_services)
-    if args.count_services:
-        print(len(found))
-        return
-    for name, types in found:
-        print(f'{name} [{", ".join(types)}]' if args.show_types else name)
+    print_names(args, found, args.count_services)
 
 
 def show_type(args: Namespace) -> None:
@@ -71,11 +69,7 @@ def show_info(args: Namespace) -> None:
 def find(args: Namespace) -> None:
     """Print the services of a type."""
     found = known_names(args, 'services', include_hidden=args.include_hidden_services)
-    names = [name for name, types in found if args.service_type in types]
-    if not names:
-        with real_one(says='', shows='0' if args.count_services else '', code=0):
-            interfaces.check_exists(args.service_type, 'srv')
-    print(len(names)) if args.count_services else print('\n'.join(names), end='\n' * bool(names))
+    print_names_of(args.service_type, 'srv', found, args.count_services)
 
 
 def call(args: Namespace) -> None:

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING
 
 from labkit.asking.discovery import poll_until
 from labkit.errors import LabError
-from labkit.ros2.asking import add_discovery_options, asking_node, known_names, unknown
+from labkit.ros2.asking import (
+    add_discovery_options,
+    asking_node,
+    known_names,
+    print_names,
+    print_names_of,
+    unknown,
+)
 from labkit.ros2.graph_words import topic_names
 from labkit.ros2.parser import Command, Parser, Verb, real_one
 from labkit.ros2.topic_echo import ECHO
@@ -36,11 +43,7 @@ def list_topics(args: Namespace) -> None:
             print(_ends(node, found, publishers=False))
         return
     found = known_names(args, 'topics', include_hidden=args.include_hidden_topics)
-    if args.count_topics:
-        print(len(found))
-    else:
-        for name, types in found:
-            print(f'{name} [{", ".join(types)}]' if args.show_types else name)
+    print_names(args, found, args.count_topics)
 
 
 def show_info(args: Namespace) -> None:
@@ -81,11 +84,7 @@ def show_type(args: Namespace) -> str | int:
 def find(args: Namespace) -> None:
     """Print the topics of a type."""
     found = known_names(args, 'topics', include_hidden=args.include_hidden_topics)
-    names = [name for name, types in found if args.topic_type in types]
-    if not names:
-        with real_one(says='', shows='0' if args.count_topics else '', code=0):
-            interfaces.check_exists(args.topic_type, 'msg')
-    print(len(names)) if args.count_topics else print('\n'.join(names), end='\n' * bool(names))
+    print_names_of(args.topic_type, 'msg', found, args.count_topics)
 
 
 def _ends(node: Node, found: NamesAndTypes, *, publishers: bool) -> str:

@@ -7,13 +7,13 @@ import subprocess
 import sys
 from argparse import Namespace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 import labkit
 from labkit.ros2 import graph_words, terminal
 from labkit.ros2.completion import complete_line
-from labkit.rosgraph import listings
 
 
 @pytest.mark.parametrize(
@@ -113,8 +113,8 @@ def test_the_file_for_bash_completion_says_the_same():
 
 def test_a_type_that_comes_a_moment_later_is_awaited(monkeypatch):
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-    answers = iter([[], [], ['std_msgs/msg/Int16']])
-    monkeypatch.setattr(graph_words, 'asking_node', lambda args: None)
-    monkeypatch.setattr(listings, 'topic_types', lambda node, name: next(answers))
+    answers = iter([[], [], [('/odds', ['std_msgs/msg/Int16'])]])
+    node = SimpleNamespace(get_topic_names_and_types=lambda: next(answers))
+    monkeypatch.setattr(graph_words, 'asking_node', lambda args: node)
     found = graph_words.types_of_topic(Namespace(topic_name='/odds'))
     assert list(found) == ['std_msgs/msg/Int16']
