@@ -143,8 +143,7 @@ class Fail(Exception):
         expected: What should have been observed.
         seen: What was observed; values with `!r`.
         mistake: The misconception that leads there, with its next step, where it is known.
-        why: The same in a sentence of its own.
-        todo: The next step.
+        todo: The next step, where it is not that of the mistake.
 
     Attributes:
         mistake: The mistake, None if it has no name.
@@ -160,10 +159,9 @@ class Fail(Exception):
         seen: str,
         mistake: Mistake | None = None,
         *,
-        why: str = '',
         todo: str = '',
     ) -> None:
-        why = why or (mistake.reason if mistake is not None else '')
+        why = mistake.reason if mistake is not None else ''
         todo = todo or (mistake.step if mistake is not None else '')
         super().__init__(f'{expected} / {seen} / {why} / {todo}')
         self.expected = expected

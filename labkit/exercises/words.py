@@ -178,27 +178,6 @@ FLOOD = Mistake(
 
 # -- What messages say ---------------------------------------------------------------------------
 
-SAME_VALUE = Mistake(
-    'values/same',
-    'Every message says the same: the value is made once, and not changed between one message and '
-    'the next.',
-    'Keep the number in the node (self.number), and change it once a message.',
-)
-OTHER_STEP = Mistake(
-    'values/step',
-    'The value changes by {seen} and not by {step}.',
-    'Keep the number in the node (self.number), and change it once a message.',
-)
-STARTS_OVER = Mistake(
-    'values/starts-over',
-    'The values start over: the number is set anew although the count goes on.',
-    'Keep the number in the node (self.number), and change it once a message.',
-)
-STEP_CHANGES = Mistake(
-    'values/step-changes',
-    'The step changes: does more than one place change the number?',
-    'Keep the number in the node (self.number), and change it once a message.',
-)
 CHANGES = Mistake(
     'values/changes',
     'The value changes from message to message. Here it is the same each time.',

@@ -177,9 +177,7 @@ class Follows(GraphClause):
         except Fail as fail:
             expected = f'with {_show(values)}: {fail.expected}'
             if before is None or not self._is_as_before(evidence, before):
-                raise Fail(
-                    expected, fail.seen, fail.mistake, why=fail.why, todo=fail.todo
-                ) from None
+                raise Fail(expected, fail.seen, fail.mistake, todo=fail.todo) from None
             raise Fail(
                 expected,
                 fail.seen,

@@ -10,7 +10,7 @@ from labkit.exercises.expect.endpoints import alone, node, publisher, qos, subsc
 from labkit.exercises.expect.services import asks, only_given, server
 from labkit.exercises.expect.spinning import hanging, overloaded, spun
 from labkit.exercises.expect.timing import ends_with_node, messages
-from labkit.exercises.expect.values import apart, digits, each, first, show, steps, text_trouble
+from labkit.exercises.expect.values import apart, digits, show, text_trouble
 from labkit.exercises.mistakes import Mistake
 from labkit.exercises.verdict import Fail
 
@@ -19,9 +19,7 @@ __all__ = [
     'apart',
     'asks',
     'digits',
-    'each',
     'ends_with_node',
-    'first',
     'hanging',
     'messages',
     'node',
@@ -32,7 +30,6 @@ __all__ = [
     'server',
     'show',
     'spun',
-    'steps',
     'subscription',
     'text_trouble',
     'that',
@@ -45,8 +42,6 @@ def that(
     expected: str,
     seen: str,
     mistake: Mistake | None = None,
-    why: str = '',
-    todo: str = '',
 ) -> None:
     """Expect anything else.
 
@@ -55,11 +50,9 @@ def that(
         expected: What should have been observed.
         seen: What was observed.
         mistake: The likely misconception.
-        why: The same in a sentence of its own.
-        todo: The next step.
 
     Raises:
         Fail: It is not so.
     """
     if not condition:
-        raise Fail(expected, seen, mistake, why=why, todo=todo)
+        raise Fail(expected, seen, mistake)

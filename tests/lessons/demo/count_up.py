@@ -1,27 +1,25 @@
-"""Publish odd numbers: every matcher of the graph, of messages and of their values."""
+"""Publish odd numbers: every matcher of the graph and of messages."""
 
 from __future__ import annotations
 
 from by_hand import ByHand
 
-from labkit.exercises import Exercise, Probe, Solution, expect
+from labkit.exercises import Exercise, Mistake, Probe, Solution, expect
 
 INT16 = 'std_msgs/msg/Int16'
+OTHER_NUMBERS = Mistake('', 'The count does not begin with 1, or does not grow by 2.')
 
 
 def judge_count_up(probe: Probe) -> str:
     source = expect.publisher(probe, '/demo_odds')
     odds = expect.messages(probe, source, count=4)
-    expect.each(
-        odds,
-        'data',
-        lambda value: value % 2 == 1,
+    # A message carries the number that it has among those of its publisher.
+    expect.that(
+        odds.values('data') == [2 * sample.number - 1 for sample in odds.samples],
         expected='odd numbers: 1, 3, 5, ...',
-        why='These are even numbers. Adding 2 keeps a number odd only if the first one is odd.',
-        todo='Start with 1.',
+        seen=expect.show(odds.values('data')),
+        mistake=OTHER_NUMBERS,
     )
-    expect.steps(odds, 'data', 2)
-    expect.first(odds, 'data', 1, 2, why='The count starts with another number than 1.')
     expect.node(probe, '/odd_publisher')
     return f'{source.node} sent {expect.show(odds.values("data"))}'
 

@@ -4,19 +4,27 @@ from __future__ import annotations
 
 from by_hand import ByHand
 
-from labkit.exercises import Exercise, Probe, Solution, expect
+from labkit.exercises import Exercise, Mistake, Probe, Solution, expect
+
+NO_WORD = Mistake(
+    '', 'The node ends without a word, and whoever listens goes on with the last speed.'
+)
 
 
 def judge_goodbye(probe: Probe) -> str:
     source = expect.publisher(probe, '/demo_speed')
     speeds = expect.messages(probe, source, count=2)
-    expect.each(speeds, 'data', lambda v: v == 1.0, expected='1.0 while it runs')
+    expect.that(
+        {*speeds.values('data')} == {1.0},
+        expected='1.0 while it runs',
+        seen=expect.show(speeds.values('data')),
+    )
     last = expect.ends_with_node(probe, source)
     expect.that(
         last.values('data')[-1] == 0.0,
         expected='0.0 as the last message',
         seen=f'{last.values("data")[-1]!r}',
-        why='The node ends without a word, and whoever listens goes on with the last speed.',
+        mistake=NO_WORD,
     )
     return 'Its last word was 0.0.'
 

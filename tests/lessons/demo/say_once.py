@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from by_hand import ByHand
 
-from labkit.exercises import Exercise, Probe, Solution, expect
+from labkit.exercises import Exercise, Mistake, Probe, Solution, expect
 
 STRING = 'std_msgs/msg/String'
 
@@ -18,13 +18,13 @@ def judge_say_once(probe: Probe) -> str:
         heard[-1:] == ['late'],
         expected="the text 'late'",
         seen=repr(heard[-1]),
-        why='Another text was published.',
+        mistake=Mistake('', 'Another text was published.'),
     )
     expect.that(
         len(heard) == 1,
         expected='one message',
         seen=f'{len(heard)} messages',
-        why='It was published more than once.',
+        mistake=Mistake('', 'It was published more than once.'),
     )
     return 'One message, once.'
 

@@ -6,27 +6,28 @@ from cases import ERROR, right, wrong
 
 __all__ = ['ANSWERS']
 
+NUMBERS = 'The count does not begin with 1, or does not grow by 2.'
 ANSWERS = [
-    wrong('starts at 0', 'These are even numbers.', ('self.number = 1', 'self.number = 0')),
+    wrong('starts at 0', NUMBERS, ('self.number = 1', 'self.number = 0')),
     wrong(
         'starts at 3',
-        'The count starts with another number than 1.',
+        NUMBERS,
         ('self.number = 1', 'self.number = 3'),
     ),
     wrong(
         'never counts',
-        'Every message says the same',
+        NUMBERS,
         ('self.number += 2', 'number = self.number + 2'),
         refused='The variable is never used.',
     ),
     wrong(
         'counts by 4',
-        'The value changes by 4 and not by 2.',
+        NUMBERS,
         ('self.number += 2', 'self.number += 4'),
     ),
     wrong(
         'starts over',
-        'The values start over',
+        NUMBERS,
         ('self.number += 2', 'self.number = (self.number + 2) % 4'),
     ),
     wrong('rate for period', 'its period is 10 s', ('create_timer(0.1,', 'create_timer(10,')),
