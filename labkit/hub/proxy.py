@@ -13,7 +13,7 @@ from pathlib import Path
 from labkit.errors import SetupError
 from labkit.setup.environment import VENV
 from labkit.setup.installer import explain
-from labkit.setup.machine import clean_environment
+from labkit.setup.machine import run
 
 __all__ = ['install_proxy', 'proxy_command']
 
@@ -48,15 +48,8 @@ def install_proxy() -> None:
     node = [str(_node() / 'bin' / 'node'), '--use-system-ca']
     # Run no scripts of packages during installation.
     options = ['--ignore-scripts', '--no-audit', '--no-fund', '--no-update-notifier']
-    answer = subprocess.run(
-        [*node, str(npm), 'ci', *options],
-        cwd=_FOLDER,
-        env=clean_environment(),
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    )
+    command = [*node, str(npm), 'ci', *options]
+    answer = run(command, cwd=_FOLDER, stderr=subprocess.STDOUT)
     if answer.returncode != 0 or not _PROXY.exists():
         shutil.rmtree(_FOLDER)
         raise explain(answer.stdout.splitlines(), _FOLDER)

@@ -21,7 +21,13 @@ from typing import Any
 from labkit.errors import SetupError
 from labkit.files import read_json, write_atomically
 from labkit.setup.installer import Progress, install
-from labkit.setup.machine import VERSIONS, check_platform, clean_environment, find_interpreter
+from labkit.setup.machine import (
+    VERSIONS,
+    check_platform,
+    clean_environment,
+    find_interpreter,
+    run,
+)
 from labkit.setup.requirements import applicable
 
 __all__ = ['ROOT', 'VENV', 'environment_variables', 'existing_environment', 'make_environment']
@@ -271,14 +277,8 @@ def _clear() -> None:
 
 
 def _create(python: str) -> None:
-    done = subprocess.run(
-        [python, '-I', '-m', 'venv', '--without-pip', str(VENV)],
-        env=clean_environment(),
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    )
+    command = [python, '-I', '-m', 'venv', '--without-pip', str(VENV)]
+    done = run(command, stderr=subprocess.STDOUT)
     if done.returncode != 0:
         lines = done.stdout.strip().splitlines() or ['']
         raise SetupError(
@@ -326,15 +326,7 @@ def _version() -> tuple[int, ...] | None:
     """Return the version of the environment's Python, None if it doesn't run or is another one."""
     code = 'import sys; print(*sys.version_info[:3], int(sys.prefix != sys.base_prefix))'
     try:
-        answer = subprocess.run(
-            [str(PYTHON), '-I', '-c', code],
-            env=clean_environment(),
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            timeout=60,
-            check=True,
-        )
+        answer = run([str(PYTHON), '-I', '-c', code], timeout=60, check=True)
         major, minor, micro, inside = map(int, answer.stdout.split())
     except (OSError, ValueError, subprocess.SubprocessError):
         return None

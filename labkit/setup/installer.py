@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from labkit.errors import SetupError
-from labkit.setup.machine import clean_environment
+from labkit.setup.machine import clean_environment, run
 
 __all__ = ['Progress', 'explain', 'install']
 
@@ -185,15 +185,7 @@ def _pip(python: Path) -> list[str]:
     options = ['--disable-pip-version-check']
     if (python.parent / 'pip').exists():
         return [str(python), '-I', '-m', 'pip', *options]
-    found = subprocess.run(
-        [str(python), '-I', '-c', _FIND_PIP],
-        env=clean_environment(),
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        text=True,
-    )
-    wheel = found.stdout.strip()
+    wheel = run([str(python), '-I', '-c', _FIND_PIP]).stdout.strip()
     return [str(python), '-I', '-c', _RUN_PIP, wheel, *options] if wheel else []
 
 
@@ -233,15 +225,7 @@ def _sources(pip: Sequence[str], root: Path, variables: dict[str, str]) -> dict[
     output = ''
     for command in [pip] if '-m' in pip else [installed, pip]:
         if command:
-            listed = subprocess.run(
-                [*command, 'config', 'list'],
-                cwd=root,
-                env=variables,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL,
-                text=True,
-            )
+            listed = run([*command, 'config', 'list'], cwd=root, env=variables)
             output = listed.stdout
             if listed.returncode == 0:
                 break

@@ -12,8 +12,9 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from labkit.errors import SetupError
 from labkit.files import is_inside
@@ -25,6 +26,7 @@ __all__ = [
     'clean_environment',
     'find_interpreter',
     'interpreters',
+    'run',
 ]
 
 # The Python versions that the wheels of ROS 2 Jazzy are built for, the most common one first.
@@ -146,19 +148,28 @@ def _probe(path: str | None) -> Interpreter | None:
         return None
     try:
         # A program of that name may be a stand-in for a Python that isn't there.
-        answer = subprocess.run(
-            [path, '-I', '-c', _PROBE],
-            env=clean_environment(),
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            timeout=20,
-            check=True,
-        )
+        answer = run([path, '-I', '-c', _PROBE], timeout=20, check=True)
         major, minor, usable, has_pip = map(int, answer.stdout.split())
     except (OSError, ValueError, subprocess.SubprocessError):
         return None
     return Interpreter(path, (major, minor), bool(has_pip), bool(usable))
+
+
+def run(command: Sequence[str], **options: Any) -> subprocess.CompletedProcess[str]:
+    """Run a program in the clean environment, and keep what it says but for its errors.
+
+    Args:
+        command: Its words.
+        options: As for `subprocess.run`. They come first.
+    """
+    usual = {'env': clean_environment(), 'stderr': subprocess.DEVNULL}
+    return subprocess.run(
+        command,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        text=True,
+        **{**usual, **options},
+    )
 
 
 def clean_environment() -> dict[str, str]:
