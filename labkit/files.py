@@ -156,7 +156,7 @@ def read_limited(path: AnyPath, most_bytes: int = MOST_BYTES) -> bytes:
     return content
 
 
-def read_json(path: AnyPath, most_bytes: int = MOST_BYTES) -> Any:
+def read_json(path: AnyPath) -> Any:
     """Return the data of a JSON file that somebody else may have made.
 
     Raises:
@@ -164,7 +164,7 @@ def read_json(path: AnyPath, most_bytes: int = MOST_BYTES) -> Any:
         ValueError: It is not JSON, or nested too deep.
     """
     try:
-        return json.loads(read_limited(path, most_bytes))
+        return json.loads(read_limited(path))
     except RecursionError as error:
         raise ValueError('nested too deep') from error
 

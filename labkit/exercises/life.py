@@ -193,7 +193,6 @@ class Life:
         topic: str,
         extra: Sequence[tuple[float, Any]],
         known: Collection[Any],
-        answers: int = 1,
     ) -> list[tuple[float, Any]]:
         """Leave out what may have been said upon messages that are not seen here.
 
@@ -205,10 +204,9 @@ class Life:
             topic: Where such messages come.
             extra: What was said though nothing had come: moments and values.
             known: What was said upon tests, or could be.
-            answers: How many answers one message gets.
         """
         unknown = [pair for pair in extra if pair[1] not in known]
-        if len(unknown) > ON_THE_WAY * answers * self.strangers.get(topic, 0):
+        if len(unknown) > ON_THE_WAY * self.strangers.get(topic, 0):
             return list(extra)
         return [pair for pair in extra if pair[1] in known]
 

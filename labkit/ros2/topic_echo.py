@@ -202,12 +202,9 @@ def add_form_options(parser: Parser) -> None:
         metavar='N',
         help=f'The length to truncate arrays, bytes, and string to (default: {TRUNCATE_LENGTH})',
     )
-    for name, text in (
-        ('--no-arr', "Don't print array fields of messages"),
-        ('--no-str', "Don't print string fields of messages"),
-        ('--flow-style', 'Print each list on one line (not available with csv format)'),
-    ):
-        parser.flag(name, text)
+    parser.flag('--no-arr', "Don't print array fields of messages")
+    parser.flag('--no-str', "Don't print string fields of messages")
+    parser.flag('--flow-style', 'Print each list on one line (not available with csv format)')
 
 
 def _arguments(parser: Parser) -> None:
@@ -231,12 +228,9 @@ def _arguments(parser: Parser) -> None:
         "'--field pose.pose.position'",
         complete=_fields,
     )
-    for name, text in (
-        ('--no-lost-messages', "Don't report when a message is lost"),
-        ('--raw', 'Echo the raw binary representation'),
-        ('--once', 'Print the first message received and then exit.'),
-    ):
-        parser.flag(name, text)
+    parser.flag('--no-lost-messages', "Don't report when a message is lost")
+    parser.flag('--raw', 'Echo the raw binary representation')
+    parser.flag('--once', 'Print the first message received and then exit.')
     parser.add(
         '--timeout', metavar='N', type=positive_float, help='Set a timeout in seconds for waiting'
     )

@@ -126,16 +126,6 @@ class World:
         ]
         return any(turn < 0 for turn in turns) and any(turn > 0 for turn in turns)
 
-    def clearance(self, x: float, y: float, *, but: str = '') -> float:
-        """Return the distance of (x, y) to the nearest thing, m; infinity if there is none.
-
-        Args:
-            x: m.
-            y: m.
-            but: Name of a robot to leave out.
-        """
-        return min((thing.away(x, y)[0] for thing in self.things(but)), default=math.inf)
-
     def first_contact(
         self, motion: Motion, duration: float, radius: float, *, but: str = ''
     ) -> Contact | None:

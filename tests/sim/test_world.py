@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from clearance import clearance
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -45,13 +46,13 @@ def test_distance_of_a_post_is_negative_inside() -> None:
 
 
 def test_clearance_is_the_nearest_of_all_things() -> None:
-    assert open_field().clearance(0, 0) == math.inf
-    assert room(4, 2).clearance(1.5, 0.2) == pytest.approx(0.5)
+    assert clearance(open_field(), 0, 0) == math.inf
+    assert clearance(room(4, 2), 1.5, 0.2) == pytest.approx(0.5)
     world = room(4, 4, [Post(1, 0, 0.2)])
-    assert world.clearance(0, 0) == pytest.approx(0.8)
+    assert clearance(world, 0, 0) == pytest.approx(0.8)
     world.robots['other'] = Post(-0.5, 0, 0.1)
-    assert world.clearance(0, 0) == pytest.approx(0.4)
-    assert world.clearance(0, 0, but='other') == pytest.approx(0.8)
+    assert clearance(world, 0, 0) == pytest.approx(0.4)
+    assert clearance(world, 0, 0, but='other') == pytest.approx(0.8)
 
 
 @pytest.mark.parametrize(
@@ -203,7 +204,7 @@ def test_robots_see_each_other_but_not_themselves() -> None:
     [(playground(), Pose()), (pillars(), Pose(-1.65, -0.55)), (room(), Pose())],
 )
 def test_arenas_are_closed_and_have_room_at_their_start(world: World, start: Pose) -> None:
-    assert world.clearance(start.x, start.y) > 2 * R
+    assert clearance(world, start.x, start.y) > 2 * R
     assert world.ranges(start).max() < 10
     assert 'walls' in repr(world)
 
