@@ -17,16 +17,15 @@ class Asked(Clause[Seen]):
 
     Attributes:
         words: What is asked for, in words of the task.
-        look: Raises Fail if what was seen is otherwise.
+        look: Raises Fail if what was seen is otherwise. It may return that in a sentence.
     """
 
     words: str
-    look: Callable[[Seen], None]
+    look: Callable[[Seen], str | None]
 
     def judge(self, seen: Seen) -> str:
         """Look at it."""
-        self.look(seen)
-        return ''
+        return self.look(seen) or ''
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 
 from labkit.exercises import Exercise, Fail, Mistake, Solution
-from labkit.exercises.clauses import WITHIN, Answers, Evidence, GraphClause, Words
+from labkit.exercises.clauses import WITHIN, Answers, Asked, Evidence, Words
 from labkit.exercises.draws import draw_names, in_a_row
 from labkit.exercises.life import live
 
@@ -84,41 +84,35 @@ def _draw() -> list[str]:
     return in_a_row(['Bo: Hello', f'Bo: Good morning {number}'], texts)
 
 
-class _UsedOnce(GraphClause):
-    """Each reply comes from a publisher that was made for it, and is gone afterwards."""
+def _used_once(evidence: Evidence) -> None:
+    """Look at the numbers of the messages, which each publisher counts from 1, and for it."""
+    numbers = [sample.number for sample in evidence.life.besides_tests(TOPIC)]
+    if max(numbers) > 1:
+        raise Fail(
+            'a publisher of its own for each reply',
+            f'one has published {max(numbers)} messages',
+            KEPT,
+        )
+    probe, node = evidence.probe, evidence.subscription(TOPIC).node
 
-    text = 'each reply comes from a publisher of its own, which is destroyed afterwards'
+    here = probe.node_object(node)
 
-    def judge(self, evidence: Evidence) -> str:
-        """Look at the numbers of the messages, which each publisher counts from 1, and for it."""
-        numbers = [sample.number for sample in evidence.life.besides_tests(TOPIC)]
-        if max(numbers) > 1:
-            raise Fail(
-                'a publisher of its own for each reply',
-                f'one has published {max(numbers)} messages',
-                KEPT,
-            )
-        probe, node = evidence.probe, evidence.subscription(TOPIC).node
-
-        here = probe.node_object(node)
-
-        def kept() -> int:
-            if here is not None:
-                return sum(each.topic_name == TOPIC for each in here.publishers)
-            return sum(end.node == node for end in probe.publishers(TOPIC))
-
+    def kept() -> int:
         if here is not None:
-            live(probe, {TOPIC: STRING}, GONE_SEC, nodes=[node])
-        else:
-            # Until the graph tells that they are gone, or the check's time is over.
-            probe.wait(lambda: not kept())
-        if kept():
-            raise Fail(
-                f'no publisher of {node} on {TOPIC} between two replies',
-                f'{kept()} of them',
-                LEFT_BEHIND,
-            )
-        return ''
+            return sum(each.topic_name == TOPIC for each in here.publishers)
+        return sum(end.node == node for end in probe.publishers(TOPIC))
+
+    if here is not None:
+        live(probe, {TOPIC: STRING}, GONE_SEC, nodes=[node])
+    else:
+        # Until the graph tells that they are gone, or the check's time is over.
+        probe.wait(lambda: not kept())
+    if kept():
+        raise Fail(
+            f'no publisher of {node} on {TOPIC} between two replies',
+            f'{kept()} of them',
+            LEFT_BEHIND,
+        )
 
 
 greeter = Exercise(
@@ -138,7 +132,10 @@ greeter = Exercise(
             otherwise=NOTHING.text,
         ),
         NOTHING,
-        _UsedOnce(),
+        Asked(
+            'each reply comes from a publisher of its own, which is destroyed afterwards',
+            _used_once,
+        ),
     ),
     hints=[
         'create_publisher() may be called in a callback, too, and not only in __init__.',

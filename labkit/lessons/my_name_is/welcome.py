@@ -8,6 +8,7 @@ from labkit.exercises import Exercise, Fail, Mistake, Solution, expect
 from labkit.exercises.clauses import (
     WITHIN,
     Answers,
+    Asked,
     Evidence,
     GraphClause,
     Stream,
@@ -211,23 +212,18 @@ class _OneIsEnough(GraphClause):
         return ''
 
 
-class _NamesDiffer(GraphClause):
-    """Each guest has a first name of its own."""
-
-    text = 'the two names are different, and each node keeps its own'
-
-    def judge(self, evidence: Evidence) -> str:
-        """Compare what was made of the first text."""
-        values = evidence.streams[OUTER, ''].values('data')
-        said = sorted({value for value in values if value.startswith(OPENING)})
-        if len(said) < 2:
-            name = said[0].removeprefix(OPENING).removesuffix(ENDING)
-            raise Fail(
-                f'texts on {OUTER} with different names',
-                f'data = {expect.show(said)}, twice',
-                SHARED.of(name=name),
-            )
-        return f'Each text comes twice: {" and ".join(map(repr, said))}.'
+def _names_differ(evidence: Evidence) -> str:
+    """Compare what was made of the first text."""
+    values = evidence.streams[OUTER, ''].values('data')
+    said = sorted({value for value in values if value.startswith(OPENING)})
+    if len(said) < 2:
+        name = said[0].removeprefix(OPENING).removesuffix(ENDING)
+        raise Fail(
+            f'texts on {OUTER} with different names',
+            f'data = {expect.show(said)}, twice',
+            SHARED.of(name=name),
+        )
+    return f'Each text comes twice: {" and ".join(map(repr, said))}.'
 
 
 def _not_two(count: int, *, all_in_one: bool) -> Mistake:
@@ -262,7 +258,12 @@ welcome = Exercise(
     subscribes={INNER: STRING},
     publishes={OUTER: STRING},
     shared=[OUTER],
-    clauses=(_ThreeNodes(), _Flows(), _OneIsEnough(), _NamesDiffer()),
+    clauses=(
+        _ThreeNodes(),
+        _Flows(),
+        _OneIsEnough(),
+        Asked('the two names are different, and each node keeps its own', _names_differ),
+    ),
     hints=[
         'Draw three boxes, one for each job. Who has to hear whom? Each arrow between two of them '
         'is a topic.',

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
-from labkit.exercises import Clause, Exercise, Fail, Mistake, Solution
+from labkit.exercises import Exercise, Fail, Mistake, Solution
+from labkit.exercises.clauses import Asked
 from labkit.lessons.names_and_launch.clauses import HasParameters, Launches, OnlyNodes, RunsNode
 from labkit.lessons.names_and_launch.launched import Launched, System
 from labkit.lessons.names_and_launch.system import DECLARED
@@ -37,25 +37,15 @@ NEVER = Mistake(
 )
 
 
-@dataclass(frozen=True)
-class _TalksIfWanted(Clause[System]):
-    """A talker is there if the argument says so."""
-
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return '`talk`, `true` or `false` (the default), says whether a talker runs there, too'
-
-    def judge(self, system: System) -> str:
-        """Raise Fail if it is there and not wanted, or the other way round."""
-        talker, wanted = f'/{system.values["robot"]}/talker', system.values['talk'] == 'true'
-        if (talker in system.nodes) != wanted:
-            raise Fail(
-                f'{talker if wanted else "no talker"} with talk:={system.values["talk"]}',
-                ', '.join(system.nodes),
-                NEVER if wanted else ALWAYS,
-            )
-        return ''
+def _talks_if_wanted(system: System) -> None:
+    """Raise Fail if it is there and not wanted, or the other way round."""
+    talker, wanted = f'/{system.values["robot"]}/talker', system.values['talk'] == 'true'
+    if (talker in system.nodes) != wanted:
+        raise Fail(
+            f'{talker if wanted else "no talker"} with talk:={system.values["talk"]}',
+            ', '.join(system.nodes),
+            NEVER if wanted else ALWAYS,
+        )
 
 
 class _NothingElse(OnlyNodes):
@@ -80,7 +70,10 @@ arguments = Exercise(
             'the argument `speed` is that of the driver, by default 0.1',
             DECLARED,
         ),
-        _TalksIfWanted(),
+        Asked(
+            '`talk`, `true` or `false` (the default), says whether a talker runs there, too',
+            _talks_if_wanted,
+        ),
         _NothingElse(('/{robot}/driver',), 'no other node is started'),
     ),
     stage=Launched('arguments', arguments=_draw, defaults=DEFAULTS),

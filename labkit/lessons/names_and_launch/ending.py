@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Clause, Exercise, Fail, Mistake, Solution
+from labkit.exercises import Exercise, Fail, Mistake, Solution
+from labkit.exercises.clauses import Asked
 from labkit.lessons.names_and_launch.clauses import Launches, OnlyNodes
 from labkit.lessons.names_and_launch.launched import Launched, System
 
@@ -59,40 +60,28 @@ def _comes_again(system: System) -> bool:
     return system.wait(lambda: program.starts > before)
 
 
-class _TalkerComesAgain(Clause[System]):
-    text = 'when the talker dies, it is started again'
-
-    def judge(self, system: System) -> str:
-        """Let it die, and raise Fail if it does not come again."""
-        if not _comes_again(system):
-            raise Fail(f'{TALKER} has died, and is started again', 'it stays dead', NO_RESPAWN)
-        return ''
+def _talker_comes_again(system: System) -> None:
+    """Let it die, and raise Fail if it does not come again."""
+    if not _comes_again(system):
+        raise Fail(f'{TALKER} has died, and is started again', 'it stays dead', NO_RESPAWN)
 
 
-class _ListenerStaysDead(Clause[System]):
-    text = 'when the listener dies, it stays dead, and the others go on'
-
-    def judge(self, system: System) -> str:
-        """Let it die, and raise Fail if it comes again, or others end."""
-        _refuse_second(system, LISTENER)
-        # A launch that ends starts nothing again.
-        if not _comes_again(system):
-            if system.launch.shutting_down:
-                raise Fail('the others go on without the listener', 'all of them end', ALL_END)
-            raise Fail(f'{TALKER} is started again each time', 'it stays dead', LIMITED)
-        return ''
+def _listener_stays_dead(system: System) -> None:
+    """Let it die, and raise Fail if it comes again, or others end."""
+    _refuse_second(system, LISTENER)
+    # A launch that ends starts nothing again.
+    if not _comes_again(system):
+        if system.launch.shutting_down:
+            raise Fail('the others go on without the listener', 'all of them end', ALL_END)
+        raise Fail(f'{TALKER} is started again each time', 'it stays dead', LIMITED)
 
 
-class _DriverEndsAll(Clause[System]):
-    text = 'when the driver ends, all of them end'
-
-    def judge(self, system: System) -> str:
-        """End it, and raise Fail if another one goes on."""
-        _refuse_second(system, DRIVER)
-        if _comes_again(system):
-            raise Fail('all of them end', f'{TALKER} goes on', GOES_ON)
-        system.wait(lambda: not system.launch.running)
-        return ''
+def _driver_ends_all(system: System) -> None:
+    """End it, and raise Fail if another one goes on."""
+    _refuse_second(system, DRIVER)
+    if _comes_again(system):
+        raise Fail('all of them end', f'{TALKER} goes on', GOES_ON)
+    system.wait(lambda: not system.launch.running)
 
 
 ending = Exercise(
@@ -104,9 +93,9 @@ ending = Exercise(
             (DRIVER, TALKER, LISTENER),
             f'`{DRIVER}`, `{TALKER}` and `{LISTENER}` run, and no other node',
         ),
-        _TalkerComesAgain(),
-        _ListenerStaysDead(),
-        _DriverEndsAll(),
+        Asked('when the talker dies, it is started again', _talker_comes_again),
+        Asked('when the listener dies, it stays dead, and the others go on', _listener_stays_dead),
+        Asked('when the driver ends, all of them end', _driver_ends_all),
     ),
     stage=Launched('ending'),
     hints=[

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-from labkit.exercises import Clause, Exercise, Fail, Mistake, Solution
+from labkit.exercises import Exercise, Fail, Mistake, Solution
+from labkit.exercises.clauses import Asked
 from labkit.lessons.names_and_launch.clauses import Launches, OnlyNodes
 from labkit.lessons.names_and_launch.launched import Launched, System
 
@@ -50,25 +49,16 @@ HEARS_NOBODY = Mistake(
 )
 
 
-@dataclass(frozen=True)
-class _HearsTheOther(Clause[System]):
-    """The listener of a robot hears the talker of the other one, and that one alone."""
+def _hears_the_other(robot: str) -> Asked[System]:
+    """Ask for a listener that hears the talker of the other robot, and that one alone."""
+    other = PAIRS[robot]
 
-    robot: str
-
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        other = PAIRS[self.robot]
-        return f'`/{self.robot}/listener` receives from the talker of {other}, and no other'
-
-    def judge(self, system: System) -> str:
+    def look(system: System) -> None:
         """Raise Fail if it hears another one, or nobody."""
-        robot, other = self.robot, PAIRS[self.robot]
         topics = system.hears.get(f'/{robot}/listener', set())
         heard = {name for name in PAIRS if topics & system.publishes.get(f'/{name}/talker', set())}
         if heard == {other}:
-            return ''
+            return
         if heard == {robot}:
             given = [old for old, _ in system.remaps(f'/{robot}/listener')]
             mistake = ABSOLUTE_FROM if '/chatter' in given else HEARS_ITSELF
@@ -84,6 +74,8 @@ class _HearsTheOther(Clause[System]):
             f'it hears {names}, on {", ".join(own) or "no topic"}',
             mistake.of(robot=robot, other=other),
         )
+
+    return Asked(f'`/{robot}/listener` receives from the talker of {other}, and no other', look)
 
 
 GIVEN = Solution(
@@ -107,8 +99,8 @@ hearing = Exercise(
             'each of `robot1` and `robot2` has a `talker` and a `listener`, and there is no '
             'other node',
         ),
-        _HearsTheOther('robot1'),
-        _HearsTheOther('robot2'),
+        _hears_the_other('robot1'),
+        _hears_the_other('robot2'),
     ),
     stage=Launched('hearing', GIVEN),
     hints=[

@@ -9,7 +9,13 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from labkit.exercises import Exercise, Fail, Mistake, Probe, Solution, expect
-from labkit.exercises.clauses import Evidence, GraphClause, Messages, Publishes, Stream
+from labkit.exercises.clauses import (
+    Asked,
+    Evidence,
+    Messages,
+    Publishes,
+    Stream,
+)
 from labkit.exercises.expect.timing import TOLERANCE
 from labkit.exercises.watch import Lived, Sample
 
@@ -155,37 +161,26 @@ class _Run(Publishes):
         return near and quick > 0.3 * self.period
 
 
-class _AfterTheLimit(GraphClause):
-    """What comes after the last number that fits."""
-
-    @property
-    def text(self) -> str:
-        """What is asked for."""
-        return (
-            f'after that either nothing more comes, or {_again()} from the beginning; no callback '
-            'fails'
+def _after_the_limit(evidence: Evidence) -> str:
+    """Judge the numbers from the limit on."""
+    stream = evidence.streams[TOPIC, '']
+    run, values = stream.samples, stream.values('data')
+    # A count that stops or starts over after the last number but one is within it, too.
+    for end in (LARGEST, LARGEST - 2):
+        if values == [_expected(sample.number, end) for sample in run]:
+            break
+    else:
+        raise _deviation(run)
+    if run[-1].number <= _position(LARGEST):
+        return f'After {values[-1]} nothing more is published.'
+    lived = evidence.life.on(TOPIC)
+    if stream.exact and evidence.life.seconds - lived[-1].at > 1.0 + evidence.life.step:
+        raise Fail(
+            f'{_again()} after the limit, ten times a second, or nothing',
+            f'..., {expect.show(values[-4:])}, and then nothing more',
+            STOPS_LATER,
         )
-
-    def judge(self, evidence: Evidence) -> str:
-        """Judge the numbers from the limit on."""
-        stream = evidence.streams[TOPIC, '']
-        run, values = stream.samples, stream.values('data')
-        # A count that stops or starts over after the last number but one is within it, too.
-        for end in (LARGEST, LARGEST - 2):
-            if values == [_expected(sample.number, end) for sample in run]:
-                break
-        else:
-            raise _deviation(run)
-        if run[-1].number <= _position(LARGEST):
-            return f'After {values[-1]} nothing more is published.'
-        lived = evidence.life.on(TOPIC)
-        if stream.exact and evidence.life.seconds - lived[-1].at > 1.0 + evidence.life.step:
-            raise Fail(
-                f'{_again()} after the limit, ten times a second, or nothing',
-                f'..., {expect.show(values[-4:])}, and then nothing more',
-                STOPS_LATER,
-            )
-        return f'After {end} the count starts over: {expect.show(values[-5:])}.'
+    return f'After {end} the count starts over: {expect.show(values[-5:])}.'
 
 
 def _up_to_the_limit(stream: Stream) -> None:
@@ -277,7 +272,11 @@ stay_within = Exercise(
             f'message; {LARGEST - 2} as the last one is right, too',
             _up_to_the_limit,
         ),
-        _AfterTheLimit(),
+        Asked(
+            f'after that either nothing more comes, or {_again()} from the beginning; no callback '
+            'fails',
+            _after_the_limit,
+        ),
     ),
     hints=[
         f'Which number comes after {LARGEST} when you add 2? Does it fit into an Int16?',

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from labkit.exercises import Exercise, Fail, Mistake, Solution
 from labkit.exercises.clauses import Asked
-from labkit.lessons.package.content import Built, InAWorkspace, Tested, Work
+from labkit.lessons.package.content import TESTED, Built, InAWorkspace, Work
 from labkit.lessons.package.running import Running
 
 __all__ = ['beacon']
@@ -56,7 +56,7 @@ beacon = Exercise(
             'transient local, gets `True`',
             _is_heard_late,
         ),
-        Tested(),
+        TESTED,
     ),
     stage=InAWorkspace(PACKAGE),
     hints=[

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, NoReturn
 from labkit import stop_button
 from labkit.errors import nearest
 from labkit.exercises import Clause, Fail, Mistake, NotAttempted, Probe, Stage, words
+from labkit.exercises.clauses import Asked
 from labkit.exercises.expect.timing import FOUND_SEC
 from labkit.exercises.life import Life, live
 from labkit.exercises.watch import Lived
@@ -28,10 +29,10 @@ if TYPE_CHECKING:
 __all__ = [
     'APPEAR_SEC',
     'NODE_NAME',
+    'TESTED',
     'Built',
     'InAWorkspace',
     'Runs',
-    'Tested',
     'Work',
     'dependencies',
     'refuse_program',
@@ -364,32 +365,31 @@ class Runs(Clause[Work]):
         )
 
 
-class Tested(Clause[Work]):
-    """`colcon test` has run, and its tests pass."""
-
-    text = '`colcon test` has run after the build, at least one test, and none has failed'
-
-    def judge(self, work: Work) -> str:
-        """Raise Fail if there is no result, or a bad one."""
-        wanted = 'at least one test, and none that has failed'
-        result = work.build / 'pytest.xml'
-        if not result.is_file() or _written(result) < _written(work.build / 'colcon_build.rc'):
-            raise Fail(
-                wanted,
-                'no result of a test since the last build',
-                NO_TEST_SINCE.of(package=work.package),
-            )
-        suites = list(ET.parse(result).getroot().iter('testsuite'))
-        failures, errors, skipped, tests = (
-            sum(int(suite.get(key) or 0) for suite in suites)
-            for key in ('failures', 'errors', 'skipped', 'tests')
+def _tested(work: Work) -> None:
+    """Raise Fail if there is no result, or a bad one."""
+    wanted = 'at least one test, and none that has failed'
+    result = work.build / 'pytest.xml'
+    if not result.is_file() or _written(result) < _written(work.build / 'colcon_build.rc'):
+        raise Fail(
+            wanted,
+            'no result of a test since the last build',
+            NO_TEST_SINCE.of(package=work.package),
         )
-        if failures or errors:
-            seen = f'{failures} failures and {errors} errors in {tests} tests'
-            raise Fail(wanted, seen, TEST_FAILED)
-        if tests == skipped:
-            raise Fail(wanted, 'no test that has run', NO_TEST)
-        return ''
+    suites = list(ET.parse(result).getroot().iter('testsuite'))
+    failures, errors, skipped, tests = (
+        sum(int(suite.get(key) or 0) for suite in suites)
+        for key in ('failures', 'errors', 'skipped', 'tests')
+    )
+    if failures or errors:
+        seen = f'{failures} failures and {errors} errors in {tests} tests'
+        raise Fail(wanted, seen, TEST_FAILED)
+    if tests == skipped:
+        raise Fail(wanted, 'no test that has run', NO_TEST)
+
+
+TESTED = Asked(
+    '`colcon test` has run after the build, at least one test, and none has failed', _tested
+)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, Solution, expect, words
-from labkit.exercises.clauses import Evidence, GraphClause
+from labkit.exercises.clauses import Asked, Evidence, GraphClause
 from labkit.exercises.scope import PUBLISHER, SUBSCRIPTION, Role
 from labkit.exercises.watch import Watch
 from labkit.lessons.quality_of_service.masts import INT16, NODES, TOPICS, masts_are_open
@@ -149,23 +149,17 @@ class _Carries(GraphClause):
         return f'On {SAID[-1]} come the numbers of {NODES[0]}: {expect.show(numbers[-3:])}.'
 
 
-class _Once(GraphClause):
-    """No number comes twice."""
-
-    text = 'on each of these topics, it comes once'
-
-    def judge(self, evidence: Evidence) -> str:
-        """Count them."""
-        for topic in SAID:
-            number, count = Counter(_numbers(evidence.heard[topic])).most_common(1)[0]
-            if count > 1:
-                who = ' and '.join(sorted(end.node for end in _publishers(evidence, topic)))
-                raise Fail(
-                    f'on {topic} each number once',
-                    f'{number} came {count} times; {who} publish there',
-                    TWICE.of(topic=topic),
-                )
-        return ''
+def _once(evidence: Evidence) -> None:
+    """Count them."""
+    for topic in SAID:
+        number, count = Counter(_numbers(evidence.heard[topic])).most_common(1)[0]
+        if count > 1:
+            who = ' and '.join(sorted(end.node for end in _publishers(evidence, topic)))
+            raise Fail(
+                f'on {topic} each number once',
+                f'{number} came {count} times; {who} publish there',
+                TWICE.of(topic=topic),
+            )
 
 
 def _numbers(watch: Watch) -> list[int]:
@@ -221,7 +215,7 @@ def _apart(evidence: Evidence, topic: str) -> Iterator[tuple[Endpoint, Endpoint,
 silent_mast = Exercise(
     name='silent_mast',
     task='One mast of the chain hears nothing. Find it, and let a node of yours stand in for it.',
-    clauses=(_Carries(), _Once()),
+    clauses=(_Carries(), Asked('on each of these topics, it comes once', _once)),
     shared=STANDS_IN,
     hints=[
         'Go along the chain: on which topic does nothing come? lab.doctor() names the two ends '

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 
 from labkit.exercises import Exercise, Fail, Mistake, Solution, Watch, expect
-from labkit.exercises.clauses import Evidence, GraphClause, Runs
+from labkit.exercises.clauses import Asked, Evidence, GraphClause, Runs
 from labkit.exercises.expect.timing import FOUND_SEC
 from labkit.exercises.life import LIFE_SEC, live
 
@@ -115,21 +115,15 @@ class _SilentBefore(GraphClause):
         return ''
 
 
-class _SilentAfter(GraphClause):
-    """Once it is said, the node says nothing more."""
-
-    text = 'publish nothing after that message'
-
-    def judge(self, evidence: Evidence) -> str:
-        """Judge what else came."""
-        watch = _heard(evidence)
-        if evidence.probe.wait(lambda: len(watch) > 1, SOON_SEC):
-            raise Fail(
-                f'one message on {TOPIC}, and no other',
-                f'{len(watch)} messages: {expect.show(watch.values("data"))}',
-                GOES_ON,
-            )
-        return ''
+def _silent_after(evidence: Evidence) -> None:
+    """Judge what else came."""
+    watch = _heard(evidence)
+    if evidence.probe.wait(lambda: len(watch) > 1, SOON_SEC):
+        raise Fail(
+            f'one message on {TOPIC}, and no other',
+            f'{len(watch)} messages: {expect.show(watch.values("data"))}',
+            GOES_ON,
+        )
 
 
 def _heard(evidence: Evidence) -> Watch:
@@ -147,7 +141,7 @@ say_once = Exercise(
         _SaysIt(),
         Runs('the node is spun, and it does not block while it waits', topic=TOPIC),
         _SilentBefore(),
-        _SilentAfter(),
+        Asked('publish nothing after that message', _silent_after),
     ),
     hints=[
         'The node must look again and again whether somebody is there. What calls a callback '

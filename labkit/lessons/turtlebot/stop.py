@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import signal
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from labkit.exercises import Exercise, Fail, Mistake, Probe, Solution, expect
 from labkit.exercises.clauses import (
+    Asked,
     Evidence,
-    GraphClause,
     Messages,
     Named,
     Publishes,
@@ -86,40 +86,32 @@ def _cruises(stream: Stream, wanted: float) -> None:
         )
 
 
-@dataclass(frozen=True)
-class _SaysStop(GraphClause):
-    """The last command says stop."""
-
-    @property
-    def text(self) -> str:
-        return 'the last command says stop (all 0.0), however the node ends'
-
-    def judge(self, evidence: Evidence) -> str:
-        probe = evidence.probe
-        source = evidence.publisher('/cmd_vel', NODE)
-        is_script = not probe.in_this_process(source)
-        is_lottery = is_script and _ends_ros_first(source.gid)
-        watch = expect.ends_with_node(probe, source)
-        probe.wait(lambda: command_of(watch.samples[-1]).stops, LATE_SEC)
-        last = command_of(watch.samples[-1])
-        if is_lottery:
-            raise Fail(
-                'a script whose last command always says stop',
-                f'the last command says {last}; and rclpy.init() has put a handler of its own in '
-                'the place of that for Ctrl-C',
-                HANDLERS,
+def _says_stop(evidence: Evidence) -> str:
+    probe = evidence.probe
+    source = evidence.publisher('/cmd_vel', NODE)
+    is_script = not probe.in_this_process(source)
+    is_lottery = is_script and _ends_ros_first(source.gid)
+    watch = expect.ends_with_node(probe, source)
+    probe.wait(lambda: command_of(watch.samples[-1]).stops, LATE_SEC)
+    last = command_of(watch.samples[-1])
+    if is_lottery:
+        raise Fail(
+            'a script whose last command always says stop',
+            f'the last command says {last}; and rclpy.init() has put a handler of its own in '
+            'the place of that for Ctrl-C',
+            HANDLERS,
+        )
+    _refuse_others(probe)
+    if not last.stops:
+        mistake = NO_STOP
+        if is_script:
+            mistake = NO_STOP.then(
+                'In finally: publish an empty Twist(), then wait until it is there: '
+                'publisher.wait_for_all_acked()'
             )
-        _refuse_others(probe)
-        if not last.stops:
-            mistake = NO_STOP
-            if is_script:
-                mistake = NO_STOP.then(
-                    'In finally: publish an empty Twist(), then wait until it is there: '
-                    'publisher.wait_for_all_acked()'
-                )
-            expected = 'a last command with all numbers 0.0'
-            raise Fail(expected, f'the last command says {last}', mistake)
-        return 'The last command says stop.'
+        expected = 'a last command with all numbers 0.0'
+        raise Fail(expected, f'the last command says {last}', mistake)
+    return 'The last command says stop.'
 
 
 def _refuse_others(probe: Probe) -> None:
@@ -166,7 +158,7 @@ def _task(speed: float, hz: float) -> dict[str, Any]:
                 partial(_cruises, wanted=speed),
                 by=NODE,
             ),
-            _SaysStop(),
+            Asked('the last command says stop (all 0.0), however the node ends', _says_stop),
         ),
     }
 
