@@ -11,6 +11,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from labkit import domain_ids
 
@@ -31,6 +32,7 @@ __all__ = [
     'notebook_name',
     'prepare_environment',
     'prepared_variables',
+    'shell',
     'state_dir',
     'variant_seed',
 ]
@@ -187,11 +189,15 @@ def audience() -> Audience:
     return SCRIPT if is_read_by_program else TERMINAL
 
 
+def shell() -> Any:
+    """Return the running IPython, None in a program."""
+    ipython = sys.modules.get('IPython')
+    return ipython.get_ipython() if ipython is not None else None
+
+
 def in_kernel() -> bool:
     """Return whether this process is a Jupyter kernel."""
-    ipython = sys.modules.get('IPython')
-    shell = ipython.get_ipython() if ipython is not None else None
-    return shell is not None and hasattr(shell, 'kernel')
+    return hasattr(shell(), 'kernel')
 
 
 def notebook_name() -> str:

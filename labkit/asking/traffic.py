@@ -13,7 +13,6 @@ never sees what overflows it. It does not subscribe while a cell runs, so that n
 from __future__ import annotations
 
 import functools
-import sys
 import threading
 import time
 from collections import Counter
@@ -307,7 +306,7 @@ class Traffic:
 
 
 def _events() -> Any:
-    return sys.modules['IPython'].get_ipython().events
+    return settings.shell().events
 
 
 def _is_here(end: Endpoint) -> bool:

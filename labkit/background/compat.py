@@ -19,6 +19,8 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.task import Future
 from rclpy.time_source import TimeSource
 
+from labkit import settings
+
 if TYPE_CHECKING:
     from rclpy.action.client import ActionClient, ClientGoalHandle
     from rclpy.action.server import ActionServer
@@ -299,13 +301,13 @@ def take_logs(show: Callable[[int, str, str], None]) -> Callable[[], None]:
 
 def running_request() -> dict[str, Any]:
     """Return the request that runs the current cell."""
-    request: dict[str, Any] = _shell().get_parent()
+    request: dict[str, Any] = settings.shell().get_parent()
     return request
 
 
 def set_thread_request(request: dict[str, Any]) -> None:
     """Assign the calling thread's output to a request, if the kernel can do that."""
-    shell = _shell()
+    shell = settings.shell()
     if hasattr(shell, 'set_thread_parent'):
         shell.set_thread_parent(request)
         return
@@ -323,7 +325,7 @@ def write_for(request: dict[str, Any], stream: Any, text: str) -> None:
         stream.write(text)
         return
     # In Google Colab's ipykernel (6.17) a stream has no request per thread.
-    publisher = _shell().display_pub
+    publisher = settings.shell().display_pub
     content = {'name': stream.name, 'text': text}
     publisher.session.send(
         publisher.pub_socket, 'stream', content, parent=request, ident=stream.topic
@@ -343,7 +345,7 @@ def display_under(
     """
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
-    publisher = _shell().display_pub
+    publisher = settings.shell().display_pub
     publisher.session.send(
         publisher.pub_socket,
         'update_display_data' if update else 'display_data',
@@ -363,12 +365,12 @@ def is_kernel_stream(stream: object) -> bool:
 def answer_input(answer: Callable[[object], str]) -> None:
     """Answer each `input()` of a cell by a function of the prompt."""
     # ipykernel replaces `input` by this method whenever it runs a cell.
-    _shell().kernel.raw_input = answer
+    settings.shell().kernel.raw_input = answer
 
 
 def call_in_kernel(function: Callable[[], None], *, delay_sec: float = 0.0) -> None:
     """Call a function in the kernel's main thread, `delay_sec` after no cell is running."""
-    loop = _shell().kernel.io_loop
+    loop = settings.shell().kernel.io_loop
     loop.add_callback(lambda: loop.call_later(delay_sec, function))
 
 
@@ -379,7 +381,3 @@ def hear_while_cells_run(comm: Any) -> None:
     background that is the main thread, where they wait for the running cell.
     """
     comm._reply_subshell_for = None
-
-
-def _shell() -> Any:
-    return sys.modules['IPython'].get_ipython()

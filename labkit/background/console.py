@@ -123,10 +123,10 @@ class Console:
             return
         self._take_streams()
         self._give_logs_back = compat.take_logs(self._show_log)
-        _shell().events.register('pre_run_cell', self._end_cell)
-        _shell().events.register('post_run_cell', self._finish_cell)
+        settings.shell().events.register('pre_run_cell', self._end_cell)
+        settings.shell().events.register('post_run_cell', self._finish_cell)
         self._is_running = True  # ROS is started by a cell
-        tracebacks.install(_shell(), self.last_words, self.uncaught)
+        tracebacks.install(settings.shell(), self.last_words, self.uncaught)
 
     def close(self) -> None:
         """Restore the streams and the ROS logs."""
@@ -140,8 +140,8 @@ class Console:
         self._thread = 0
         self._give_logs_back()
         self._give_logs_back = None
-        _shell().events.unregister('pre_run_cell', self._end_cell)
-        _shell().events.unregister('post_run_cell', self._finish_cell)
+        settings.shell().events.unregister('pre_run_cell', self._end_cell)
+        settings.shell().events.unregister('post_run_cell', self._finish_cell)
 
     def _show_log(self, severity: int, name: str, message: str) -> None:
         self.on_log(name, message)
@@ -374,7 +374,3 @@ def _place(error: BaseException) -> list[tuple[str, int]]:
         found.append((tb.tb_frame.f_code.co_filename, tb.tb_lineno))
         tb = tb.tb_next
     return found
-
-
-def _shell() -> Any:
-    return sys.modules['IPython'].get_ipython()

@@ -17,7 +17,7 @@ from typing import Any
 import rclpy.executors
 import rclpy.task
 
-from labkit import stop_button
+from labkit import settings, stop_button
 
 __all__ = ['install', 'uninstall']
 
@@ -100,7 +100,7 @@ _replaced: list[tuple[Any, str, Any, Any]] = []
 
 def install() -> None:
     """Put the replacements in place, in a kernel."""
-    shell = sys.modules['IPython'].get_ipython()
+    shell = settings.shell()
     for owner, name, end in (*_WAYS, (shell, 'ask_exit', _ask_exit)):
         original = getattr(owner, name)
         guarded = _guarded(original, end, os.getpid())

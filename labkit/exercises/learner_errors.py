@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import linecache
 import re
-import sys
 from collections.abc import Callable
 from types import FrameType
 from typing import Any
 
+from labkit import settings
 from labkit.errors import LabError, cell_name
 from labkit.exercises.mistakes import Mistake
 from labkit.exercises.verdict import LearnerError
@@ -31,8 +31,7 @@ class LastCell:
 
     def follow(self) -> None:
         """Look at every cell from now on. Without effect outside IPython."""
-        ipython = sys.modules.get('IPython')
-        shell = ipython.get_ipython() if ipython is not None else None
+        shell = settings.shell()
         if shell is not None and shell is not self._shell:
             self._shell = shell
             shell.events.register('post_run_cell', self._look)

@@ -13,6 +13,7 @@ from functools import cached_property
 from types import CodeType
 from typing import Any
 
+from labkit import settings
 from labkit.errors import cell_name
 
 __all__ = ['Cell', 'Definition', 'Notebook', 'Position', 'place']
@@ -93,8 +94,7 @@ class Notebook:
     def of(cls, thing: Any) -> Notebook:
         """Return the running notebook, or the module in which a class or function was defined."""
         module = sys.modules.get(thing.__module__)
-        ipython = sys.modules.get('IPython')
-        shell = ipython.get_ipython() if ipython is not None else None
+        shell = settings.shell()
         if shell is not None and thing.__module__ == '__main__':
             history = shell.history_manager.input_hist_parsed
             cells = [Cell(f'Cell In[{n}]', n, text) for n, text in enumerate(history)]

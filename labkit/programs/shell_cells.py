@@ -7,7 +7,6 @@ running, and which command is at work: the first of the cell's processes, and th
 from __future__ import annotations
 
 import re
-import sys
 import threading
 import time
 from collections.abc import Iterator, Sequence, Set
@@ -29,8 +28,7 @@ _PYTHON = re.compile(r'python[\d.]*')
 
 def register() -> None:
     """Follow the cells of a kernel with a learner in front of it. Without effect elsewhere."""
-    ipython = sys.modules.get('IPython')
-    shell = ipython.get_ipython() if ipython is not None else None
+    shell = settings.shell()
     if shell is None or settings.audience() is not settings.LEARNER:
         return
     if not any(isinstance(getattr(each, '__self__', None), _Cells) for each in _called(shell)):

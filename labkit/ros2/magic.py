@@ -6,6 +6,8 @@ import re
 import sys
 from typing import Any
 
+from labkit import settings
+
 __all__ = ['register']
 
 # A command, where a statement begins. What it becomes is what IPython makes of a line of its own.
@@ -14,8 +16,7 @@ _COMMAND = re.compile(r'([ \t]*)(?:(%ros2)[ \t]+|!(?=ros2[ \t]))(?=\S)')
 
 def register() -> None:
     """Register `%ros2` with the running IPython, if there is one. Must stay light and fast."""
-    ipython = sys.modules.get('IPython')
-    shell = ipython.get_ipython() if ipython is not None else None
+    shell = settings.shell()
     if shell is None:
         return
     shell.register_magic_function(_ros2, 'line_cell', 'ros2')
@@ -129,7 +130,7 @@ def _complete(context: Any) -> dict[str, Any]:
 
 def _complete_word(text: str) -> list[str]:
     """Return completions for `text` at the cursor, for an older IPython."""
-    shell = sys.modules['IPython'].get_ipython()
+    shell = settings.shell()
     last, words = _possible(shell.Completer.text_until_cursor)
     # The replaced text ends at the cursor, but need not begin where the command's word does.
     start = len(last) - len(text)

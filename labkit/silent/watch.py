@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import atexit
 import html
-import sys
 import threading
 import time
 import uuid
@@ -76,7 +75,7 @@ class Watch:
         self._reader.forget()
         self._last = frozenset()
         if settings.audience().same_each_time:
-            events = sys.modules['IPython'].get_ipython().events
+            events = settings.shell().events
             with suppress(ValueError):  # it is to come after the console, each time ROS is started
                 events.unregister('post_run_cell', self._record)
             events.register('post_run_cell', self._record)

@@ -5,9 +5,9 @@ IPython gets the form by name, so that the room of launches need not be loaded.
 
 from __future__ import annotations
 
-import sys
 from typing import TYPE_CHECKING
 
+from labkit import settings
 from labkit.views.card import Card
 
 if TYPE_CHECKING:
@@ -18,8 +18,7 @@ __all__ = ['launch_card', 'register']
 
 def register() -> None:
     """Register the form of launches with the running IPython, if there is one."""
-    ipython = sys.modules.get('IPython')
-    shell = ipython.get_ipython() if ipython is not None else None
+    shell = settings.shell()
     if shell is not None:
         html = shell.display_formatter.formatters['text/html']
         html.for_type_by_name('labkit.launching.launched', 'Launch', _html)

@@ -8,9 +8,9 @@ show, is still the PNG.
 from __future__ import annotations
 
 import io
-import sys
 from typing import TYPE_CHECKING, Any
 
+from labkit import settings
 from labkit.settings import audience
 from labkit.views.themed import as_source, picture, themed
 
@@ -27,8 +27,7 @@ LARGEST = 1_000_000
 
 def register() -> None:
     """Register the figure form with the running IPython, if there is one."""
-    ipython = sys.modules.get('IPython')
-    shell = ipython.get_ipython() if ipython is not None else None
+    shell = settings.shell()
     if shell is not None:
         # Not as `text/html`: matplotlib removes other formatters of figures.
         bundles = shell.display_formatter.mimebundle_formatter

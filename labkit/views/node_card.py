@@ -6,9 +6,9 @@ loaded; it is used while the notebook-safe functions are installed.
 
 from __future__ import annotations
 
-import sys
 from typing import TYPE_CHECKING, Any
 
+from labkit import settings
 from labkit.views.card import Card
 
 if TYPE_CHECKING:
@@ -21,8 +21,7 @@ __all__ = ['node_card', 'register']
 
 def register() -> None:
     """Register the node form with the running IPython, if there is one."""
-    ipython = sys.modules.get('IPython')
-    shell = ipython.get_ipython() if ipython is not None else None
+    shell = settings.shell()
     if shell is None:
         return
     formatters = shell.display_formatter.formatters
