@@ -11,6 +11,7 @@ __all__ = [
     'LabTimeout',
     'SetupError',
     'cell_name',
+    'did_you_mean',
     'first_few',
     'nearest',
     'printable',
@@ -130,6 +131,12 @@ def first_few(names: Sequence[str]) -> str:
     """Return up to three names, and how many more there are."""
     shown = ', '.join(names[:3])
     return f'{shown} and {len(names) - 3} more' if len(names) > 3 else shown
+
+
+def did_you_mean(name: str, names: Iterable[str], otherwise: str = '') -> str:
+    """Return the question whether the nearest name was meant; `otherwise` if none is similar."""
+    near = nearest(name, names)
+    return f'Did you mean {near!r}?' if near else otherwise
 
 
 def quoted(value: object) -> str:

@@ -15,7 +15,7 @@ from labkit.bags.decoding import Decoder
 from labkit.bags.metadata import BagTopic, Metadata, profiles_from
 from labkit.bags.stored import StoredFile
 from labkit.bags.unpacking import unpacked
-from labkit.errors import LabError, nearest, quoted
+from labkit.errors import LabError, did_you_mean, quoted
 
 if TYPE_CHECKING:
     import os
@@ -104,11 +104,10 @@ class Bag:
         for topic in self.topics:
             if topic.name in (name, f'/{name}'):
                 return topic
-        near = nearest(name, names)
         known = f'It has {", ".join(names)}.' if names else 'It has none.'
         raise LabError(
             f'{quoted(self.path.name)} has no topic {quoted(name)}.',
-            todo=f'Did you mean {near!r}?' if near else known,
+            todo=did_you_mean(name, names, known),
         )
 
     def messages(

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 from labkit.bags.metadata import FILE_NAME, BagTopic, Metadata, profiles_from
 from labkit.bags.stored import StoredTopic
-from labkit.errors import LabError, nearest, quoted
+from labkit.errors import LabError, did_you_mean, quoted
 from labkit.files import write_atomically
 
 __all__ = ['STORAGES', 'BagWriter', 'check_storage']
@@ -200,10 +200,9 @@ def check_storage(storage: str) -> str:
     """
     if storage in STORAGES:
         return storage
-    near = nearest(str(storage), STORAGES)
     raise LabError(
         f'storage must be one of {", ".join(map(repr, STORAGES))}, but it is {quoted(storage)}.',
-        todo=f'Did you mean {near!r}?' if near else '',
+        todo=did_you_mean(str(storage), STORAGES),
     )
 
 

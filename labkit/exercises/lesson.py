@@ -10,7 +10,7 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from labkit import settings
-from labkit.errors import LabError, nearest
+from labkit.errors import LabError, did_you_mean
 from labkit.exercises import learner_time
 from labkit.exercises.exercise import Exercise
 from labkit.exercises.learner_errors import last_cell
@@ -154,7 +154,7 @@ class Lesson:
             names = [repr(other) for other in self._quizzes]
             raise LabError(
                 f'Lesson {self.name!r} has no quiz {name!r}.' if name else 'Which quiz?',
-                todo=_suggest(name, list(self._quizzes))
+                todo=did_you_mean(name, list(self._quizzes))
                 or f'Its quizzes: {", ".join(names) or "none"}.',
             )
         return self._quizzes[name]
@@ -168,7 +168,7 @@ class Lesson:
             raise NoSuchNameError(
                 f'Lesson {self.name!r} has no exercise {name!r}.',
                 todo=(f'It is in lesson {elsewhere[0]}.' if elsewhere else '')
-                or _suggest(name, list(self._exercises))
+                or did_you_mean(name, list(self._exercises))
                 or f'Its exercises: {", ".join(self._exercises) or "none"}.',
             )
         return exercise
@@ -217,7 +217,7 @@ def load(name: str) -> Lesson:
     if bare not in names:
         raise LabError(
             f'There is no lesson {name!r}.',
-            todo=_suggest(str(bare), names) or f'The lessons: {", ".join(names)}.',
+            todo=did_you_mean(str(bare), names) or f'The lessons: {", ".join(names)}.',
         )
     found: Lesson = importlib.import_module(f'{PACKAGE}.{bare}').LESSON
     return found
@@ -233,8 +233,3 @@ def lesson_names() -> list[str]:
 def all_lessons() -> list[Lesson]:
     """Return all lessons, in the order of their notebooks."""
     return sorted(map(load, lesson_names()), key=lambda found: found.notebook)
-
-
-def _suggest(name: str, names: Sequence[str]) -> str:
-    near = nearest(name, names)
-    return f'Did you mean {near!r}?' if near else ''

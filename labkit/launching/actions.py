@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from labkit.errors import nearest
+from labkit.errors import did_you_mean
 from labkit.launching import events
 from labkit.launching.model import (
     Action,
@@ -93,11 +93,10 @@ class DeclareLaunchArgument(Action):
                 )
             known[self.name] = perform(context, self.default_value)
         if self.choices is not None and known[self.name] not in self.choices:
-            near = nearest(known[self.name], self.choices)
             raise LaunchError(
                 f'Argument "{self.name}" provided value "{known[self.name]}" is not valid. Valid '
                 f'options are: {self.choices}',
-                todo=f'Did you mean {near!r}?' if near else '',
+                todo=did_you_mean(known[self.name], self.choices),
             )
 
     def describe(self) -> str:
@@ -498,10 +497,9 @@ class ExecuteProcess(Action):
         known = set(_Options.__dataclass_fields__) - {'refused'}
         wrong = next((word for word in options if word not in known), None)
         if wrong is not None:
-            near = nearest(wrong, [*known, 'cmd', 'name', 'on_exit', 'condition'])
             raise LaunchError(
                 f'{type(self).__name__} has no argument {wrong!r}.',
-                todo=f'Did you mean {near!r}?' if near else '',
+                todo=did_you_mean(wrong, [*known, 'cmd', 'name', 'on_exit', 'condition']),
                 place=self.place,
             )
         if isinstance(cmd, str):
@@ -580,10 +578,9 @@ class ExecuteProcess(Action):
             context, pieces(chosen)
         )
         if output not in OUTPUTS:
-            near = nearest(output, OUTPUTS)
             raise LaunchError(
                 f'output is one of {", ".join(OUTPUTS)}, and this is {output!r}.',
-                todo=f'Did you mean {near!r}?' if near else '',
+                todo=did_you_mean(output, OUTPUTS),
             )
         return output
 

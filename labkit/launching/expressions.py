@@ -16,7 +16,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
-from labkit.errors import LabError, nearest, quoted
+from labkit.errors import LabError, did_you_mean, quoted
 from labkit.launching.model import LaunchError
 
 __all__ = ['evaluate', 'message_filter']
@@ -188,11 +188,10 @@ def _field(message: Any, name: str) -> Any:
     """Return a field of a message, and of nothing else."""
     fields: Mapping[str, str] = getattr(message, 'get_fields_and_field_types', dict)()
     if name not in fields:
-        near = nearest(name, fields)
         known = f'Its fields: {", ".join(fields)}.' if fields else ''
         raise LaunchError(
             f'{quoted(name)} is no field of a {type(message).__name__}.',
-            todo=f'Did you mean {near!r}?' if near else known,
+            todo=did_you_mean(name, fields, known),
         )
     return getattr(message, name)
 

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from labkit.errors import LabError, nearest
+from labkit.errors import LabError, did_you_mean
 from labkit.files import read_limited
 from labkit.launching.actions import DeclareLaunchArgument
 from labkit.launching.markup import from_xml, from_yaml
@@ -31,12 +31,13 @@ def load(path: str, form: str = '') -> LaunchDescription:
     """
     if not os.path.exists(path):
         folder = Path(path).parent
-        near = nearest(Path(path).name, _names(folder))
         raise LaunchError(
             f'There is no launch file {path}.',
-            todo=f'Did you mean {near!r}?'
-            if near
-            else 'A file beside the one that includes it is found by $(dirname)/',
+            todo=did_you_mean(
+                Path(path).name,
+                _names(folder),
+                'A file beside the one that includes it is found by $(dirname)/',
+            ),
         )
     try:
         text = read_limited(path).decode()
@@ -72,10 +73,9 @@ def find(package: str, name: str) -> str:
         )
     if found:
         return str(found[0])
-    near = nearest(name, [path.name for path in launch_files(package)])
     known = ', '.join(path.name for path in launch_files(package) if _is_launch_file(path))
     todo = f'It has: {known}.' if known else 'A line of data_files in its setup.py installs them.'
-    todo = f'Did you mean {near!r}?' if near else todo
+    todo = did_you_mean(name, [path.name for path in launch_files(package)], todo)
     state = why_not_in(package, prefix_of(package))
     raise LabError(
         f"file '{name}' was not found in the share directory of package '{package}' which is at "

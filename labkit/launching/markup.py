@@ -11,7 +11,7 @@ from xml.parsers import expat
 
 import yaml
 
-from labkit.errors import LabError, nearest
+from labkit.errors import LabError, did_you_mean, nearest
 from labkit.launching import actions, ros_actions
 from labkit.launching.conditions import IfCondition, UnlessCondition
 from labkit.launching.model import (
@@ -124,11 +124,10 @@ class Entity:
         if wrong is None:
             return
         place = next((part.place for part in self.parts if part.tag == wrong), self.place)
-        near = nearest(wrong, self._asked)
         known = ', '.join(sorted(name for name in self._asked if not name.endswith('-sep')))
         raise LaunchError(
             f'{self.shown} has no {wrong!r}.',
-            todo=f'Did you mean {near!r}?' if near else f'It may have: {known or "nothing"}.',
+            todo=did_you_mean(wrong, self._asked, f'It may have: {known or "nothing"}.'),
             place=place,
         )
 

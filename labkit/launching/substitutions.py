@@ -10,7 +10,7 @@ import socket
 from collections.abc import Callable, Iterable
 from typing import Any, ClassVar
 
-from labkit.errors import nearest
+from labkit.errors import did_you_mean, nearest
 from labkit.files import read_limited
 from labkit.launching.expressions import evaluate
 from labkit.launching.model import (
@@ -41,11 +41,10 @@ class LaunchConfiguration(Substitution):
             return context.launch_configurations[name]
         if self.default is not None:
             return perform(context, self.default)
-        near = nearest(name, context.launch_configurations)
         known = ', '.join(context.launch_configurations) or 'none'
         raise LaunchError(
             f'launch configuration {name!r} does not exist',
-            todo=f'Did you mean {near!r}?' if near else f'Those known here: {known}.',
+            todo=did_you_mean(name, context.launch_configurations, f'Those known here: {known}.'),
         )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from labkit.errors import nearest
+from labkit.errors import did_you_mean
 from labkit.launching.model import LaunchError
 from labkit.rosgraph.yaml_loading import load_yaml
 
@@ -22,10 +22,9 @@ def type_named(name: str) -> str:
         LaunchError: There is no such type.
     """
     if name not in TYPES:
-        near = nearest(name, TYPES)
         raise LaunchError(
             f'There is no type {name!r}.',
-            todo=f'Did you mean {near!r}?' if near else f'There are: {", ".join(TYPES)}.',
+            todo=did_you_mean(name, TYPES, f'There are: {", ".join(TYPES)}.'),
         )
     return '' if name == 'yaml' else name
 

@@ -15,7 +15,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
-from labkit.errors import LabError, nearest, quoted
+from labkit.errors import LabError, did_you_mean, quoted
 from labkit.packages.cells import Definition, Notebook, Position, place
 
 __all__ = ['Gathered', 'gather']
@@ -186,8 +186,11 @@ class _Collector:
         if name in sys.stdlib_module_names:
             todo = f'Run a cell with: import {name}'
         else:
-            near = nearest(name, [*self.notebook.namespace, *_PYTHON_NAMES])
-            todo = f'Did you mean {near!r}?' if near else 'Import it, or define it, in a cell.'
+            todo = did_you_mean(
+                name,
+                [*self.notebook.namespace, *_PYTHON_NAMES],
+                'Import it, or define it, in a cell.',
+            )
         self._refuse(name, user, 'No cell of this notebook has made it.', todo)
 
     def _refuse(self, name: str, user: Definition, why: str, todo: str) -> NoReturn:

@@ -13,7 +13,7 @@ import yaml
 from labkit import settings
 from labkit.asking.silence import why_silent
 from labkit.background.runtime import runtime
-from labkit.errors import LabError, nearest
+from labkit.errors import LabError, did_you_mean
 from labkit.ros2.asking import add_discovery_options, asking_node, full_name
 from labkit.ros2.graph_words import topic_names, types_of_topic
 from labkit.ros2.parser import (
@@ -127,9 +127,8 @@ def _check_field(text: str | None, msg_type: Any) -> list[str]:
     paths = list(field_paths(msg_type))
     path = '.'.join(parts)
     if path not in paths:
-        near = nearest(path, paths)
         fields = ', '.join(msg_type.get_fields_and_field_types())
-        hint = f'Did you mean {near!r}?' if near else f'Its fields: {fields}.'
+        hint = did_you_mean(path, paths, f'Its fields: {fields}.')
         with real_one(says=f"Invalid field '{path}': {_why_not(msg_type, parts)}"):
             raise LabError(f"Invalid field '{path}': {type_name(msg_type)} has none.", todo=hint)
     return parts

@@ -15,7 +15,7 @@ from typing import Any
 
 from ament_index_python import get_resource, get_resources, has_resource
 
-from labkit.errors import LabError, nearest, quoted
+from labkit.errors import LabError, did_you_mean, nearest, quoted
 from labkit.rosgraph.refusals import Refusal, Refused
 from labkit.rosgraph.workspaces import why_missing
 
@@ -111,8 +111,7 @@ def _listed(package: str, _search_path: str) -> list[str]:
 def check_package(package: str) -> None:
     """Raise a LabError unless a package is installed."""
     if not listed_in(package) and (not _is_word(package) or not has_resource('packages', package)):
-        near = nearest(package, get_resources('packages'))
-        todo = why_missing(package) or (f'Did you mean {near!r}?' if near else '')
+        todo = why_missing(package) or did_you_mean(package, get_resources('packages'))
         raise LabError(f"Unknown package '{package}'", todo=todo)
 
 

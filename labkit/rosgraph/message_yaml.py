@@ -23,7 +23,7 @@ from rosidl_parser.definition import (  # type: ignore[import-untyped]
     NamespacedType,
 )
 
-from labkit.errors import nearest, quoted
+from labkit.errors import did_you_mean, quoted
 from labkit.rosgraph.interfaces import slot_class, slots, type_name
 from labkit.rosgraph.refusals import Refusal, Refused
 from labkit.rosgraph.yaml_loading import load_yaml
@@ -247,8 +247,7 @@ def _no_field(owner: str, name: str, fields: Collection[str]) -> Refused:
         hint = f'A space is missing after the colon. Write {quoted(spaced)}.'
         reason = Refusal.SPACE_AFTER_COLON
     else:
-        near = nearest(name, fields)
-        hint = f'Did you mean {near!r}?' if near else f'Its fields: {", ".join(fields)}.'
+        hint = did_you_mean(name, fields, f'Its fields: {", ".join(fields)}.')
     return Refused(message, todo=hint, reason=reason)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ament_index_python import get_packages_with_prefixes
 
-from labkit.errors import LabError, nearest, quoted
+from labkit.errors import LabError, did_you_mean, nearest, quoted
 from labkit.rosgraph import interfaces
 from labkit.rosgraph.workspaces import why_missing, why_not_in
 
@@ -87,10 +87,11 @@ def prefix_of(package: str) -> Path:
         raise LabError(f"Package '{package}' not found", todo=todo)
     if package in _INSTEAD:
         raise LabError(f"Package '{package}' not found", todo=_INSTEAD[package])
-    near = nearest(package, [*packages, *_OWN])
     raise LabError(
         f"Package '{package}' not found",
-        todo=f'Did you mean {near!r}?' if near else 'ros2 pkg list shows all that are installed.',
+        todo=did_you_mean(
+            package, [*packages, *_OWN], 'ros2 pkg list shows all that are installed.'
+        ),
     )
 
 

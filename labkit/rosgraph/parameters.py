@@ -11,7 +11,7 @@ from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rclpy.parameter import Parameter as NodeParameter
 from rclpy.parameter import get_parameter_value, parameter_value_to_python
 
-from labkit.errors import LabError, nearest, quoted
+from labkit.errors import LabError, did_you_mean, quoted
 from labkit.rosgraph.yaml_loading import load_yaml_file
 
 __all__ = ['NOT_SET', 'parameters_in', 'python_value', 'to_yaml', 'type_word', 'value_from']
@@ -116,11 +116,10 @@ def _values_in(path: str, node_name: str, wildcard: bool) -> dict[str, Any]:
                 todo='It has some for all nodes, which --no-use-wildcard leaves out.',
             )
     if not found:
-        near = nearest(node_name, [name for name, _ in sections])
         raise LabError(
             f'Param file does not contain parameters for {node_name}, only for nodes: '
             f'{quoted(list(nodes))}',
-            todo=f'Did you mean {near!r}?' if near else '',
+            todo=did_you_mean(node_name, [name for name, _ in sections]),
         )
     values: dict[str, Any] = {}
     for name, tree in sorted(found, key=lambda section: '*' not in section[0]):

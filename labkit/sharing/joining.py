@@ -31,7 +31,7 @@ from labkit.background.notebook_rclpy import ORIGINALS
 from labkit.background.runtime import runtime
 from labkit.background.session import Session, end_earlier, going_on
 from labkit.domain_ids import check_shared_domain_id, read_shared_domain_id, stays_here
-from labkit.errors import LabError, LabTimeout, nearest, quoted
+from labkit.errors import LabError, LabTimeout, did_you_mean, quoted
 from labkit.rosgraph.endpoints import Endpoint, publishers, subscriptions
 from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.names import full_topic_name
@@ -351,11 +351,10 @@ def join(
     """
     check_shared_domain_id(domain_id)
     if discovery_range not in RANGES:
-        near = nearest(str(discovery_range), RANGES)
         raise LabError(
             f'discovery_range must be one of {", ".join(map(repr, RANGES))}, but it is '
             f'{quoted(discovery_range)}.',
-            todo=f'Did you mean {near!r}?' if near else '',
+            todo=did_you_mean(str(discovery_range), RANGES),
         )
     if isinstance(static_peers, str):
         raise LabError(
