@@ -6,7 +6,7 @@ Two snapshots are equal if nothing has changed.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from rclpy.node import Node
@@ -94,22 +94,27 @@ class GraphTopic:
 
 @dataclass(frozen=True)
 class GraphService:
-    """A service, with the nodes that offer it and those that have a client."""
+    """A service, with the nodes that offer it and those that have a client.
+
+    Those in `lost` have a client of a type that no server has.
+    """
 
     name: str
     types: tuple[str, ...]
     servers: tuple[str, ...]
     clients: tuple[str, ...]
+    lost: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class GraphAction:
-    """An action, with the nodes that serve it and those that have a client."""
+    """An action, with the nodes that serve it and those that have a client, as of a service."""
 
     name: str
     types: tuple[str, ...]
     servers: tuple[str, ...]
     clients: tuple[str, ...]
+    lost: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -223,19 +228,20 @@ def is_whole(node: Node) -> bool:
 
 
 def _services(node: Node, names: list[str], include_hidden: bool) -> tuple[GraphService, ...]:
-    servers: dict[str, set[str]] = {}
-    clients: dict[str, set[str]] = {}
-    for full_name in set(names):
+    servers: dict[str, dict[str, list[str]]] = {}
+    clients: dict[str, dict[str, list[str]]] = {}
+    for full_name in sorted(set(names)):
         found = ends_of_node(node, full_name, include_hidden=True)
         for ends, who in ((found.service_servers, servers), (found.service_clients, clients)):
-            for service, _types in ends:
-                who.setdefault(service, set()).add(full_name)
+            for service, types in ends:
+                who.setdefault(service, {})[full_name] = types
     return tuple(
         GraphService(
             service,
             tuple(types),
-            tuple(sorted(servers.get(service, ()))),
-            tuple(sorted(clients.get(service, ()))),
+            tuple(servers.get(service, ())),
+            tuple(clients.get(service, ())),
+            _lost(servers.get(service, {}), clients.get(service, {})),
         )
         for service, types in sorted(node.get_service_names_and_types())
         if include_hidden
@@ -250,11 +256,20 @@ def _actions(node: Node, names: list[str], include_hidden: bool) -> tuple[GraphA
     ends = {name: ends_of_node(node, name, include_hidden=True) for name in sorted(set(names))}
     found = []
     for action, types in listed:
-        servers = [n for n, e in ends.items() if action in dict(e.action_servers)]
-        clients = [n for n, e in ends.items() if action in dict(e.action_clients)]
+        servers = {n: t for n, e in ends.items() for a, t in e.action_servers if a == action}
+        clients = {n: t for n, e in ends.items() for a, t in e.action_clients if a == action}
         if servers or clients:
-            found += [GraphAction(action, tuple(types), tuple(servers), tuple(clients))]
+            lost = _lost(servers, clients)
+            found += [GraphAction(action, tuple(types), tuple(servers), tuple(clients), lost)]
     return tuple(found)
+
+
+def _lost(
+    servers: Mapping[str, Iterable[str]], clients: Mapping[str, Iterable[str]]
+) -> tuple[str, ...]:
+    """Return the clients for whose type there is no server, if there is any server."""
+    offered = {msg_type for types in servers.values() for msg_type in types}
+    return tuple(name for name, types in clients.items() if offered and not offered >= {*types})
 
 
 def _in_words(node: GraphNode) -> str:

@@ -210,14 +210,14 @@ def look_at_servers(scene: Scene) -> Iterator[Fault]:
         (scene.graph.actions, ACTION_TYPE, 'action'),
     ):
         for end in ends:
-            if len(end.types) > 1 and end.clients and end.servers:
-                names = scene.mended_first(end.clients[0], end.servers[0])
+            for client in end.lost:
+                server = end.servers[0]
                 yield Fault(
                     what,
-                    names,
+                    scene.mended_first(client, server),
                     end.name,
-                    f'The {word} {end.name} has two types, {" and ".join(end.types)}: '
-                    f'{end.clients[0]} never finds the server {end.servers[0]}.',
+                    f'The {word} {end.name} has two types, {" and ".join(end.types)}: {client} '
+                    f'never finds the server {server}.',
                 )
 
 

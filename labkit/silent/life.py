@@ -87,11 +87,11 @@ def look_at_spinning(scene: Scene) -> Iterator[Fault]:
 
 def look_at_calls(scene: Scene) -> Iterator[Fault]:
     """Find requests that nobody answers."""
+    # The server of one that is lost has another type, which is told.
+    lost = {(name, service.name) for service in scene.graph.services for name in service.lost}
     for node in scene.nodes:
         for client in node.clients:
-            if not client.pending:
-                continue
-            if not client.is_ready:
+            if client.pending and not client.is_ready and (node.name, client.service) not in lost:
                 yield Fault(
                     NO_SERVER,
                     (node.name,),

@@ -110,10 +110,12 @@ def test_two_versions_of_a_type() -> None:
 
 
 def test_action_with_two_types() -> None:
-    action = GraphAction('/go', ('a/action/Go', 'b/action/Go'), ('/server',), ('/client',))
-    assert told(Scene(Graph((), (), (), (action,)), {})) == ['types.action']
-    one_type = replace(action, types=('a/action/Go',))
-    assert told(Scene(Graph((), (), (), (one_type,)), {})) == []
+    two = ('a/action/Go', 'b/action/Go')
+    action = GraphAction('/go', two, ('/server',), ('/client', '/other'), ('/other',))
+    (fault,) = look_at_servers(Scene(Graph((), (), (), (action,)), {}))
+    assert fault.kind.id == 'types.action' and fault.nodes == ('/other', '/server')
+    # Two servers of two types, and each client finds one.
+    assert told(Scene(Graph((), (), (), (replace(action, lost=()),)), {})) == []
 
 
 def test_a_name_under_which_a_message_has_come_is_right() -> None:

@@ -279,3 +279,32 @@ def drive(name):
     made = kernel.run("for number in range(4):\n    drive(f'driver_{number}')")
     assert not made.error, made.traceback
     assert kernel.run('print(*told)').text == 'True True True True\n'
+
+
+LOST = """
+from std_srvs.srv import SetBool, Trigger
+from rclpy.context import Context
+from labkit.background.runtime import runtime
+there = Context()
+rclpy.init(context=there, domain_id=runtime.domain_id)  # as another process is
+far = Node('a_client', context=there)
+right = far.create_client(SetBool, 'lamp')
+server = Node('server', context=there).create_service(SetBool, 'lamp', print)
+caller = lab.spin(Node('caller'))
+client = caller.create_client(Trigger, 'lamp')
+lab.wait_until(lambda: len(runtime.helper.get_node_names()) > 3, timeout_sec=20)
+client.call_async(Trigger.Request());
+"""
+
+
+@pytest.mark.slow('two participants find each other')
+def test_of_two_clients_the_one_with_the_wrong_type_is_told(
+    start_kernel: Callable[..., Kernel],
+) -> None:
+    kernel = start_kernel(ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST')
+    assert not kernel.run(PRELUDE).error
+    made = kernel.run(LOST)
+    assert not made.error, made.traceback
+    shown = kernel.wait_for_output(made.msg_id, '/caller never finds the server /server.')
+    # There is a server, so it would be wrong that nobody offers the service.
+    assert shown.count('⚠') == 1 and '/a_client' not in shown

@@ -38,8 +38,10 @@ CASES = {
     'types.service': (
         "node('server').create_service(SetBool, 'lamp', heard)\n"
         "other_process('client').create_client(Trigger, 'lamp'); all_named(3)",
+        # Two servers of two types, and the client finds its own.
         "node('server').create_service(SetBool, 'lamp', heard)\n"
-        "other_process('client').create_client(SetBool, 'lamp'); all_named(3)",
+        "other_process('client').create_client(SetBool, 'lamp')\n"
+        "other_process('another').create_service(Trigger, 'lamp', heard); all_named(4)",
     ),
     'qos.reliability': (
         _profiles('', 'reliability=ReliabilityPolicy.BEST_EFFORT'),
