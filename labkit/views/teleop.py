@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 from labkit.background.nodes import destroy_node, helper_node, node_exists
 from labkit.background.runtime import runtime
 from labkit.errors import LabError, first_few, quoted
+from labkit.rosgraph.endpoints import subscriptions
+from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.names import full_node_name
 from labkit.sim.kinematics import BURGER
 from labkit.views.arena_picture import two
@@ -89,12 +91,19 @@ class Teleop(LivePage):
         full_name = full_node_name(name, namespace)
         others = [view for view in _teleops() if view.node.get_fully_qualified_name() == full_name]
         # Teleops of one name share a node: the one in use drives.
-        self.node = (
+        node = (
             others[0].node
             if others
             else helper_node(name, namespace=namespace or None, enable_rosout=True)
         )
-        self._publisher = self.node.create_publisher(self._msg_type, topic, QUEUE_DEPTH)
+        try:
+            self._publisher = node.create_publisher(self._msg_type, topic, QUEUE_DEPTH)
+        except LabError as error:
+            todo = self._other_type(node, node.resolve_topic_name(topic))
+            if not others:
+                destroy_node(node)
+            raise LabError(error.message, todo=todo or error.todo) from error
+        self.node = node
         self.topic: str = self._publisher.topic_name
         self._repeat = self.node.create_timer(1 / RATE, self._drive)
         # A new direction is published at once, in the background, not at the next timer tick.
@@ -187,7 +196,21 @@ class Teleop(LivePage):
         }
         return self._changes(state), []
 
+    def _other_type(self, node: Node, topic: str) -> str:
+        """Return who listens to the other kind of commands, and how to send it; '' if nobody."""
+        stamped = self._msg_type is _message_class(False)
+        other = type_name(_message_class(stamped))
+        listeners = [end.node for end in subscriptions(node, topic) if end.msg_type == other]
+        return (
+            f'{listeners[0]} listens on {topic} to {other}. '
+            f'For that: lab.teleop(stamped={stamped})'
+            if listeners
+            else ''
+        )
+
     def _why_nobody_listens(self) -> str:
+        if node_exists(self.node) and (words := self._other_type(self.node, self.topic)):
+            return words
         end = self.topic[self.topic.rindex('/') :]
         names = self.node.get_topic_names_and_types() if node_exists(self.node) else []
         heard = sorted(

@@ -211,6 +211,44 @@ def test_page_is_told_what_is_published_and_who_listens(pilot):
     pilot(f'lab.wait_until(lambda: any({words!r} in e.get("note", "") for e in told))')
 
 
+def test_a_robot_that_takes_the_other_type_is_named_with_the_way_to_send_it(start_kernel):
+    kernel = start_kernel(ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST')
+    kernel.run(PILOT)
+    made = kernel.run(
+        'import rclpy\nfrom geometry_msgs.msg import TwistStamped\n'
+        'from rclpy.context import Context\n'
+        'from labkit.background.notebook_rclpy import ORIGINALS\n'
+        'lab.remove("ear")\nthere = Context()\n'
+        'rclpy.init(context=there, domain_id=runtime.domain_id)  # as another process is\n'
+        'far = Node("far", context=there)\n'
+        'ORIGINALS["create_subscription"](far, TwistStamped, "/cmd_vel", print, 10)\n'
+        'lab.wait_until(lambda: runtime.helper.count_subscribers("/cmd_vel"))'
+    )
+    assert not made.error, made.traceback
+    kernel.run(SPY + 'page(view="seen")\npage(v=1, w=0)')
+    words = (
+        '/far listens on /cmd_vel to geometry_msgs/msg/TwistStamped. '
+        'For that: lab.teleop(stamped=True)'
+    )
+    told = kernel.run(f'lab.wait_until(lambda: any(e.get("note", "") == {words!r} for e in told))')
+    assert not told.error, told.traceback
+
+
+def test_one_that_is_refused_leaves_nothing_behind(kernel):
+    kernel.run('import labkit as lab\nrobot = lab.spin(lab.Turtlebot(stamped=True))')
+    refused = kernel.run('lab.teleop()')
+    assert '/turtlebot uses /cmd_vel with messages of another type' in refused.error
+    assert 'For that: lab.teleop(stamped=True)' in refused.error
+    assert '/teleop' not in kernel.run('print(lab.graph())').text
+    # The right one drives.
+    driven = kernel.run(
+        'start = robot.pose\npilot = lab.teleop(stamped=True)\n'
+        'pilot._widget._handle_custom_msg(dict(v=1, w=0), [])\n'
+        'lab.wait_until(lambda: robot.pose != start, timeout_sec=20)'
+    )
+    assert not driven.error, driven.traceback
+
+
 def test_headless_it_is_text(start_kernel):
     kernel = start_kernel(LABKIT_HEADLESS='1')
     kernel.run('import labkit as lab')
