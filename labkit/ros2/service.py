@@ -104,7 +104,7 @@ def _check_type(node: Node, name: str, wanted: str) -> None:
     types = poll_until(lambda: service_types(node, name), 0.3)
     if types and wanted not in types:
         raise Refused(
-            f'{name} is a {", ".join(types)}, not a {wanted}.', reason=Refusal.OTHER_TYPE
+            f'{name} is of type {", ".join(types)}, not {wanted}.', reason=Refusal.OTHER_TYPE
         )
     if not node.count_services(name):
         names = [other for other, _ in services(node) if node.count_services(other)]

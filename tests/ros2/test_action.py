@@ -162,7 +162,7 @@ def test_what_is_wrong_with_a_goal_is_said_before_it_is_sent(ros2):
         f'action send_goal /count {FIBONACCI} "{{order:2}}"',
     )
     assert "has no field 'orde'.\nDid you mean 'order'?" in field.err
-    assert other.err == f'/count is a {FIBONACCI}, not a test_msgs/action/NestedMessage.\n'
+    assert other.err == f'/count is of type {FIBONACCI}, not test_msgs/action/NestedMessage.\n'
     assert service.err.startswith('The passed action type is invalid')
     assert 'space is missing after the colon' in missing.err
     for answer in (field, other, service, missing):

@@ -152,7 +152,7 @@ def test_service_call(ros2):
         "Failed to populate field: std_srvs/srv/SetBool_Request has no field 'dat'.\n"
         "Did you mean 'data'?\n",
     )
-    assert other.err == '/switch is a std_srvs/srv/SetBool, not a std_srvs/srv/Trigger.\n'
+    assert other.err == '/switch is of type std_srvs/srv/SetBool, not std_srvs/srv/Trigger.\n'
     assert (empty.code, empty.out, number.code, number.out) == (1, '', 1, '')
     assert empty.err.startswith(
         "Failed to populate field: Value 'None' is expected to be a dictionary but is a NoneType\n"
