@@ -39,6 +39,7 @@ __all__ = [
     'number_for_ros',
     'open_ports',
     'opened',
+    'other_accounts_in',
 ]
 
 # Without domain 0, which is everybody's default.
@@ -219,6 +220,13 @@ def domains_of_programs() -> list[int]:
         for domain_id in range(LAST_DOMAIN_ID + 1)
         if domain_id not in notebooks and opened & {*ports_of_participants(domain_id)}
     ]
+
+
+def other_accounts_in(domain_id: int) -> list[str]:
+    """Return the other accounts of this machine that have nodes in a domain, in words."""
+    its = {*ports_of_participants(domain_id)}
+    users = {each.user_id for each in _udp_sockets() if each.port in its}
+    return sorted(_account(user_id) for user_id in users - {os.getuid()})
 
 
 def open_ports() -> set[int]:

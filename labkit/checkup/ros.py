@@ -178,9 +178,15 @@ def domain() -> str:
 
 
 def _elsewhere(own: int | None) -> str:
-    """Return in which other domains programs of this user have nodes, in words."""
-    from labkit.background.domains import domains_of_programs
+    """Return whose programs are in this domain, or where those of this user are, in words."""
+    from labkit.background.domains import domains_of_programs, other_accounts_in
 
+    accounts = other_accounts_in(own or 0)
+    if accounts:
+        return (
+            f'; programs of {first_few(accounts)} are in it, too: what passes between two '
+            'accounts may get lost'
+        )
     others = [str(domain_id) for domain_id in domains_of_programs() if domain_id != own]
     if not others:
         return ''

@@ -14,6 +14,7 @@ import pytest
 from background.talker import LOCALHOST, TALKER
 
 from labkit.background import domains
+from labkit.checkup import ros
 from labkit.errors import LabError
 
 CLAIMING = """
@@ -229,3 +230,20 @@ def test_notebooks_of_other_users_are_not_told(lab_env: dict[str, str]) -> None:
             with pytest.raises(BlockingIOError):
                 domains.DomainClaim(int(forged))
             other.kill()
+
+
+def test_who_else_is_in_a_domain_is_told_by_the_doctor(monkeypatch: pytest.MonkeyPatch) -> None:
+    other = os.getuid() + 54321
+    opened = [(7, os.getuid()), (7, other), (8, other + 1)]
+    monkeypatch.setattr(
+        domains,
+        '_udp_sockets',
+        lambda: [
+            domains._UdpSocket(domains.ports_of_participants(domain_id)[0], '', 0, user, 1)
+            for domain_id, user in opened
+        ],
+    )
+    assert domains.other_accounts_in(7) == [f'the account with the number {other}']
+    assert domains.other_accounts_in(9) == []
+    said = f'; programs of the account with the number {other} are in it, too'
+    assert ros._elsewhere(7).startswith(said)
