@@ -48,6 +48,13 @@ def test_a_cell_that_waits_says_so(kernel: Any) -> None:
     kernel.wait_until_gone(waits, 'Waiting')
 
 
+def test_a_limit_that_is_what_is_left_of_another_one_is_rounded(kernel: Any) -> None:
+    kernel.run(WAIT.replace('lab.wait_until', '').replace('timeout_sec=None', ''))
+    waits = kernel.start('lab.wait_until(lambda: ready, timeout_sec=49.94832)')
+    kernel.wait_for_output(waits, ' of 49.9 s')
+    kernel.interrupt()
+
+
 def test_where_something_is_shown_no_bar_appears_beside_it(kernel: Any) -> None:
     kernel.run(BAR.replace("bar.show(0.25, '<b> 7 s')", ''))
     code = (

@@ -71,7 +71,7 @@ def _show(bar: ProgressBar, passed: float, timeout_sec: float | None) -> None:
     if timeout_sec is None:
         bar.show(None, f'{passed:.0f} s')
     else:
-        bar.show(passed / timeout_sec, f'{passed:.0f} of {timeout_sec:g} s')
+        bar.show(passed / timeout_sec, f'{passed:.0f} of {round(timeout_sec, 1):g} s')
 
 
 def wake() -> None:
