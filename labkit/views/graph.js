@@ -201,8 +201,8 @@ class Drawing {
     if (event.key === '0') this.showAll();
     const factor = { '+': STEP, '=': STEP, '-': 1 / STEP }[event.key];
     if (factor) {
-      const { x, y, width, height } = document.activeElement.getBoundingClientRect();
-      this.zoom(factor, x + width / 2, y + height / 2);
+      this.zoom(factor);
+      document.activeElement.scrollIntoView({ block: 'nearest', inline: 'nearest' });
     }
     const parts = this.all;
     const here = parts.indexOf(document.activeElement);

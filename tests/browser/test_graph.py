@@ -228,7 +228,7 @@ def test_a_large_one_is_a_screen_high_and_can_be_moved(notebook: Notebook):
     for _ in range(6):
         notebook.page.keyboard.press('+')
     assert svg.evaluate(scale) / whole == pytest.approx(1.25**6, rel=0.02)
-    # By keys, what has the focus stays where it is.
+    # By keys, what has the focus stays in sight.
     assert part(view, 'Node /worker_29').evaluate(IN_SIGHT)
     notebook.page.keyboard.press('-')
     # The wheel makes it larger where the pointer is, and not the page.
