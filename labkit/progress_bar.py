@@ -56,10 +56,12 @@ class ProgressBar:
         self._due = now + EVERY_SEC
         content = self._content(done, f'{self._label}: {words}')
         if self._handle is None:
-            from IPython.display import display
+            from IPython.display import DisplayHandle
 
-            self._handle = display(content, raw=True, display_id=True)  # type: ignore[no-untyped-call]
+            # The stop button may be pressed as soon as it is seen, and `close` must know it then.
+            self._handle = DisplayHandle()  # type: ignore[no-untyped-call]
             _shown = self
+            self._handle.display(content, raw=True)
         else:
             self._handle.update(content, raw=True)
 

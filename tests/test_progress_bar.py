@@ -48,6 +48,22 @@ def test_a_cell_that_waits_says_so(kernel: Any) -> None:
     kernel.wait_until_gone(waits, 'Waiting')
 
 
+def test_it_is_gone_though_the_stop_button_was_pressed_as_it_appeared(kernel: Any) -> None:
+    code = (
+        'from IPython.core import display_functions\n'
+        'publish = display_functions.publish_display_data\n'
+        'def publish_and_press(*args, **options):\n'
+        '    display_functions.publish_display_data = publish\n'
+        '    publish(*args, **options)\n'
+        '    raise KeyboardInterrupt\n'
+        'display_functions.publish_display_data = publish_and_press\n'
+    )
+    stopped = kernel.run(code + WAIT)
+    assert stopped.error.startswith('KeyboardInterrupt')
+    kernel.wait_for_output(stopped.msg_id, 'Waiting')
+    kernel.wait_until_gone(stopped.msg_id, 'Waiting')
+
+
 def test_a_limit_that_is_what_is_left_of_another_one_is_rounded(kernel: Any) -> None:
     kernel.run(WAIT.replace('lab.wait_until', '').replace('timeout_sec=None', ''))
     waits = kernel.start('lab.wait_until(lambda: ready, timeout_sec=49.94832)')

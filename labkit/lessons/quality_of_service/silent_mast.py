@@ -29,11 +29,9 @@ ELSEWHERE = Mistake(
     'silent-mast/elsewhere',
     'Nothing comes on {topic}, and none of your nodes publishes there.',
     f'Look for the first topic that is silent. {_COMPARE}',
-    # From behind: a node in front of the silent mast may be what that mast can hear.
-    change=[
-        ('in LINKS:', 'in reversed(LINKS):'),
-        ('fits == QoSCompatibility.ERROR', 'fits != QoSCompatibility.ERROR'),
-    ],
+    # The link behind, or the first one: a node right in front of the silent mast may be what that
+    # mast can hear.
+    change=[('return hears, says', 'return LINKS[LINKS.index((hears, says)) - 2]')],
 )
 NO_EAR = Mistake(
     'silent-mast/no-ear',
