@@ -22,6 +22,7 @@ from labkit.launching.model import (
 )
 from labkit.launching.values import SCALARS, coerce, is_value
 from labkit.rosgraph.packages import executable
+from labkit.rosgraph.parameter_files import is_meant, sections_in
 from labkit.rosgraph.yaml_loading import load_yaml
 
 __all__ = [
@@ -89,7 +90,7 @@ class ParameterFile:
 
             text = perform(context, template(text))
         keys = _keys(text, path)
-        if node and not any(_matches(key, node) for key in keys):
+        if node and not any(is_meant(key, node) for key in keys):
             named = ', '.join(keys) or 'no node'
             context.say(
                 'WARNING',
@@ -385,7 +386,8 @@ def _keys(text: str, path: str) -> list[str]:
         tree = load_yaml(text)
     except ValueError as error:
         raise LaunchError(f'{path} is no file of parameters: {error}.') from error
-    found = list(_names(tree)) if isinstance(tree, Mapping) else []
+    sections = sections_in(tree) if isinstance(tree, Mapping) else ()
+    found = [name for name, values in sections if values is not None]
     if not found:
         raise LaunchError(
             f'{path} is no file of parameters: it has no key ros__parameters below the name of '
@@ -394,24 +396,3 @@ def _keys(text: str, path: str) -> list[str]:
             'spaces before it, ros__parameters:',
         )
     return found
-
-
-def _names(tree: Mapping[Any, Any], start: str = '') -> Iterable[str]:
-    for key, value in tree.items():
-        if key == 'ros__parameters':
-            yield start
-        elif isinstance(value, Mapping):
-            yield from _names(value, f'{start}/{str(key).strip("/")}')
-
-
-def _matches(key: str, node: str) -> bool:
-    """Return whether a key of a file is about a node: `*` is one name, `**` any number."""
-    return _match(key.strip('/').split('/'), node.strip('/').split('/'))
-
-
-def _match(key: list[str], names: list[str]) -> bool:
-    if not key:
-        return not names
-    if key[0] == '**':
-        return any(_match(key[1:], names[count:]) for count in range(len(names) + 1))
-    return bool(names) and key[0] in ('*', names[0]) and _match(key[1:], names[1:])

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import yaml
@@ -12,6 +11,7 @@ from rclpy.parameter import Parameter as NodeParameter
 from rclpy.parameter import get_parameter_value, parameter_value_to_python
 
 from labkit.errors import LabError, did_you_mean, quoted
+from labkit.rosgraph.parameter_files import flat, is_meant, sections_in
 from labkit.rosgraph.yaml_loading import load_yaml_file
 
 __all__ = ['NOT_SET', 'parameters_in', 'python_value', 'to_yaml', 'type_word', 'value_from']
@@ -106,8 +106,8 @@ def _values_in(path: str, node_name: str, wildcard: bool) -> dict[str, Any]:
     # The wording of rclpy's own reader, which is not strict enough: it takes those for any node.
     if not nodes:
         raise LabError('Param file does not contain selected parameters')
-    sections = list(_sections(nodes))
-    found = [(name, tree) for name, tree in sections if re.fullmatch(_pattern(name), node_name)]
+    sections = list(sections_in(nodes))
+    found = [(name, tree) for name, tree in sections if is_meant(name, node_name)]
     if not wildcard:
         found = [(name, tree) for name, tree in found if '*' not in name]
         if all(name == '/**' for name, _ in sections):
@@ -125,35 +125,5 @@ def _values_in(path: str, node_name: str, wildcard: bool) -> dict[str, Any]:
     for name, tree in sorted(found, key=lambda section: '*' not in section[0]):
         if tree is None:
             raise LabError(f'YAML file is not a valid ROS parameter file for node {name}')
-        values.update(_flat(tree))
+        values.update(flat(tree))
     return values
-
-
-def _sections(tree: dict[Any, Any], start: str = '') -> Iterator[tuple[str, Any]]:
-    """Yield the full name of each node, which may have wildcards, and its parameters.
-
-    As in rcl, a slash at the beginning may be left out, and namespaces may be groups. The
-    parameters are None where there are none.
-    """
-    for key, value in tree.items():
-        name = f'{start}/{str(key).strip("/")}'
-        inner = value if isinstance(value, dict) else {}
-        is_group = bool(inner) and all(isinstance(each, dict) for each in inner.values())
-        if is_group and 'ros__parameters' not in inner:
-            yield from _sections(inner, name)
-        else:
-            yield name, inner.get('ros__parameters')
-
-
-def _pattern(name: str) -> str:
-    """Return a regular expression for a name in which * is one part, and ** any number."""
-    parts = {'**': r'(/\w+)*', '*': r'/\w+'}
-    return ''.join(parts.get(part, f'/{re.escape(part)}') for part in name.split('/')[1:])
-
-
-def _flat(tree: dict[str, Any], start: str = '') -> Iterator[tuple[str, Any]]:
-    for key, value in tree.items():
-        if isinstance(value, dict):
-            yield from _flat(value, f'{start}{key}.')
-        else:
-            yield f'{start}{key}', value

@@ -7,11 +7,12 @@ from collections.abc import Iterator, Sequence
 
 from labkit.errors import first_few, nearest, quoted
 from labkit.rosgraph.names import EVERY_NODE_HAS, EVERY_NODE_OFFERS
+from labkit.rosgraph.parameter_files import is_meant
 from labkit.silent.kinds import Fault, kind
 from labkit.silent.names import alike, nearest_of
 from labkit.silent.scene import OwnNode, ParameterFile, Rule, Scene
 
-__all__ = ['look_at_files', 'look_at_parameters', 'look_at_readers', 'look_at_rules', 'matches']
+__all__ = ['look_at_files', 'look_at_parameters', 'look_at_readers', 'look_at_rules']
 
 UNDECLARED = kind(
     'parameters.undeclared',
@@ -113,7 +114,7 @@ def _for_all(node: OwnNode) -> set[str]:
         name
         for file in files
         for key, values in file.sections
-        if '*' in key and matches(key, node.name)
+        if '*' in key and is_meant(key, node.name)
         for name in values
     }
 
@@ -129,7 +130,7 @@ def look_at_files(scene: Scene) -> Iterator[Fault]:
 
 def _file(file: ParameterFile, nodes: Sequence[OwnNode]) -> Iterator[Fault]:
     keys = [key for key, _ in file.sections]
-    if keys and not any(matches(key, node.name) for key in keys for node in nodes):
+    if keys and not any(is_meant(key, node.name) for key in keys for node in nodes):
         pairs = [(key, node) for key in keys for node in nodes]
         last = [pair for pair in pairs if _last(pair[0]) == _last(pair[1].name)]
         near = last or [pair for pair in pairs if alike(_last(pair[0]), _last(pair[1].name))]
@@ -146,7 +147,7 @@ def _file(file: ParameterFile, nodes: Sequence[OwnNode]) -> Iterator[Fault]:
     for node in nodes:
         given: dict[str, tuple[str, object]] = {}
         for key, values in file.sections:
-            if not matches(key, node.name):
+            if not is_meant(key, node.name):
                 continue
             for name, value in values.items():
                 before = given.get(name)
@@ -159,15 +160,6 @@ def _file(file: ParameterFile, nodes: Sequence[OwnNode]) -> Iterator[Fault]:
                         f'under {key}, to {value!r}: that wins.',
                     )
                 given[name] = (key, value)
-
-
-def matches(key: str, node: str) -> bool:
-    """Return whether a name in a parameter file means a node: `*` is one part, `**` any."""
-    pattern = ''.join(
-        {'/**': '(/[^/]+)*', '/*': '/[^/]+'}.get(part, re.escape(part))
-        for part in re.findall('/[^/]*', key if key.startswith('/') else f'/{key}')
-    )
-    return re.fullmatch(pattern, node) is not None
 
 
 def look_at_rules(scene: Scene) -> Iterator[Fault]:

@@ -24,6 +24,7 @@ from labkit.background.nodes import callback_name, existing_nodes, full_name, ma
 from labkit.background.runtime import runtime
 from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.names import is_hidden
+from labkit.rosgraph.parameter_files import flat, sections_in
 from labkit.rosgraph.snapshot import Graph, is_whole, read_graph
 from labkit.rosgraph.yaml_loading import load_yaml_file
 from labkit.settings import LATE_SEC
@@ -352,22 +353,7 @@ def _read_file(path: str) -> ParameterFile | None:
         tree = load_yaml_file(path)
     except (OSError, ValueError):
         return None
-    return ParameterFile(path, tuple(_sections(tree, ''))) if isinstance(tree, dict) else None
-
-
-def _sections(tree: Mapping[Any, Any], start: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    for key, value in tree.items():
-        name = f'{start}/{str(key).strip("/")}'
-        if isinstance(value, dict):
-            inner = value.get('ros__parameters')
-            if isinstance(inner, dict):
-                yield name, dict(_flat(inner))
-            yield from _sections({k: v for k, v in value.items() if k != 'ros__parameters'}, name)
-
-
-def _flat(tree: Mapping[Any, Any], start: str = '') -> Iterator[tuple[str, Any]]:
-    for key, value in tree.items():
-        if isinstance(value, dict):
-            yield from _flat(value, f'{start}{key}.')
-        else:
-            yield f'{start}{key}', value
+    if not isinstance(tree, dict):
+        return None
+    sections = [(key, values) for key, values in sections_in(tree) if isinstance(values, dict)]
+    return ParameterFile(path, tuple((key, dict(flat(values))) for key, values in sections))

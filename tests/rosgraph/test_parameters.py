@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
+import rclpy
+from rclpy.node import Node
 
 from labkit.errors import LabError
+from labkit.rosgraph.parameter_files import flat, is_meant, sections_in
 from labkit.rosgraph.parameters import (
     parameters_in,
     python_value,
@@ -12,6 +17,7 @@ from labkit.rosgraph.parameters import (
     type_word,
     value_from,
 )
+from labkit.rosgraph.yaml_loading import load_yaml
 
 
 @pytest.mark.parametrize(
@@ -114,3 +120,39 @@ def test_what_is_no_file_of_parameters(tmp_path, text, sentence):
         parameters_in(str(path), '/lamp')
     with pytest.raises(LabError, match='can not be read'):
         parameters_in(str(tmp_path), '/lamp')
+
+
+@pytest.mark.parametrize(
+    'text',
+    [
+        'cruiser: {ros__parameters: {a: 1}}',
+        '/cruiser: {ros__parameters: {a: 1}}',
+        'robot1: {cruiser: {ros__parameters: {a: 1, b: {c: 2}}}}',
+        'robot1/cruiser: {ros__parameters: {a: 1}}',
+        'robot1: {cruiser: {ros__parameters: {a: 1}}, other: {}}',
+        'robot1: {"**": {ros__parameters: {a: 1}}}',
+        '"**": {cruiser: {ros__parameters: {a: 1}}}',
+        '/**: {ros__parameters: {a: 1}}',
+        '/**/cruiser: {ros__parameters: {a: 1}}',
+        '/*/cruiser: {ros__parameters: {a: 1}}',
+        '/*: {ros__parameters: {a: 1}}',
+        'cruiser2: {ros__parameters: {a: 1}}',
+    ],
+)
+def test_a_file_means_the_same_nodes_as_to_ros_itself(text: str, tmp_path: Path) -> None:
+    path = tmp_path / 'file.yaml'
+    path.write_text(text)
+    context = rclpy.Context()
+    rclpy.init(args=['--ros-args', '--params-file', str(path)], context=context)
+    for name, namespace in (('cruiser', ''), ('cruiser', '/robot1'), ('cruiser', '/a/b')):
+        node = Node(name, namespace=namespace, context=context, start_parameter_services=False)
+        given = {key: each.value for key, each in node._parameter_overrides.items()}
+        node.destroy_node()
+        ours = {
+            key: value
+            for meant, values in sections_in(load_yaml(text))
+            if values is not None and is_meant(meant, f'{namespace}/{name}')
+            for key, value in flat(values)
+        }
+        assert ours == given
+    rclpy.shutdown(context=context)

@@ -20,7 +20,6 @@ from labkit.silent.kinds import Fault
 from labkit.silent.life import look_at_spinning
 from labkit.silent.messages import NO_STAMP, look_at_messages
 from labkit.silent.names import alike, look_at_names
-from labkit.silent.parameters import matches
 from labkit.silent.reading import files_in
 from labkit.silent.rereading import reads_only_in_init
 from labkit.silent.scene import OwnNode, Publisher, Scene, Subscription, Timer
@@ -218,20 +217,3 @@ def test_a_graph_at_which_a_look_has_failed_is_looked_at_again(
 )
 def test_which_names_are_alike(one: str, two: str, how: str) -> None:
     assert (alike(one, two), alike(two, one)) == (how, how)
-
-
-@pytest.mark.parametrize(
-    ('key', 'node', 'meant'),
-    [
-        ('cruiser', '/cruiser', True),
-        ('/cruiser', '/cruiser', True),
-        ('/**', '/robot1/cruiser', True),
-        ('/**/cruiser', '/cruiser', True),
-        ('/*/cruiser', '/robot1/cruiser', True),
-        ('/*/cruiser', '/cruiser', False),
-        ('cruiser', '/robot1/cruiser', False),
-        ('cruiser', '/cruiser2', False),
-    ],
-)
-def test_which_node_a_file_means(key: str, node: str, meant: bool) -> None:
-    assert matches(key, node) is meant
