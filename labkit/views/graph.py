@@ -78,7 +78,7 @@ def graph(
     In JupyterLab the picture is live: it follows changes, dots show passing messages, and each
     part tells more when pointed at, or reached with Tab and the arrow keys, a fault included.
     It is a screen high at most; buttons, the keys + - 0, and the mouse wheel with Ctrl make it
-    larger or smaller, and it can be dragged.
+    larger or smaller, and it can be dragged. A namespace of several nodes can be folded into one.
     Messages of this notebook are counted as they pass; those of other processes are subscribed to
     by a hidden node, while the picture is visible and no cell is running.
 

@@ -54,18 +54,27 @@ def way_of(line: Line) -> Way | None:
     return (line.kind, line.node, line.other) if line.kind in ('publishes', 'hears') else None
 
 
-def parts(data: Graph, picture: Picture) -> dict[str, list[str]]:
-    """Return the lines of details for each part of a picture, its name first."""
+def parts(data: Graph, picture: Picture, whole: Graph) -> dict[str, list[str]]:
+    """Return the lines of details for each part of a picture, its name first.
+
+    Args:
+        data: What is drawn.
+        picture: The drawing.
+        whole: The graph without a namespace folded.
+    """
     topics = {topic.name: topic for topic in data.topics}
     found = {
-        f'b{number}': _of_shape(shape, data, topics) for number, shape in enumerate(picture.shapes)
+        f'b{number}': _of_shape(shape, data, topics, whole)
+        for number, shape in enumerate(picture.shapes)
     }
     for number, line in enumerate(picture.lines):
         found[f'a{number}'] = _of_line(line, topics)
     return found
 
 
-def _of_shape(shape: Shape, data: Graph, topics: Mapping[str, GraphTopic]) -> list[str]:
+def _of_shape(
+    shape: Shape, data: Graph, topics: Mapping[str, GraphTopic], whole: Graph
+) -> list[str]:
     if shape.kind == 'topic':
         topic = topics[shape.name]
         return [
@@ -76,16 +85,22 @@ def _of_shape(shape: Shape, data: Graph, topics: Mapping[str, GraphTopic]) -> li
             *_faults(topic.name),
         ]
     if shape.kind == 'node':
-        lines = [f'Node {shape.name}', *([] if shape.own else ['In another process'])]
+        lines = [f'Node {shape.name}']
+        names = [shape.name]
+        if shape.name.endswith('/*'):
+            space = shape.name.removesuffix('*')
+            names = [node.name for node in whole.nodes if node.name.startswith(space)]
+            lines = [f'Namespace {space.rstrip("/")}', f'Nodes: {", ".join(names)}']
+        lines += [] if shape.own else ['In another process']
         for words, attribute in (('Publishes', 'publishers'), ('Subscribes to', 'subscriptions')):
-            names = [
+            found = [
                 topic.name
                 for topic in data.topics
                 if shape.name in {end.node for end in getattr(topic, attribute)}
             ]
-            lines += [f'{words}: {", ".join(names)}'] if names else []
+            lines += [f'{words}: {", ".join(found)}'] if found else []
         lines = lines if len(lines) > 1 else [*lines, 'It neither publishes nor subscribes']
-        return [*lines, *_faults(shape.name)]
+        return [*lines, *dict.fromkeys(line for name in names for line in _faults(name))]
     return [f'{shape.kind.capitalize()} {shape.name}', *(f'Type: {line}' for line in shape.small)]
 
 

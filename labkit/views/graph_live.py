@@ -6,6 +6,7 @@ It reads the graph and counts messages only while the page reports that the pict
 from __future__ import annotations
 
 import time
+from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
@@ -15,6 +16,7 @@ from labkit.silent.kinds import Fault
 from labkit.silent.watch import watch
 from labkit.views.graph import bundle, names_of, not_drawn
 from labkit.views.graph_flow import Flow, in_hertz, parts, way_of
+from labkit.views.graph_fold import fold, folded, spaces_of
 from labkit.views.graph_picture import WIDTH, Picture
 from labkit.views.graph_words import description
 from labkit.views.live import helper
@@ -28,6 +30,10 @@ NARROWEST = 340.0
 RATES_SEC = 1.0
 
 
+# Name of the switch of a namespace, with that behind it.
+_FOLD = 'fold '
+
+
 class LiveGraph(LivePage):
     """The computation graph, live, to be shown in a cell; see `labkit.views.graph.graph`."""
 
@@ -38,6 +44,8 @@ class LiveGraph(LivePage):
     def __init__(self, *, services: bool, actions: bool, hidden: bool) -> None:
         self._hidden = hidden
         self._shown = {'services': services, 'actions': actions}
+        # Namespaces that are one node each.
+        self._folded: set[str] = set()
         self._width = WIDTH
         self._visible = False
         # Whether the page shows the graph as it was when the cell was run.
@@ -92,6 +100,11 @@ class LiveGraph(LivePage):
             self._width = min(max(float(content['width']), NARROWEST), WIDTH)
         for name in self._shown:
             self._shown[name] = bool(content.get(name, self._shown[name]))
+        for space in spaces_of(self._now):
+            if content.get(_FOLD + space, space in self._folded):
+                self._folded.add(space)
+            else:
+                self._folded.discard(space)
         self._then = bool(content.get('then', self._then))
         self._visible = bool(content.get('visible', self._visible))
         if self._visible:
@@ -111,17 +124,22 @@ class LiveGraph(LivePage):
             if self._visible:
                 self._traffic.listen_to_others(self._now.topics)
         whole = self._first if self._then else self._now
-        chosen = self._chosen(whole)
+        spaces = spaces_of(whole)
+        self._folded.intersection_update(spaces)
+        chosen = fold(self._chosen(whole), self._folded)
         state: dict[str, Any] = {
             'then': self._then,
             'changed': self._chosen(self._first) != self._chosen(self._now),
             # Offer no switch for what does not exist.
-            'switches': {name: on for name, on in self._shown.items() if getattr(whole, name)},
+            'switches': {
+                **{name: on for name, on in self._shown.items() if getattr(whole, name)},
+                **{_FOLD + space: space in self._folded for space in spaces},
+            },
         }
         if everything or chosen != self._drawn or watch.seen != self._told:
             self._told = watch.seen
             self._drawn = chosen
-            self._picture = Picture(chosen, self._width, names_of(not_drawn(self._told)))
+            self._picture = Picture(chosen, self._width, self._wrong())
             state |= self._drawing()
         passed = self._passed(now)
         if now - self._rated_at >= RATES_SEC or everything:
@@ -130,11 +148,17 @@ class LiveGraph(LivePage):
         changes = self._changes(state)
         return ({**changes, 'passed': passed} if passed else changes), []
 
+    def _wrong(self) -> set[str]:
+        """Return the nodes and topics that get a sign, and those that have one folded inside."""
+        drawn = names_of(not_drawn(self._told))
+        inside = {folded(name, self._folded) for name in names_of(self._told)}
+        return drawn | inside - names_of(self._told)
+
     def _drawing(self) -> dict[str, Any]:
         told = [description(self._drawn), *map(str, self._told)]
         return {
             'svg': self._picture.svg() if self._drawn.nodes else '',
-            'parts': parts(self._drawn, self._picture),
+            'parts': parts(self._drawn, self._picture, self._first if self._then else self._now),
             'told': ' '.join(told) if self._drawn.nodes else '',
         }
 
@@ -142,7 +166,9 @@ class LiveGraph(LivePage):
         """Return the number of messages along each arrow since the last call."""
         if not self._visible:
             return {}
-        counts = self._traffic.passed(self._now.topics)
+        counts: Counter[Way] = Counter()
+        for (kind, node, topic), count in self._traffic.passed(self._now.topics).items():
+            counts[kind, folded(node, self._folded), topic] += count
         for way, count in counts.items():
             self._flows.setdefault(way, Flow()).add(now, count)
         for way in self._flows.keys() - {way for _, way in self._ways()}:

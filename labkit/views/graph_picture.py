@@ -171,7 +171,8 @@ fill="#ffffff" stroke="#9aa5b1"/>
 def _of_node(node: GraphNode) -> Shape:
     small = [] if node.own else ['another process']
     if node.count > 1:
-        small += [f'{node.count} nodes of this name']
+        is_folded = node.name.endswith('/*')
+        small += [f'{node.count} nodes' if is_folded else f'{node.count} nodes of this name']
     return _shape('node', node.name, (), small=small, own=node.own)
 
 

@@ -58,6 +58,14 @@ function limits(lines) {
   return [Math.max(low - room, -HUGE), Math.min(high + room, HUGE)];
 }
 
+// Lines between two times, and what they come from and lead to.
+function between(lines, begin, end) {
+  return lines.map((line) => {
+    const [first, last] = [Math.max(0, indexAt(line.times, begin)), indexAt(line.times, end) + 2];
+    return { ...line, times: line.times.slice(first, last), values: line.values.slice(first, last) };
+  });
+}
+
 class Sheet {
   constructor(canvas) {
     this.canvas = canvas;
@@ -111,6 +119,16 @@ class Sheet {
     context.moveTo(this.px(time), TOP);
     context.lineTo(this.px(time), this.height - BOTTOM);
     context.stroke();
+  }
+
+  // Mark what is between two places, from 0 to 1.
+  mark(one, other) {
+    const width = this.width - LEFT - RIGHT;
+    this.context.fillStyle = this.colour('focus');
+    this.context.globalAlpha = 0.2;
+    this.context.fillRect(LEFT + one * width, TOP, (other - one) * width,
+      this.height - TOP - BOTTOM);
+    this.context.globalAlpha = 1;
   }
 
   // Where a pixel of the canvas is between the two times, from 0 to 1.

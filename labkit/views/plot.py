@@ -199,8 +199,9 @@ def plot(*fields: str, seconds: float = 10.0, count: int = 10) -> Plot:
 
     A field is the topic, a dot and the path in the message: `'/odom.pose.pose.position.x'`, or
     `'/scan.ranges[0]'`. In a notebook the plot is live, and subscribes while it is visible. A
-    cursor at the pointer tells the values at its time; while the plot is paused, keys move it too.
-    Elsewhere it is a picture and a text of the next messages.
+    cursor at the pointer tells the values at its time; while the plot is paused, keys move it too,
+    and what is shown can be saved as CSV. Drag sideways to pause and zoom in. Elsewhere it is a
+    picture and a text of the next messages.
 
     Args:
         fields: Fields to plot. The topics need not exist yet.

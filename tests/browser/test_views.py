@@ -280,6 +280,56 @@ def test_cursor_tells_the_values_at_its_time(stage):
     expect(last).to_have_text('Last')
 
 
+def test_span_of_a_plot_is_zoomed_into_and_saved(stage, tmp_path):
+    stage.run('slow', 'minute')
+    plot = stage.view('minute')
+    expect(plot.locator('tbody th')).to_have_text(' /odds.data', use_inner_text=True)
+    stage.run('two-numbers')
+    plot = stage.view('minute')
+    expect(plot.locator('tbody td').first).to_have_text('-2')
+    slider, out = plot.get_by_role('slider'), plot.get_by_role('button', name='Zoom out')
+
+    def time_at(key: str) -> float:
+        slider.focus()
+        # Where it is at the end already, its key changes nothing.
+        for each in ('ArrowRight', 'ArrowLeft', key):
+            stage.page.keyboard.press(each)
+        part = 0 if key == 'Home' else 1
+        stage.wait(f's => Number(s.value) === {part}', slider)
+        frames = int(canvas.get_attribute('data-frames'))
+        stage.wait(f'c => Number(c.dataset.frames) > {frames + 2}', canvas)
+        head = plot.locator('thead th').nth(1).inner_text()
+        return float(head.removeprefix('At ').removesuffix(' s'))
+
+    def seconds_shown() -> float:
+        return time_at('End') - time_at('Home')
+
+    canvas = plot.get_by_role('img')
+    canvas.scroll_into_view_if_needed()
+    box = canvas.bounding_box()
+    middle = box['y'] + box['height'] / 2
+    stage.page.mouse.move(box['x'] + box['width'] * 0.4, middle)
+    stage.page.mouse.down()
+    stage.page.mouse.move(box['x'] + box['width'] * 0.7, middle, steps=5)
+    stage.page.mouse.up()
+    # The picture stands still then.
+    expect(plot.get_by_role('button', name='Resume')).to_be_visible()
+    part = seconds_shown()
+    assert 15 < part < 25
+    plot.get_by_role('button', name='Zoom in').click()
+    assert seconds_shown() == pytest.approx(part / 2, abs=0.02)
+    while out.is_enabled():
+        out.click()
+    assert seconds_shown() == pytest.approx(60, abs=0.02)
+    with stage.page.expect_download() as download:
+        plot.get_by_role('button', name='Save as CSV').click()
+    saved = tmp_path / download.value.suggested_filename
+    download.value.save_as(saved)
+    head, *rows = saved.read_text().splitlines()
+    assert (saved.name, head) == ('plot.csv', '"time [s]","/odds.data"')
+    assert [row.partition(',')[2] for row in rows] == ['-1', '-2']
+
+
 def test_cleared_output_leaves_no_subscription(stage):
     stage.run('talker', 'monitor', 'one')
     stage.view('monitor')

@@ -7,11 +7,12 @@ from xml.etree import ElementTree
 
 import pytest
 
-from labkit.rosgraph.snapshot import Graph
+from labkit.rosgraph.snapshot import Graph, GraphService
 from labkit.views.graph import GraphView
+from labkit.views.graph_fold import fold, spaces_of
 from labkit.views.graph_picture import Picture
 from labkit.views.graph_words import description, in_lines
-from tests.views.graphs import ALL, APART, EYES, INT16, OFFERS, STRING, graph, topic
+from tests.views.graphs import ALL, APART, EYES, INT16, OFFERS, ROBOTS, STRING, graph, topic
 
 SVG = '{http://www.w3.org/2000/svg}'
 NODES = """
@@ -55,6 +56,44 @@ def test_what_a_fault_is_told_about_has_a_sign() -> None:
     assert [shape.name for shape in drawn.shapes if shape.wrong] == names
     assert drawn.svg().count('class="sign"') == 2
     assert 'class="sign"' not in Picture(EYES).svg()
+
+
+# -- namespaces ---------------------------------------------------------------------------------
+
+
+def test_a_folded_namespace_is_one_node() -> None:
+    assert spaces_of(ROBOTS) == ['/robot1', '/robot1/arm', '/robot2']
+    one = fold(ROBOTS, {'/robot1'})
+    names = ['/boss', '/robot1/*', '/robot2/pilot', '/robot2/turtlebot', '/robot3/turtlebot']
+    assert [node.name for node in one.nodes] == names
+    assert [node.count for node in one.nodes] == [1, 4, 1, 1, 1]
+    # What only its own nodes use is inside: /robot1/cmd_vel, and that of the arm.
+    assert [each.name for each in one.topics] == [
+        '/robot1/odom',
+        '/robot1/arm/odom',
+        '/robot2/cmd_vel',
+        '/robot2/odom',
+        '/go',
+    ]
+    assert ('hears', '/robot1/*', '/go') in lines(one)
+    assert '4 nodes' in words(parsed(one))
+    # The outer one counts.
+    assert fold(ROBOTS, {'/robot1', '/robot1/arm'}) == one
+    assert fold(ROBOTS, set()) == ROBOTS
+
+
+def test_a_namespace_that_holds_all_or_one_is_not_folded() -> None:
+    assert spaces_of(graph(alone=['/a/one', '/a/two'])) == []
+    assert spaces_of(graph(alone=['/a/one', '/b/one', '/two'])) == []
+
+
+def test_services_of_a_folded_namespace_stay_where_others_call_them() -> None:
+    offers = [
+        GraphService('/a/inside', ('T',), ('/a/one',), ('/a/two',)),
+        GraphService('/a/called', ('T',), ('/a/one',), ('/b', '/a/two'), ('/b',)),
+    ]
+    found = fold(graph(services=offers), {'/a'}).services
+    assert found == (GraphService('/a/called', ('T',), ('/a/*',), ('/b', '/a/*'), ('/b',)),)
 
 
 # -- real nodes ---------------------------------------------------------------------------------

@@ -142,6 +142,31 @@ def test_services_and_actions_are_offered_where_there_are_any(run):
     assert 'Service /fire' in run('print(page.parts())')
 
 
+def test_a_namespace_is_folded_and_messages_still_pass(run):
+    run('class Robot(Node):\n    def __init__(self, name): super().__init__(name, namespace="a")')
+    run('one, two = lab.spin(Robot("one")), lab.spin(Robot("two"))\nlab.spin(Listener())')
+    run('say = [node.create_publisher(String, "/chatter", 10) for node in (one, two)]')
+    run('page = Page(lab.graph())\npage.wait(lambda known: known["switches"])')
+    assert run('print(page.known["switches"])') == "{'fold /a': False}"
+    run('page.say(**{"fold /a": True, "fold /b": True})')
+    told = run('print(*sorted(page.known["parts"].values()), page.known["switches"], sep="\\n")')
+    assert told.splitlines() == [
+        "['/a/* publishes on /chatter', 'std_msgs/msg/String, reliable, volatile']",
+        "['/listener subscribes to /chatter', 'std_msgs/msg/String, reliable, volatile']",
+        "['Namespace /a', 'Nodes: /a/one, /a/two', 'Publishes: /chatter']",
+        "['Node /listener', 'Subscribes to: /chatter']",
+        "['Topic /chatter', 'Type: std_msgs/msg/String', 'Published by: /a/*', "
+        "'Subscribed by: /listener']",
+        "{'fold /a': True}",
+    ]
+    run('[each.publish(String()) for each in say]')
+    both = '{"/a/* publishes on /chatter": 2, "/listener subscribes to /chatter": 2}'
+    run(f'lab.wait_until(lambda: page.passed == {both}, timeout_sec=20)')
+    # With one node less there is nothing to fold.
+    run('lab.remove("/a/two")\npage.wait(lambda known: not known["switches"])')
+    assert run('print("/a/one" in page.known["svg"])') == 'True'
+
+
 def test_a_narrow_page_gets_a_narrow_picture(run):
     run('lab.spin(Talker())\nlab.spin(Listener())\npage = Page(lab.graph())')
     width = 'import re\nprint(re.search(r\'width="(\\d+)"\', page.known["svg"])[1])'
