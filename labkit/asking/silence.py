@@ -10,7 +10,7 @@ from collections.abc import Collection
 from typing import TYPE_CHECKING, Any
 
 from labkit.asking.traffic import sent_by
-from labkit.background.nodes import existing_nodes, full_name
+from labkit.background.nodes import existing_nodes, full_name, half_made
 from labkit.background.runtime import runtime
 from labkit.background.wait import wait_for
 from labkit.rosgraph.endpoints import publishers
@@ -75,6 +75,8 @@ def _unspun(names: Collection[str]) -> str:
     for node in existing_nodes():
         name = full_name(node)
         idle = runtime.entry_of(node) is None and node.executor is None
+        if name in names and node in half_made:
+            return f'{name} is half made: an error has ended its __init__.'
         if name in names and idle and _has_callbacks(node):
             return f'{name} is not spun: lab.spin(...) does that.'
     return ''

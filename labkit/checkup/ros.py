@@ -236,21 +236,31 @@ def _states(entries: list[NodeEntry]) -> list[str]:
 
 
 def _unspun(runtime: Runtime) -> list[tuple[str, str]]:
-    names = [
-        node.get_fully_qualified_name()
+    from labkit.background.nodes import full_name, half_made
+
+    nodes = [
+        node
         for node in runtime.unspun_nodes()
         # A node on another executor is spun by the owner of that one.
         if node.executor is None and not is_hidden(node.get_name())
     ]
-    counts = Counter(names)
-    return [
+    found = [
         (
-            f'{name} was made{f" {count} times" if count > 1 else ""}, but nobody spins it: its '
-            'callbacks are never called.',
-            'Start it with lab.spin(node), or end it with lab.remove(node).',
+            f'{name} is half made: an error has ended its __init__.',
+            'Mend what the error of its cell says, and run the cell again.',
         )
-        for name, count in sorted(counts.items())
+        for name in sorted({full_name(node) for node in nodes if node in half_made})
     ]
+    counts = Counter(full_name(node) for node in nodes if node not in half_made)
+    for name, count in sorted(counts.items()):
+        made = f'{name} was made{f" {count} times" if count > 1 else ""}'
+        found.append(
+            (
+                f'{made}, but nobody spins it: its callbacks are never called.',
+                'Start it with lab.spin(node), or end it with lab.remove(node).',
+            )
+        )
+    return found
 
 
 def _left_behind(entries: list[NodeEntry]) -> list[tuple[str, str]]:

@@ -20,7 +20,7 @@ from rclpy.node import Node
 from labkit.asking.silence import offers_service
 from labkit.asking.traffic import Sent, sent_by
 from labkit.background import compat
-from labkit.background.nodes import callback_name, existing_nodes, full_name, made
+from labkit.background.nodes import callback_name, existing_nodes, full_name, half_made, made
 from labkit.background.runtime import runtime
 from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.names import is_hidden
@@ -224,7 +224,8 @@ def _sent(nodes: Sequence[Node]) -> dict[str, list[Sent]]:
 
 def _is_learners(node: Node) -> bool:
     name = full_name(node)
-    return bool(name) and not is_hidden(name)
+    # What has ended the __init__ of one that is half made, its cell has told.
+    return bool(name) and not is_hidden(name) and node not in half_made
 
 
 def _identities(node: Node) -> tuple[int, ...]:

@@ -139,7 +139,7 @@ class Monitor(LivePage):
 
     def _update(self, everything: bool) -> Update:
         now, feed = time.monotonic(), self._feed
-        known = [*_standing(self._timed_out), *_faults(self.topic)]
+        known = [*_standing(self._timed_out), *_faults(self.topic, hears=bool(feed.count))]
         rate = feed.rate()
         while now - self._sampled_at >= SAMPLE_SEC:
             self._sampled_at += SAMPLE_SEC
@@ -208,11 +208,16 @@ def _range(rates: Collection[float]) -> str:
     return ' to '.join(dict.fromkeys(ends))
 
 
-def _faults(topic: str) -> list[str]:
+def _faults(topic: str, *, hears: bool) -> list[str]:
+    """Return what is told about a topic.
+
+    Where two ends do not match, `Feed.silence` tells it of the view's own. With one that hears
+    something, it is told of the others.
+    """
     from labkit.silent.watch import seen_about
 
-    # Why nothing arrives because two ends do not match is told already.
-    found = [one for one in seen_about(topic) if one.kind.id.startswith(('messages.', 'time.'))]
+    groups = ('messages.', 'time.', *(('types.', 'qos.') if hears else ()))
+    found = [one for one in seen_about(topic) if one.kind.id.startswith(groups)]
     return [f'{fault} {fault.advice}' for fault in found]
 
 

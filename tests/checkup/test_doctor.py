@@ -310,6 +310,18 @@ def test_error_in_a_callback_until_it_is_mended(kernel) -> None:
     assert look(kernel).exit_code == 0
 
 
+def test_node_whose_init_has_failed_is_half_made(kernel) -> None:
+    kernel.run(SETUP)
+    failed = kernel.run(TALKER.replace('self.create_timer', 'self.creat_timer'))
+    assert failed.error.startswith('AttributeError')
+    seen = look(kernel)
+    assert set(seen.red) == {'Nodes'}
+    assert '/talker is half made: an error has ended its __init__.' in seen.red['Nodes']
+    assert 'nobody spins it' not in seen.text
+    kernel.run(TALKER)
+    assert look(kernel).exit_code == 0
+
+
 def test_no_fault_hides_another_one_of_its_line(kernel) -> None:
     kernel.run(SETUP + TALKER.replace('self.count += 1', 'self.count += "one"'))
     kernel.run(

@@ -157,6 +157,17 @@ def test_qos_that_does_not_match_is_told(run):
     assert run('print(page.known["count"])') == '0'
 
 
+def test_ends_that_do_not_match_are_told_though_the_view_hears(run):
+    run(
+        'qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)\n'
+        'talker = lab.spin(Talker(qos=qos))\nlistener = lab.spin(Node("listener"))\n'
+        'listener.create_subscription(Int16, "odds", print, 10)\n'
+        'page = Page(lab.monitor("/odds"))\n'
+        'page.wait(lambda known: known.get("count") and "/listener" in known["note"])'
+    )
+    run('listener.destroy_node()\npage.wait(lambda known: not known["note"])')
+
+
 @pytest.mark.slow('waits in real time')
 def test_publisher_that_says_nothing(run):
     run('talker = lab.spin(Talker(period=None))\npage = Page(lab.monitor("/odds"))')
