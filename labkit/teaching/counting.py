@@ -21,6 +21,8 @@ STUCK = timedelta(minutes=10)
 CLOCKS = timedelta(minutes=2)
 # So many exercises in so short a time are passed by a program.
 MANY, SHORT = 4, timedelta(seconds=10)
+# How far back it is shown when a learner was at work.
+STRIP = timedelta(hours=2)
 MAX_FAILS = 5
 _RAISED = 'The code raises an error.'
 _NO_WORDS = 'It is not what the task asks for.'
@@ -117,8 +119,21 @@ def _row(
         last=entry.last,
         stuck_min=None if stuck is None else _minutes(now - stuck),
         quiet_min=_minutes(now - sheet.written_at),
+        since_min=None if sheet.since is None else _minutes(now - sheet.since),
+        marks=_marks(sheet, now),
         remark=', '.join([*remarks(sheet, now), *unsure]),
     )
+
+
+def _marks(sheet: Sheet, now: datetime) -> list[tuple[int, bool]]:
+    """Return when something was tried or passed: minutes ago and whether passed, oldest first."""
+    found = {
+        (_minutes(now - time), time == entry.passed_at)
+        for entry in sheet.entries.values()
+        for time in (entry.first_try, entry.last_try, entry.passed_at)
+        if time is not None and -CLOCKS <= now - time <= STRIP
+    }
+    return sorted(found, reverse=True)
 
 
 def _order(row: LearnerRow) -> tuple[float, str]:

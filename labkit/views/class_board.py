@@ -55,6 +55,9 @@ class LearnerRow:
         last: Outcome of that check.
         stuck_min: Time since the learner got stuck, min; None if not stuck.
         quiet_min: Time since the last sign of life, min; None if unknown.
+        since_min: Time since the lesson was opened, min; None if unknown.
+        marks: When something was tried or passed in the last two hours: minutes ago, and whether
+            it was passed; oldest first.
         remark: Why the data is implausible or unreadable; `''` if it is fine.
     """
 
@@ -65,6 +68,8 @@ class LearnerRow:
     last: str = ''
     stuck_min: int | None = None
     quiet_min: int | None = None
+    since_min: int | None = None
+    marks: Sequence[tuple[int, bool]] = ()
     remark: str = ''
 
 

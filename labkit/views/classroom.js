@@ -1,8 +1,10 @@
 // A class: who is where, what is passed, what fails most, and for the teacher alone, who is who.
 
 const FIGURES = ['sharing', 'at work', 'stuck'];
-const HEADS = ['Learner', 'Lesson', 'Passed', 'Last check', 'Stuck', 'Last sign', 'Remark'];
+const HEADS = ['Learner', 'Lesson', 'Passed', 'Last check', 'Stuck', 'Last sign', 'Last two hours', 'Remark'];
 const MOST_DOTS = 40;
+const STRIP_MIN = 120; // see counting.py
+const [STRIP_WIDTH, STRIP_HEIGHT] = [180, 16];
 
 function titled(title, ...children) {
   return element('section', {}, element('h4', { textContent: title }), ...children);
@@ -55,13 +57,34 @@ function minutes(count) {
   return count < 2880 ? `${Math.floor(count / 60)} h` : `${Math.floor(count / 1440)} days`;
 }
 
-function learnerRow([name, lesson, passed, exercise, last, stuck, quiet, remark]) {
+// When somebody was at work: a line while the lesson was open, up to the last sign; a stroke for a
+// try, a dot for a pass. Now is at the right.
+function strip(since, quiet, marks) {
+  const x = (ago) => STRIP_WIDTH - 4 - ((STRIP_WIDTH - 8) * Math.min(ago, STRIP_MIN)) / STRIP_MIN;
+  const [middle, radius] = [STRIP_HEIGHT / 2, 4];
+  const passed = marks.filter(([, isPassed]) => isPassed).length;
+  const svg = svgElement('svg', {
+    width: STRIP_WIDTH, height: STRIP_HEIGHT, role: 'img', class: 'labkit-classroom-strip',
+    'aria-label': `${passed} passed, ${marks.length - passed} tried`,
+  });
+  svg.append(svgElement('path', { class: 'ground', d: `M4 ${middle}H${STRIP_WIDTH - 4}` }));
+  if (since !== null && quiet !== null && quiet < STRIP_MIN) {
+    svg.append(svgElement('path', { class: 'open', d: `M${x(since)} ${middle}H${x(quiet) + 0.5}` }));
+  }
+  marks.forEach(([ago, isPassed]) => svg.append(isPassed
+    ? svgElement('circle', { class: 'passed', cx: x(ago), cy: middle, r: radius })
+    : svgElement('path', { class: 'tried', d: `M${x(ago)} 2V${STRIP_HEIGHT - 2}` })));
+  return element('td', {}, svg);
+}
+
+function learnerRow([name, lesson, passed, exercise, last, stuck, quiet, since, marks, remark]) {
   const row = element('tr', {},
     element('th', { textContent: name, scope: 'row', dir: 'auto' }),
     cell(lesson), cell(passed, 'labkit-classroom-figure'),
     cell([exercise, last].filter(Boolean).join(' ')),
     cell(minutes(stuck), 'labkit-classroom-figure labkit-classroom-stuck'),
     cell(quiet === null ? '' : `${minutes(quiet)} ago`, 'labkit-classroom-figure'),
+    strip(since, quiet, marks),
     cell(remark, 'labkit-classroom-remark'));
   row.classList.toggle('labkit-classroom-warned', stuck !== null);
   return row;

@@ -92,6 +92,8 @@ class Classroom(LivePage):
                 row.last,
                 row.stuck_min,
                 row.quiet_min,
+                row.since_min,
+                list(row.marks),
                 row.remark,
             ]
             for row in board.learners

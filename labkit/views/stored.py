@@ -66,7 +66,8 @@ class Stored:
     def _bundle(self) -> dict[str, str]:
         assert self._shown is not None
         text = self._shown['text/plain']
-        body = f'<pre>{html.escape(text)}</pre>'
+        # Reached by Tab: what is long scrolls.
+        body = f'<pre tabindex="0">{html.escape(text)}</pre>'
         for kind, data in self._shown.items():
             if kind.startswith('image/'):
                 # As a separate image: its ids must not clash with those of the live one.

@@ -101,6 +101,8 @@ def test_names_are_for_the_teacher_and_are_not_stored(
     expect(rows.locator('tbody tr')).to_have_count(5)
     expect(rows.locator('tbody tr', has_text='Anna')).to_contain_text('15 min')
     expect(rows.locator('tbody tr', has_text='Mallory')).to_contain_text('too large')
+    tried = rows.locator('tbody tr', has_text='Anna').get_by_role('img')
+    expect(tried).to_have_attribute('aria-label', '0 passed, 2 tried')
     # What somebody calls themselves is text, and nothing else.
     expect(rows.locator('tbody th', has_text=HTML)).to_have_count(1)
     assert view.locator('img').count() == 0

@@ -92,6 +92,18 @@ def test_who_is_stuck(who: Learner, minutes: int | None) -> None:
     assert board.stuck == (minutes is not None)
 
 
+def test_when_somebody_was_at_work() -> None:
+    entries = {
+        'count_up': entry(50, 40, 'PASS'),
+        'evens': entry(30, 2),
+        'long_ago': entry(500, 130, 'PASS'),
+        'tried_before': entry(300, 100),
+    }
+    (row,) = count(reading(learner('anna', written=2, since=70, **entries)), NOW).learners
+    assert (row.since_min, row.quiet_min) == (70, 2)
+    assert row.marks == [(100, False), (50, False), (40, True), (30, False), (2, False)]
+
+
 def test_who_is_stuck_comes_first() -> None:
     board = count(reading(learner('anna'), learner('zoe', evens=entry(12, 1))), NOW)
     assert [row.name for row in board.learners] == ['zoe', 'anna']
