@@ -56,10 +56,10 @@ function drawStrip(canvas, bins) {
   });
 }
 
-// The table of topics. A topic's button shows what its messages say.
+// The table of topics. A topic's button shows what its messages say; its strip is grabbed by `grab`.
 class Topics {
-  constructor(choose) {
-    this.choose = choose;
+  constructor(choose, grab) {
+    [this.choose, this.grab] = [choose, grab];
     this.body = element('tbody');
     const heads = ['Topic', 'Messages', 'Rate', 'When they came'];
     this.table = element('table', { className: 'labkit-bag-topics' },
@@ -86,6 +86,7 @@ class Topics {
       const { canvas } = this.strips[row];
       canvas.setAttribute('aria-label', words);
       canvas.title = words;
+      this.grab(canvas, (event) => event.offsetX / canvas.clientWidth);
       return element('tr', {},
         element('th', { scope: 'row' }, button,
           element('span', { className: 'labkit-bag-type', textContent: type })),
@@ -199,6 +200,8 @@ function render({ model, el }) {
   words.setAttribute('aria-live', 'polite');
   const arena = element('div', { className: 'labkit-arena', hidden: true }, floor, words);
   const message = place('div', 'labkit-bag-message');
+  const picture = element('img', { alt: '', hidden: true });
+  const pixels = place('div', 'labkit-bag-about');
   const came = place('div', 'labkit-bag-about');
   const field = element('select');
   field.setAttribute('aria-label', 'Number to plot');
@@ -206,7 +209,8 @@ function render({ model, el }) {
   const clear = element('button', { type: 'button', textContent: 'Clear plot' });
   const chosen = place('span', 'labkit-bag-name');
   const details = element('div', { className: 'labkit-bag-details', hidden: true },
-    element('div', { className: 'labkit-bag-controls' }, chosen, field, add, clear), came, message);
+    element('div', { className: 'labkit-bag-controls' }, chosen, field, add, clear), came,
+    picture, pixels, message);
 
   const [sheet, trail] = [new Replay(chart), new Trail(floor)];
   const state = {
@@ -214,6 +218,21 @@ function render({ model, el }) {
     playing: false,
   };
   let [frame, last, spokenAt, askedAt, waiting, asked] = [0, null, 0, 0, false, null];
+  // What can be dragged over sets the time: `partAt` tells where, from 0 to 1.
+  const grab = (target, partAt) => {
+    const move = (event) => {
+      if (event.buttons !== 1 || !state.seconds) return;
+      state.time = Math.max(0, Math.min(1, partAt(event))) * state.seconds;
+      slider.value = state.time;
+      redraw();
+    };
+    target.classList.add('labkit-bag-grabbed');
+    target.addEventListener('pointerdown', (event) => {
+      target.setPointerCapture(event.pointerId);
+      move(event);
+    });
+    target.addEventListener('pointermove', move);
+  };
   const topics = new Topics((name) => {
     state.topic = state.topic === name ? '' : name;
     topics.mark(state.topic);
@@ -221,11 +240,13 @@ function render({ model, el }) {
     chosen.textContent = state.topic;
     field.replaceChildren();
     message.replaceChildren();
-    came.textContent = '';
+    came.textContent = pixels.textContent = '';
+    showJpeg(picture, null);
     asked = null;
     if (state.topic) send({ paths: state.topic });
     redraw();
-  });
+  }, grab);
+  grab(chart, (event) => sheet.partAt(event.offsetX));
 
   const kernel = connect(model, () => {
     state.ended = GONE;
@@ -323,10 +344,13 @@ function render({ model, el }) {
     takeLines(news.series, buffers.slice(news.track ? 2 : 1));
   };
   const takeMoment = (news, buffers) => {
-    if (buffers?.length) trail.scene.scan = numbersOf(buffers[0], Float32Array);
-    else trail.scene.scan = null;
+    const sent = Object.fromEntries(news.buffers.map((name, index) => [name, buffers[index]]));
+    trail.scene.scan = sent.scan ? numbersOf(sent.scan, Float32Array) : null;
     if (news.fields === undefined || news.of !== state.topic) return;
     showMessage(message, news.fields);
+    showJpeg(picture, sent.picture);
+    picture.alt = `Picture of ${state.topic}`;
+    setText(pixels, news.picture ?? '');
     setText(came, news.came === null ? 'None has come by then.' : `Came at ${inSeconds(news.came)}`);
   };
   const takePaths = (news) => {
@@ -391,6 +415,7 @@ function render({ model, el }) {
     themes.disconnect();
     clearInterval(watch);
     cancelAnimationFrame(frame);
+    showJpeg(picture, null);
   };
 }
 

@@ -35,6 +35,7 @@ from labkit.views.bag_reading import (
     read_strip,
     read_track,
 )
+from labkit.views.image_pixels import picture_of, to_jpeg
 from labkit.views.live import Live
 from labkit.views.message_tree import rows
 from labkit.views.plot_fields import Source, parse
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
 
 __all__ = ['BagView', 'bag']
 
+IMAGE = 'sensor_msgs/msg/Image'
 # Most columns of a line; more can't be seen.
 COLUMNS = 800
 
@@ -82,6 +84,7 @@ class BagView(Live):
             self._bag.close()
             raise
         self.note = self._bag.note
+        self._types = {topic.name: topic.msg_type for topic in self._bag.topics}
         self._content: Content | None = None
         self._widget: PageWidget | None = None
         if self._watched:
@@ -244,26 +247,36 @@ class BagView(Live):
         self._send_to_page({'paths': paths, 'of': topic})
 
     def _send_moment(self, seconds: float, topic: str) -> None:
-        """Send the last message of a topic before some time, and the scan of that time."""
+        """Send the last message of a topic before some time, and the scan of that time.
+
+        A message with a picture is sent as that, too.
+        """
         moment = self._bag.start_ns + round(seconds * 1e9)
         state: dict[str, Any] = {'at': seconds, 'of': topic}
+        buffers: dict[str, bytes] = {}
         if topic:
             found = self._bag.at(topic, moment)
             tree = rows(found.message) if found is not None else []
             came = (found.stamp_ns - self._bag.start_ns) / 1e9 if found is not None else None
             state |= {'came': came, 'fields': [list(row) for row in tree]}
-        self._send_to_page(state, self._scan_at(moment))
+            if found is not None and self._types[topic] == IMAGE:
+                try:
+                    picture = picture_of(found.message)
+                    state['picture'], buffers['picture'] = picture.words, to_jpeg(picture)
+                except LabError as error:
+                    state['picture'] = str(error)
+        buffers |= self._scan_at(moment)
+        state['buffers'] = list(buffers)
+        self._send_to_page(state, list(buffers.values()))
 
-    def _scan_at(self, moment: int) -> list[bytes]:
+    def _scan_at(self, moment: int) -> dict[str, bytes]:
         """Return the ends of the beams of the last scan as bytes; nothing without a scan."""
         scan = self._bag.at(self._scan, moment) if self._scan else None
         pose = self._bag.at(self._odom, scan.stamp_ns) if scan is not None else None
-        if scan is None or pose is None:
-            return []
-        motion = motion_of(pose.message)
-        return (
-            [] if motion is None else [beam_ends(scan.message, motion[0]).astype('<f4').tobytes()]
-        )
+        motion = motion_of(pose.message) if pose is not None else None
+        if scan is None or motion is None:
+            return {}
+        return {'scan': beam_ends(scan.message, motion[0]).astype('<f4').tobytes()}
 
     def _send_to_page(self, content: dict[str, Any], buffers: Sequence[bytes] = ()) -> None:
         if self._widget is not None:
@@ -278,8 +291,10 @@ def bag(
 ) -> BagView:
     """Show a bag: its topics, when their messages arrived, and their values.
 
-    In a notebook, a slider moves through the time of the bag: along a plot of fields, and on a map
-    if the bag has a robot's odometry. Elsewhere it is text and a picture. Nothing is published.
+    In a notebook, a slider moves through the time of the bag: along a plot of fields, through the
+    messages and pictures of a topic, and on a map if the bag has a robot's odometry. The plot and
+    the time lines of the topics can be dragged over, too. Elsewhere it is text and a picture.
+    Nothing is published.
 
     Args:
         path: Folder of the bag, or one of its files. Bags of real robots work, too.

@@ -6,14 +6,7 @@ function render({ model, el }) {
   const title = element('span', { className: 'labkit-image-topic' });
   const about = element('span', { className: 'labkit-image-about' });
   const picture = element('img', { alt: '', hidden: true });
-  let [words, rate, address] = ['', '', ''];
-  const show = (bytes) => {
-    const before = address;
-    address = URL.createObjectURL(new Blob([bytes], { type: 'image/jpeg' }));
-    picture.src = address;
-    picture.hidden = false;
-    if (before) URL.revokeObjectURL(before);
-  };
+  let [words, rate] = ['', ''];
   // For those who look on from outside, such as tests.
   picture.addEventListener('load', () => {
     el.dataset.pictures = Number(el.dataset.pictures ?? 0) + 1;
@@ -27,12 +20,12 @@ function render({ model, el }) {
     if (news.rate !== undefined) ({ rate } = news);
     setText(about, [words, rate && `${rate} a second`].filter(Boolean).join(', '));
     if (news.text) picture.alt = news.text;
-    if (buffers?.length) show(buffers[0]);
+    if (buffers?.length) showJpeg(picture, buffers[0]);
   });
   el.append(element('div', { className: 'labkit-image-head' }, title, about), picture, note);
   return () => {
     end();
-    if (address) URL.revokeObjectURL(address);
+    showJpeg(picture, null);
   };
 }
 

@@ -67,6 +67,15 @@ function connect(model, lose) {
   return { send, disconnect };
 }
 
+// Show a JPEG, or nothing. The one before is let go.
+function showJpeg(picture, bytes) {
+  const before = picture.src;
+  if (bytes) picture.src = URL.createObjectURL(new Blob([bytes], { type: 'image/jpeg' }));
+  else picture.removeAttribute('src');
+  picture.hidden = !bytes;
+  if (before) URL.revokeObjectURL(before);
+}
+
 // Close the panel of `lab.dock()`, if this is in one. It is a widget of its own, and outlives the
 // kernel: after a restart there would be two.
 async function closePanel(model) {

@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Locator, expect
 
+from tests.browser.accessibility import violations
 from tests.browser.page import VIEWPORT, Notebook
 from tests.browser.test_views import CONTRAST
-from tests.views.bags import make_drive, make_foreign
+from tests.views.bags import make_camera, make_drive, make_foreign
 
 pytestmark = pytest.mark.slow('a page in the browser')
 
@@ -36,10 +37,12 @@ class Stage:
 @pytest.fixture
 def stage(open_cells: Callable[..., Notebook], tmp_path: Path) -> Stage:
     drive, arm = make_drive(tmp_path / 'drive'), make_foreign(tmp_path / '<img src=x>')
+    camera = make_camera(tmp_path / 'camera', 'rgb8', 'mono7')
     cells = {
         'setup': 'import labkit as lab',
         'drive': f"lab.bag({str(drive)!r}, '/odom.pose.pose.position.x', '/cmd_vel.linear.x')",
         'arm': f'lab.bag({str(arm)!r})',
+        'camera': f'lab.bag({str(camera)!r})',
         'missing': f'lab.bag({str(drive)[:-1]!r})',
     }
     return Stage(open_cells(**cells))
@@ -125,6 +128,40 @@ def test_topic_shows_its_messages_and_its_numbers_can_be_plotted(stage):
     expect(view.locator('.labkit-plot tbody td').first).to_have_text('8')
     view.get_by_role('button', name='Clear plot').click()
     expect(view.locator('.labkit-plot')).to_be_hidden()
+
+
+def test_the_time_is_grabbed_in_any_strip_and_in_the_plot(stage):
+    view = stage.show('drive')
+    view.get_by_role('button', name='/scan').click()
+    for place in (
+        view.locator('.labkit-bag-strip canvas').last,
+        view.locator('.labkit-plot canvas'),
+    ):
+        place.scroll_into_view_if_needed()
+        box = place.bounding_box()
+        middle = box['y'] + box['height'] / 2
+        stage.page.mouse.move(box['x'] + box['width'] * 0.3, middle)
+        stage.page.mouse.down()
+        stage.wait('v => Number(v.dataset.time) > 1 && Number(v.dataset.time) < 4', view)
+        stage.page.mouse.move(box['x'] + box['width'] * 2, middle, steps=3)
+        stage.wait('v => v.dataset.time === "10.000"', view)
+        stage.page.mouse.up()
+        stage.page.mouse.move(box['x'], middle)
+    expect(view).to_contain_text('Came at 10.00 s')
+    assert view.get_attribute('data-time') == '10.000'
+
+
+def test_topic_of_a_camera_shows_its_pictures(stage):
+    view = stage.show('camera')
+    view.get_by_role('button', name='/camera').click()
+    picture = view.get_by_role('img', name='Picture of /camera')
+    stage.wait('p => p.naturalWidth === 2', picture)
+    slider = view.get_by_role('slider', name='Time in the bag')
+    slider.focus()
+    stage.page.keyboard.press('End')
+    expect(view).to_contain_text("Pictures with the encoding 'mono7' can not be shown.")
+    expect(picture).to_be_hidden()
+    assert violations(stage.notebook, 'camera') == []
 
 
 def test_it_can_be_read_in_both_themes_and_fits_into_800_pixels(stage):

@@ -11,7 +11,7 @@ from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rclpy.serialization import serialize_message
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-from sensor_msgs.msg import LaserScan
+from sensor_msgs.msg import Image, LaserScan
 
 from labkit.bags.writer import BagWriter
 
@@ -46,6 +46,20 @@ def make_drive(path: Path, *, storage: str = 'mcap', seconds: float = 10.0) -> P
         writer.write(
             [(numbers[name], stamp, stamp, serialize_message(each)) for name, each in messages]
         )
+    writer.close()
+    return path
+
+
+def make_camera(path: Path, *encodings: str) -> Path:
+    """Make a bag of /camera, with a picture of 2 x 2 pixels each second."""
+    writer = BagWriter(path)
+    number = writer.add_topic(
+        '/camera', 'sensor_msgs/msg/Image', qos='', definition='', encoding=''
+    )
+    for second, encoding in enumerate(encodings):
+        stamp = START_NS + second * 1_000_000_000
+        image = Image(height=2, width=2, encoding=encoding, step=6, data=[200] * 12)
+        writer.write([(number, stamp, stamp, serialize_message(image))])
     writer.close()
     return path
 

@@ -17,7 +17,7 @@ from labkit.bags import reader
 from labkit.bags.writer import BagWriter
 from labkit.views import bag_reading
 from labkit.views.message_tree import as_text, rows
-from tests.views.bags import START_NS, make_drive, make_empty, make_foreign
+from tests.views.bags import START_NS, make_camera, make_drive, make_empty, make_foreign
 
 X = '/odom.pose.pose.position.x'
 DRIVE = """\
@@ -252,12 +252,28 @@ def test_page_is_told_what_there_is_and_asks_for_the_rest(kernel, drive):
     assert told == [
         # At 5 s the robot is at x = 1 m, its yaw is 0.5, and its scanner 3.2 cm behind that.
         "5.0 [1, 'x', 'double', False, '0.2'] [2.288 0.704]",
-        "dict_keys(['at', 'of'])",
+        "dict_keys(['at', 'of', 'buffers'])",
         "['angle_min', 'angle_max'] []",
         "{'series': [['/scan.ranges[0]', 'm']], 'refused': ''}",
         "'/scan.angle': sensor_msgs/msg/LaserScan has no field 'angle'.",
         "'drive' has no topic '/nothing'.",
     ]
+
+
+def test_page_is_sent_the_picture_of_its_time(kernel, tmp_path):
+    camera = make_camera(tmp_path / 'camera', 'rgb8', 'mono7', 'rgb8')
+    code = f'import labkit as lab\nview = lab.bag({str(camera)!r})\n{SPY}'
+    assert not kernel.run(code).error
+    told = kernel.run(
+        'for moment in (0.5, 1.5, 2.5):\n'
+        '    state, buffers = ask(at=moment, topic="/camera")\n'
+        '    starts = [data[:2].hex() for data in buffers or ()]\n'
+        '    print(state["came"], state["picture"].splitlines()[0], state["buffers"], starts)'
+    ).text.splitlines()
+    # A JPEG begins with these two bytes.
+    seen = "2 x 2 pixels, rgb8 ['picture'] ['ffd8']"
+    unknown = "Pictures with the encoding 'mono7' can not be shown. [] []"
+    assert told == [f'0.0 {seen}', f'1.0 {unknown}', f'2.0 {seen}']
 
 
 def test_run_again_it_takes_the_place_of_the_one_before(kernel, drive):
