@@ -70,14 +70,20 @@ def stuck_callback(patience_sec: float = LONG_SEC) -> str:
     )
 
 
-def _unspun(names: Collection[str]) -> str:
-    """Return which of some nodes is of this process, and nobody spins it; '' if none is."""
+def _unspun(names: Collection[str], *, offers: bool = False) -> str:
+    """Return which of some nodes is of this process, and nobody spins it; '' if none is.
+
+    Args:
+        names: Full names of the nodes.
+        offers: Whether they offer what is asked for. Else one without callbacks of its own is as
+            good as spun.
+    """
     for node in existing_nodes():
         name = full_name(node)
         idle = runtime.entry_of(node) is None and node.executor is None
         if name in names and node in half_made:
             return f'{name} is half made: an error has ended its __init__.'
-        if name in names and idle and _has_callbacks(node):
+        if name in names and idle and (offers or _has_callbacks(node)):
             return f'{name} is not spun: lab.spin(...) does that.'
     return ''
 
@@ -165,6 +171,6 @@ def why_unanswered(names: Collection[str]) -> str:
     """
     return (
         stuck_callback()
-        or _unspun(names)
+        or _unspun(names, offers=True)
         or 'Is the node that offers it spinning, and do its callbacks return?'
     )

@@ -57,9 +57,11 @@ class Dots {
 
 // The drawing, and what is known of each of its parts by the part's name.
 class Drawing {
-  constructor(tell) {
+  constructor(tell, ask) {
     this.place = element('div', { className: 'labkit-graph-drawing' });
-    this.tell = tell;
+    [this.tell, this.ask] = [tell, ask];
+    // Node -> its parameters, as far as they were asked for.
+    this.parameters = {};
     this.dots = new Dots();
     this.parts = {};
     this.rates = {};
@@ -69,6 +71,7 @@ class Drawing {
     // Part -> when its last dot starts.
     this.startedAt = {};
     this.place.addEventListener('keydown', (event) => this.onKey(event));
+    this.place.addEventListener('click', () => this.askChosen());
     this.place.addEventListener('pointerover', (event) => this.choose(this.partAt(event.target)));
     this.place.addEventListener('pointerleave', () => {
       this.choose(this.partAt(document.activeElement));
@@ -172,8 +175,28 @@ class Drawing {
   }
 
   lines(name) {
-    const rate = this.rates[name];
-    return [...(this.parts[name] ?? []), ...(rate ? [`${rate}`] : [])];
+    const [rate, known] = [this.rates[name], this.parameters[this.nodeOf(name)]];
+    return [...(this.parts[name] ?? []), ...(rate ? [`${rate}`] : []),
+      ...(known ? [`Parameters: ${known}`] : [])];
+  }
+
+  // The node that a part stands for; '' if it is none, or several.
+  nodeOf(name) {
+    const [first = ''] = this.parts[name] ?? [];
+    return first.startsWith('Node ') ? first.slice('Node '.length) : '';
+  }
+
+  askChosen() {
+    const node = this.nodeOf(this.chosen);
+    if (!node) return;
+    this.setParameters({ [node]: this.parameters[node] ?? '…' });
+    this.ask(node);
+  }
+
+  setParameters(known) {
+    Object.assign(this.parameters, known);
+    this.label();
+    if (this.chosen) this.tell(this.lines(this.chosen));
   }
 
   label() {
@@ -199,6 +222,7 @@ class Drawing {
   onKey(event) {
     if (event.ctrlKey || event.metaKey) return; // the browser zooms
     if (event.key === '0') this.showAll();
+    if (event.key === 'Enter' && !event.shiftKey && !event.altKey) this.askChosen();
     const factor = { '+': STEP, '=': STEP, '-': 1 / STEP }[event.key];
     if (factor) {
       this.zoom(factor);
@@ -289,11 +313,12 @@ function render({ model, el }) {
   const details = element('p', { className: 'labkit-graph-details' }, name, about);
   const known = { then: false, changed: false };
   const hint = () => `Point at a part${known.svg?.includes('"sign"') ? ' with a sign' : ''}, `
-    + 'or press Tab and the arrow keys, to know more of it.';
+    + 'or press Tab and the arrow keys, to know more of it. '
+    + 'Click a node, or press Enter, for its parameters.';
   const drawing = new Drawing(([first, ...lines]) => {
     setText(name, first ?? '');
     setText(about, first ? lines.join(' · ') : hint());
-  });
+  }, (node) => send({ ask: node }));
   const send = (content) => kernel.send(content);
   const switches = makeSwitches(send);
   const zoom = zoomButtons(drawing);
@@ -323,6 +348,7 @@ function render({ model, el }) {
     if (news.switches) switches.show(news.switches);
     if (news.rates) drawing.setRates(news.rates);
     if (news.passed) drawing.pass(news.passed);
+    if (news.parameters) drawing.setParameters(news.parameters);
     if (news.ended) el.classList.add('labkit-graph-ended');
     showChanged();
   });

@@ -76,7 +76,8 @@ def graph(
     dashed arrow with a red cross says why. A part with another silent fault has a warning sign.
 
     In JupyterLab the picture is live: it follows changes, dots show passing messages, and each
-    part tells more when pointed at, or reached with Tab and the arrow keys, a fault included.
+    part tells more when pointed at, or reached with Tab and the arrow keys, a fault included; a
+    node, when it is clicked or with Enter, its parameters.
     It is a screen high at most; buttons, the keys + - 0, and the mouse wheel with Ctrl make it
     larger or smaller, and it can be dragged. A namespace of several nodes can be folded into one.
     Messages of this notebook are counted as they pass; those of other processes are subscribed to

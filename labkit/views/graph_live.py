@@ -5,12 +5,18 @@ It reads the graph and counts messages only while the page reports that the pict
 
 from __future__ import annotations
 
+import threading
 import time
 from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
+from labkit.asking.parameters import get_parameters, parameter_names
 from labkit.asking.traffic import Traffic, Way
+from labkit.background.compat import RCLError, parameter_values
+from labkit.background.nodes import existing_nodes, full_name
+from labkit.errors import LabError, quoted
+from labkit.rosgraph.parameters import python_value
 from labkit.rosgraph.snapshot import Graph, read_graph
 from labkit.silent.kinds import Fault
 from labkit.silent.watch import watch
@@ -46,6 +52,8 @@ class LiveGraph(LivePage):
         self._shown = {'services': services, 'actions': actions}
         # Namespaces that are one node each.
         self._folded: set[str] = set()
+        # Nodes that are being asked for their parameters.
+        self._asked: set[str] = set()
         self._width = WIDTH
         self._visible = False
         # Whether the page shows the graph as it was when the cell was run.
@@ -96,6 +104,9 @@ class LiveGraph(LivePage):
             super()._close()
 
     def _handle_request(self, content: dict[str, Any]) -> None:
+        if isinstance(content.get('ask'), str):
+            self._ask(content['ask'])
+            return
         if isinstance(content.get('width'), (int, float)):
             self._width = min(max(float(content['width']), NARROWEST), WIDTH)
         for name in self._shown:
@@ -112,6 +123,26 @@ class LiveGraph(LivePage):
         else:
             self._traffic.close()
         self._send(everything=True)
+
+    def _ask(self, name: str) -> None:
+        """Ask a node for its parameters, in a thread: it may never answer."""
+        if name not in self._asked and any(node.name == name for node in self._now.nodes):
+            self._asked.add(name)
+            threading.Thread(
+                target=self._tell_parameters,
+                args=(name,),
+                name='labkit graph',
+                daemon=True,
+            ).start()
+
+    def _tell_parameters(self, name: str) -> None:
+        try:
+            words = _parameters_of(name)
+        except (LabError, RCLError) as error:
+            words = str(error)
+        self._asked.discard(name)
+        with self._lock:
+            self._send_to_page({'parameters': {name: words}})
 
     # -- the page -------------------------------------------------------------------------------
 
@@ -187,3 +218,16 @@ class LiveGraph(LivePage):
             way = way_of(line)
             if way is not None:
                 yield f'a{number}', way
+
+
+def _parameters_of(node_name: str) -> str:
+    """Return the parameters of a node and their values, in a line."""
+    for node in existing_nodes():
+        if full_name(node) == node_name:
+            found = sorted(parameter_values(node).items())  # it need not be spun
+            break
+    else:
+        names = parameter_names(helper(), node_name)
+        values = map(python_value, get_parameters(helper(), node_name, names))
+        found = list(zip(names, values, strict=False))  # it may have lost one meanwhile
+    return ', '.join(f'{name} = {quoted(value)}' for name, value in found)

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from rcl_interfaces.msg import SetParametersResult
+from rcl_interfaces.srv import GetParameters
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from std_srvs.srv import SetBool
@@ -100,6 +101,10 @@ def test_a_node_that_is_not_spun_is_told(lamp: Lamp, asker: Node) -> None:
         service.wait_until_ready(60)
         with pytest.raises(LabTimeout, match='/idle is not spun'):
             service.call(SetBool.Request(), 0.1)
+        with ServiceCalls(asker, GetParameters, '/idle/get_parameters') as every_node_has:
+            every_node_has.wait_until_ready(60)
+            with pytest.raises(LabTimeout, match='/idle is not spun'):
+                every_node_has.call(GetParameters.Request(), 0.1)
         idle.destroy_node()
         with pytest.raises(LabTimeout, match='No node offers it any more'):
             service.call(SetBool.Request(), 0.1)

@@ -167,6 +167,21 @@ def test_a_namespace_is_folded_and_messages_still_pass(run):
     assert run('print("/a/one" in page.known["svg"])') == 'True'
 
 
+def test_a_node_tells_its_parameters_when_it_is_asked(run):
+    run('talker = lab.spin(Talker())\ntalker.declare_parameter("speed", 0.5)')
+    run('idle = Node("idle")\npage = Page(lab.graph())')
+    run('told = lambda name: page.wait(lambda known: name in known.get("parameters", {}))')
+    run('page.say(ask="/talker")\ntold("/talker")')
+    assert run('print(page.known["parameters"]["/talker"])') == (
+        'speed = 0.5, start_type_description_service = True, use_sim_time = False'
+    )
+    run('page.say(ask="/idle")\ntold("/idle")')
+    assert 'use_sim_time' in run('print(page.known["parameters"]["/idle"])')
+    # Whatever a page asks for.
+    run('page.say(ask="/nobody")\npage.say(ask=[])\npage.say(ask="")')
+    assert run('print(sorted(page.known["parameters"]))') == "['/idle']"
+
+
 def test_a_narrow_page_gets_a_narrow_picture(run):
     run('lab.spin(Talker())\nlab.spin(Listener())\npage = Page(lab.graph())')
     width = 'import re\nprint(re.search(r\'width="(\\d+)"\', page.known["svg"])[1])'
