@@ -11,6 +11,9 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
+from rclpy.exceptions import InvalidHandle
+from rclpy.node import Node
+
 from labkit.asking.parameters import get_parameters, parameter_names
 from labkit.asking.traffic import Traffic, Way
 from labkit.background.compat import RCLError, parameter_values
@@ -34,8 +37,6 @@ __all__ = ['LiveGraph']
 NARROWEST = 340.0
 # Period of rates, s: faster changes can't be read.
 RATES_SEC = 1.0
-
-
 # Name of the switch of a namespace, with that behind it.
 _FOLD = 'fold '
 
@@ -128,17 +129,13 @@ class LiveGraph(LivePage):
         """Ask a node for its parameters, in a thread: it may never answer."""
         if name not in self._asked and any(node.name == name for node in self._now.nodes):
             self._asked.add(name)
-            threading.Thread(
-                target=self._tell_parameters,
-                args=(name,),
-                name='labkit graph',
-                daemon=True,
-            ).start()
+            arguments = name, helper()  # which in the thread might start ROS again
+            threading.Thread(target=self._tell_parameters, args=arguments, daemon=True).start()
 
-    def _tell_parameters(self, name: str) -> None:
+    def _tell_parameters(self, name: str, asking: Node) -> None:
         try:
-            words = _parameters_of(name)
-        except (LabError, RCLError) as error:
+            words = _parameters_of(name, asking)
+        except (LabError, RCLError, InvalidHandle) as error:
             words = str(error)
         self._asked.discard(name)
         with self._lock:
@@ -220,14 +217,14 @@ class LiveGraph(LivePage):
                 yield f'a{number}', way
 
 
-def _parameters_of(node_name: str) -> str:
+def _parameters_of(node_name: str, asking: Node) -> str:
     """Return the parameters of a node and their values, in a line."""
     for node in existing_nodes():
         if full_name(node) == node_name:
             found = sorted(parameter_values(node).items())  # it need not be spun
             break
     else:
-        names = parameter_names(helper(), node_name)
-        values = map(python_value, get_parameters(helper(), node_name, names))
+        names = parameter_names(asking, node_name)
+        values = map(python_value, get_parameters(asking, node_name, names))
         found = list(zip(names, values, strict=False))  # it may have lost one meanwhile
     return ', '.join(f'{name} = {quoted(value)}' for name, value in found)
