@@ -55,6 +55,7 @@ def test_a_link_that_leads_nowhere_is_told(
 ) -> None:
     course = tmp_path / 'course'
     (course / 'docs' / 'site').mkdir(parents=True)
+    (course / 'README.md').write_text('# Course\n')
     for name in ('conf.py', 'index.md'):
         (course / 'docs' / 'site' / name).write_text((ROOT / 'docs' / 'site' / name).read_text())
     (course / 'docs' / 'site' / 'index.md').write_text('# Course\n\n[gone](docs/gone.md)\n')
