@@ -199,7 +199,9 @@ function render({ model, el }) {
   const words = place('div', 'labkit-arena-words');
   words.setAttribute('aria-live', 'polite');
   const arena = element('div', { className: 'labkit-arena', hidden: true }, floor, words);
-  const message = place('div', 'labkit-bag-message');
+  // What is long scrolls, by keys, too.
+  const message = place('div', 'labkit-bag-message', { tabIndex: 0, role: 'region' });
+  message.setAttribute('aria-label', 'Message');
   const picture = element('img', { alt: '', hidden: true });
   const pixels = place('div', 'labkit-bag-about');
   const came = place('div', 'labkit-bag-about');

@@ -34,6 +34,15 @@ class Listener(Node):
         self.create_subscription(String, 'chatter', lambda msg: None, qos)
 """,
     'nodes': 'talker, listener = lab.spin(Talker(0.2)), lab.spin(Listener())',
+    'fleet': """
+class Robot(Talker):
+    def __init__(self, name):
+        Node.__init__(self, name, namespace='robot1')
+        self.publisher = self.create_publisher(String, '/chatter', 10)
+        self.create_timer(0.2, lambda: self.publisher.publish(String(data='hello')))
+
+one, two = lab.spin(Robot('one')), lab.spin(Robot('two'))
+""",
     'graph': 'lab.graph()',
     'more': 'lab.spin(Listener("another_listener_with_a_long_name"))',
     'service': 'talker.create_service(Trigger, "fire", lambda request, response: response)',
@@ -95,6 +104,32 @@ def part(view: Locator, name: str) -> Locator:
 
 def passed(place: Locator) -> int:
     return int(place.get_attribute('data-passed') or 0)
+
+
+def test_a_namespace_is_folded_and_a_node_tells_its_parameters(notebook: Notebook) -> None:
+    notebook.run_cell('nodes')
+    notebook.run_cell('fleet')
+    notebook.run_cell('graph')
+    view = live(notebook)
+    expect(part(view, 'Node /robot1/one')).to_have_count(1)
+    switch = view.get_by_role('checkbox', name='Fold /robot1')
+    switch.focus()
+    notebook.page.keyboard.press(' ')
+    expect(part(view, 'Namespace /robot1')).to_have_count(1)
+    expect(part(view, 'Node /robot1/one')).to_have_count(0)
+    # What its nodes publish still passes.
+    expect(part(view, '/robot1/* publishes on /chatter')).to_have_attribute(
+        'data-passed', re.compile(r'^[3-9]$|^\d\d')
+    )
+    assert not violations(notebook, 'graph')
+    # By keys: to the first part, and on to a node.
+    view.locator('[data-part][tabindex="0"]').focus()
+    for _ in range(20):
+        if (view.locator(':focus').get_attribute('aria-label') or '').startswith('Node /talker'):
+            break
+        notebook.page.keyboard.press('ArrowRight')
+    notebook.page.keyboard.press('Enter')
+    expect(view.locator('.labkit-graph-details')).to_contain_text('use_sim_time = False')
 
 
 def test_messages_pass_and_nodes_come_and_go(notebook: Notebook):
