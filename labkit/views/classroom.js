@@ -4,7 +4,7 @@ const FIGURES = ['sharing', 'at work', 'stuck'];
 const HEADS = ['Learner', 'Lesson', 'Passed', 'Last check', 'Stuck', 'Last sign', 'Last two hours', 'Remark'];
 const MOST_DOTS = 40;
 const STRIP_MIN = 120; // see counting.py
-const [STRIP_WIDTH, STRIP_HEIGHT] = [180, 16];
+const [STRIP_WIDTH, STRIP_HEIGHT] = [120, 16];
 
 function titled(title, ...children) {
   return element('section', {}, element('h4', { textContent: title }), ...children);
