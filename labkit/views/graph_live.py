@@ -9,10 +9,7 @@ import threading
 import time
 from collections import Counter
 from collections.abc import Iterator
-from typing import Any
-
-from rclpy.exceptions import InvalidHandle
-from rclpy.node import Node
+from typing import TYPE_CHECKING, Any
 
 from labkit.asking.parameters import get_parameters, parameter_names
 from labkit.asking.traffic import Traffic, Way
@@ -30,6 +27,9 @@ from labkit.views.graph_picture import WIDTH, Picture
 from labkit.views.graph_words import description
 from labkit.views.live import helper
 from labkit.views.live_page import REFRESH_SEC, LivePage, Update
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
 __all__ = ['LiveGraph']
 
@@ -133,6 +133,8 @@ class LiveGraph(LivePage):
             threading.Thread(target=self._tell_parameters, args=arguments, daemon=True).start()
 
     def _tell_parameters(self, name: str, asking: Node) -> None:
+        from rclpy.exceptions import InvalidHandle
+
         try:
             words = _parameters_of(name, asking)
         except (LabError, RCLError, InvalidHandle) as error:
