@@ -154,7 +154,7 @@ def test_it_is_told_wherever_one_looks(notebook: Kernel) -> None:
     # In the picture, the node and its topic have a sign.
     signs = "lab.graph(live=False)._repr_mimebundle_()['image/svg+xml'].count('class=\"sign\"')"
     assert notebook.run(f'print({signs})').text.strip() == '2'
-    view = "from labkit.views.monitor import _faults\nprint(*_faults('/cmd_vel'))"
+    view = "from labkit.views.monitor import _faults\nprint(*_faults('/cmd_vel', hears=True))"
     notebook.run('from labkit.silent.watch import watch\nlab.wait_until(lambda: watch.seen)')
     assert said in notebook.run(view).text
     notebook.run('lab.stop()')
