@@ -210,7 +210,9 @@ def _on_other_pythons() -> tuple[int, str]:
         print(f'\n==== Python {name}', flush=True)
         with tempfile.TemporaryDirectory() as folder:
             course = Path(folder) / 'course'
-            ignored = shutil.ignore_patterns('.git', '.venv', '__pycache__')
+            # The workspaces are what lessons have made: here, where git does not leave them out,
+            # they would be judged as code of the course.
+            ignored = shutil.ignore_patterns('.git', '.venv', '__pycache__', '*_ws')
             shutil.copytree(ROOT, course, ignore=ignored, symlinks=True)
             for words in (['--fast'], ['notebooks']):
                 command = [found[version], '-m', 'labkit', 'test', *words]
