@@ -13,6 +13,7 @@ from labkit import domain_ids, settings
 from labkit.background import domains
 from labkit.errors import LabError
 from labkit.files import read_limited
+from labkit.ros2.open_pages import notebooks_in_pages
 
 __all__ = ['BASH', 'choose_domain', 'real_ros2', 'run']
 
@@ -78,17 +79,22 @@ def choose_domain() -> None:
     notebooks = domains.claimed_domains()
     if len(notebooks) > 1:
         kernels = Counter(notebooks.values())
-        newest = {name: number for number, name in reversed(notebooks.items())}
+        newest: dict[str, int] = {}
+        for number, name in notebooks.items():
+            newest.setdefault(name, number)
+        in_pages = notebooks_in_pages()
+        closed = {name for name in newest if not in_pages.get(name, True)}
         lines = [
             f'  ROS_DOMAIN_ID={number}  {name}'
             + f' (its newest kernel of {kernels[name]})' * (kernels[name] > 1)
-            for number, name in notebooks.items()
-            if newest[name] == number
+            + ' (no page shows it)' * (name in closed)
+            for name, number in newest.items()
         ]
+        one = next((newest[name] for name in newest if name not in closed), next(iter(notebooks)))
         raise LabError(
             'Several notebooks are running, each in a ROS domain of its own, the newest first:\n'
             + '\n'.join(lines),
-            todo=f'Choose one: export ROS_DOMAIN_ID={next(iter(notebooks))}{_profile(notebooks)}',
+            todo=f'Choose one: export ROS_DOMAIN_ID={one}{_profile(notebooks)}',
         )
     for domain_id in notebooks:
         domain_ids.set_domain(domain_id)

@@ -49,6 +49,7 @@ class JupyterLab:
 
     Attributes:
         work: The learner's folder, with the lessons.
+        runtime_dir: Where it notes how it is reached.
         url: The address, token included, that `labkit lab` opens in the learner's browser.
         hangs: Whether it did not end when it was asked to.
     """
@@ -61,6 +62,7 @@ class JupyterLab:
         self._ready = threading.Event()
         home = folder / 'home'
         home.mkdir(parents=True)
+        self.runtime_dir = str(home / '.local' / 'share' / 'jupyter' / 'runtime')
         variables = {k: v for k, v in os.environ.items() if not k.startswith(_FOREIGN)}
         variables.update(
             HOME=str(home),

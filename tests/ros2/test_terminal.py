@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -14,6 +15,8 @@ from labkit import domain_ids, settings
 from labkit.background import domains
 from labkit.errors import LabError
 from labkit.ros2 import terminal
+from labkit.ros2.open_pages import notebooks_in_pages
+from tests.ports import free_port
 
 
 def start(*words: str, env: dict[str, str], **options) -> subprocess.Popen[str]:
@@ -95,6 +98,8 @@ def test_domain_of_the_one_running_notebook(monkeypatch):
     assert 'ROS_DOMAIN_ID' not in os.environ
     two = {7: '04_odds.ipynb', 9: '05_my_name_is.ipynb'}
     monkeypatch.setattr(domains, 'claimed_domains', lambda: two)
+    pages: dict[str, bool] = {}
+    monkeypatch.setattr(terminal, 'notebooks_in_pages', lambda: pages)
     with pytest.raises(LabError) as caught:
         terminal.choose_domain()
     assert '  ROS_DOMAIN_ID=7  04_odds.ipynb\n  ROS_DOMAIN_ID=9  05_my' in str(caught.value)
@@ -109,6 +114,12 @@ def test_domain_of_the_one_running_notebook(monkeypatch):
         '  ROS_DOMAIN_ID=9  05_my_name_is.ipynb',
     ]
     assert caught.value.todo == 'Choose one: export ROS_DOMAIN_ID=12'
+    pages.update({'04_odds.ipynb': False, '05_my_name_is.ipynb': True})
+    with pytest.raises(LabError) as caught:
+        terminal.choose_domain()
+    assert '04_odds.ipynb (its newest kernel of 2) (no page shows it)\n' in str(caught.value)
+    assert caught.value.todo == 'Choose one: export ROS_DOMAIN_ID=9'
+    pages.clear()
     monkeypatch.setattr(domains, 'claimed_domains', lambda: two)
     two[domain_ids.BETWEEN[0]] = '06_chat.ipynb'
     with pytest.raises(LabError) as caught:
@@ -117,6 +128,14 @@ def test_domain_of_the_one_running_notebook(monkeypatch):
     monkeypatch.setenv('ROS_DOMAIN_ID', '3')
     terminal.choose_domain()
     assert os.environ['ROS_DOMAIN_ID'] == '3'
+
+
+def test_notes_of_servers_that_tell_nothing(monkeypatch, tmp_path):
+    monkeypatch.setenv('JUPYTER_RUNTIME_DIR', str(tmp_path))
+    gone = {'url': f'http://127.0.0.1:{free_port()}/', 'token': 'secret'}
+    for number, note in enumerate(('', '[]', '{}', '{"url": 3, "token": 4}', json.dumps(gone))):
+        (tmp_path / f'jpserver-{number}.json').write_text(note)
+    assert notebooks_in_pages() == {}
 
 
 def test_what_reads_files_needs_no_domain(monkeypatch, capsys):
