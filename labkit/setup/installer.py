@@ -68,6 +68,8 @@ _OF_UV = {
 }
 # pip lists a setting as `group.name='value'`; of two groups the later one here counts.
 _SETTING = re.compile(r"^(global|install|:env:)\.([\w-]+)=('.*'|\".*\")$", re.MULTILINE)
+# What is done with the packages in the second half of the way, when they have been fetched.
+_SECOND_HALF = ('Installing', 'Installed')
 
 
 class Progress:
@@ -95,7 +97,8 @@ class Progress:
             count -= count % 50 if count < self.total else 0  # a log needs no line a package
         line = f'{what:<10} {count:>3} of {self.total} packages'
         if self._in_place:
-            done = 30 * count // max(self.total, 1)
+            behind = count + (self.total if what in _SECOND_HALF else 0)
+            done = 15 * behind // max(self.total, 1)
             bar = '#' * done + '.' * (30 - done)
             seconds = time.monotonic() - self._start
             print(f'\r  [{bar}] {line}, {seconds:.0f} s ', end='', flush=True)

@@ -36,11 +36,16 @@ def test_terminal_gets_one_line_that_changes(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(sys, 'stdout', terminal)
     progress = Progress(4)
     progress.show('Preparing', 0)
-    progress.show('Installing', 2)
+    progress.show('Fetching', 4)
+    progress.show('Installing', 0)
+    progress.show('Installed', 4)
     shown = terminal.getvalue()
-    assert '\n' not in shown and shown.count('\r') == 2
+    assert '\n' not in shown and shown.count('\r') == 4
     assert 'Preparing    0 of 4 packages, 0 s' in shown
-    assert '[###############...............] Installing   2 of 4 packages' in shown
+    # The bar does not begin anew.
+    assert '[###############...............] Fetching     4 of 4 packages' in shown
+    assert '[###############...............] Installing   0 of 4 packages' in shown
+    assert '[##############################] Installed    4 of 4 packages' in shown
 
 
 @pytest.mark.slow('it installs')
