@@ -14,6 +14,8 @@ from labkit.lessons.package.content import APPEAR_SEC, NODE_NAME, Runs, Work, re
 
 __all__ = ['Running']
 
+# In so many seconds a new client finds a node also on a busy machine.
+ANSWER_SEC = 4.0
 # The start of a process is known to a second.
 _OFF_SEC = 1.5
 
@@ -87,10 +89,20 @@ class Running(Runs):
         if process.create_time() + _OFF_SEC < work.changed:
             raise Fail(wanted, 'files in src that are newer than the program that runs', OLD_RUN)
         # One that was made without services of its own can't be asked.
-        if self._has_services(work) and not wait_until_spun(helper, node, work.probe.time_left):
+        answers = not self._has_services(work)
+        # In several goes, since it may end meanwhile.
+        while not answers and work.probe.time_left and _is_alive(process):
+            answers = wait_until_spun(helper, node, min(ANSWER_SEC, work.probe.time_left))
+        if not _is_alive(process):
+            raise Fail(wanted, f'{node} was there, and its program has ended', self._not_running)
+        if not answers:
             raise Fail(f'{node} answers', f'{node} is on the graph, and does not answer', NOT_SPUN)
         work.ran.append(self.program)
         return ''
+
+    @property
+    def _not_running(self) -> Mistake:
+        return NOT_RUNNING.of(package=self.package, program=self.program)
 
     def _has_services(self, work: Work) -> bool:
         """Tell whether the node has the services of parameters, which come after its name."""
@@ -141,8 +153,7 @@ class Running(Runs):
         """Say why the node is not there."""
         alive = list(filter(_is_alive, mine))
         if not alive:
-            run = {'package': self.package, 'program': self.program}
-            raise Fail(wanted, 'no such node', NOT_RUNNING.of(**run))
+            raise Fail(wanted, 'no such node', self._not_running)
         others = _nodes(work, alive)
         if others:
             raise Fail(wanted, ', '.join(sorted(others)), NODE_NAME.of(node=self.node))

@@ -50,6 +50,12 @@ ANSWERS = [
         ('        rclpy.spin(node)', '        print(node)'),
     ),
     wrong(
+        'ends while it is looked at',
+        'If it ends at once, read there why.',
+        ('import rclpy\n', 'import time\n\nimport rclpy\n'),
+        ('        rclpy.spin(node)', '        time.sleep(1)'),
+    ),
+    wrong(
         'sleeps',
         'is on the graph, and does not answer',
         ('import rclpy\n', 'import time\n\nimport rclpy\n'),
