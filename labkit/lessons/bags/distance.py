@@ -169,8 +169,10 @@ def _drive(middle: float) -> list[Place]:
     """Return places of a drive in all directions, with the shortest jump at its end."""
     # Also the sum of a step in x and in y is below the limit.
     steps = [(random.uniform(0.05, 0.35), random.uniform(-math.pi, math.pi)) for _ in range(8)]
-    almost = random.uniform(0.44, 0.47), random.choice((0.0, math.pi)) + random.uniform(0.01, 0.04)
-    steps.insert(random.randint(1, len(steps)), almost)
+    along_x = random.choice((0.0, math.pi)) + random.uniform(0.003, 0.008)
+    steps.insert(random.randint(1, len(steps)), (random.uniform(0.485, 0.495), along_x))
+    # As short as the steps of a slow robot that tells where it is a thousand times a second.
+    steps.insert(random.randint(1, len(steps)), (random.uniform(3e-4, 9e-4), along_x))
     # It stands still for once, where it has not jumped.
     steps.insert(random.randint(2, len(steps)), (0.0, 0.0))
     # The first one is near the origin: the way from there is none that was driven.
