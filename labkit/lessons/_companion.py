@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 __all__ = ['start_companion']
 
 START_SEC = 25.0
+# So many of its last lines are shown if it ends at once.
+SHOWN_LINES = 5
 
 
 def start_companion(name: str, module: str, earlier: Process | None) -> Process:
@@ -40,10 +42,14 @@ def start_companion(name: str, module: str, earlier: Process | None) -> Process:
     before = node_names(runtime.helper)
     command = [sys.executable, '-c', f'from {module} import main; main()']
     process = start_process(name, command, environment(), announces=True)
-    if not process.wait_for_nodes(runtime.helper, before, START_SEC):
-        process.stop()
-        raise LabTimeout(
-            f'Waited {START_SEC:.0f} s for the nodes of the {name}, but they did not come.',
-            todo='Run the cell again. If that does not help, lab.doctor() looks for the reason.',
-        )
-    return process
+    if process.wait_for_nodes(runtime.helper, before, START_SEC):
+        return process
+    if process.running:
+        seen = f'Waited {START_SEC:.0f} s for the nodes of the {name}, but they did not come.'
+    else:
+        said = '\n'.join(['', *process.output[-SHOWN_LINES:]])
+        seen = f'The {name} ended with code {process.exit_code} before its nodes came.{said}'
+    process.stop()
+    raise LabTimeout(
+        seen, todo='Run the cell again. If that does not help, lab.doctor() looks for the reason.'
+    )

@@ -104,6 +104,26 @@ def test_a_program_that_ends_early_is_not_waited_for(script: Any, env: dict[str,
     assert result.stdout == '[] []\n5\n', result.stderr
 
 
+def test_what_a_companion_said_before_it_ended_is_told(script: Any, env: dict[str, str]) -> None:
+    result = script(
+        """
+from pathlib import Path
+from labkit.errors import LabTimeout
+from labkit.lessons._companion import start_companion
+
+Path('wreck.py').write_text("def main():\\n    print('no port')\\n    raise SystemExit(3)\\n")
+try:
+    start_companion('harbour', 'wreck', None)
+except LabTimeout as error:
+    print(error.message)
+""",
+        **env,
+    )
+    assert result.stdout == 'The harbour ended with code 3 before its nodes came.\nno port\n', (
+        result.stderr
+    )
+
+
 @pytest.mark.slow('starts several programs')
 def test_a_program_without_parameter_services_is_not_asked(
     script: Any, env: dict[str, str]
