@@ -242,8 +242,9 @@ class Ones(Node):
 def test_burst_of_a_node_that_took_long_to_make_is_no_making_up(follows: ModuleType) -> None:
     node = Ones()
     made.add(node, Origin(runtime.console.current_cell()))  # as in a notebook
-    time.sleep(1.0)  # its `__init__` goes on, as on a busy machine
-    for _ in range(5):
+    time.sleep(2.0)  # its `__init__` goes on, as on a busy machine
+    # More than a busy machine takes a second for, and fewer than two seconds would allow.
+    for _ in range(18):
         node.publisher.publish(Int16(data=1))
     follows.spin(node)
     with Probe('ones', SCOPE) as probe:

@@ -10,7 +10,7 @@ import urllib.error
 import urllib.parse
 import urllib.request
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from contextlib import closing
 from dataclasses import dataclass
 from http.cookiejar import CookieJar
@@ -147,9 +147,12 @@ class Notebook:
         self._header = [f'Authorization: token {token}']
         self._running: dict[str, tuple[str, websocket.WebSocket]] = {}
 
-    def run(self, code: str) -> str:
-        """Run a cell to its end; return what it shows, an error included."""
-        return self.finish(self.start(code))
+    def run(self, code: str, lines: Collection[str] = ()) -> str:
+        """Run a cell to its end, and until it shows some lines; return what it shows.
+
+        An error counts, too. Lines of nodes may come after the end of their cell.
+        """
+        return self.finish(self.start(code), lines)
 
     def start(self, code: str) -> str:
         """Start a cell and return its request's id."""
@@ -184,9 +187,10 @@ class Notebook:
         self._running[header['msg_id']] = code, connection
         return header['msg_id']
 
-    def finish(self, request: str) -> str:
-        """Wait for the end of a started cell; return what it shows."""
+    def finish(self, request: str, lines: Collection[str] = ()) -> str:
+        """Wait for the end of a started cell, and for some lines; return what it shows."""
         shown: list[str] = []
+        has_ended = False
         displays: dict[str, int] = {}
         others = 0
         code, connection = self._running.pop(request)
@@ -197,6 +201,8 @@ class Notebook:
                     f'no end of {code!r} in {self._address}; '
                     f'shown: {"".join(shown)!r}; other messages: {others}'
                 )
+                if has_ended and {*lines} <= {*''.join(shown).splitlines()}:
+                    return ''.join(shown)
                 try:
                     text = connection.recv()
                 except websocket.WebSocketTimeoutException:
@@ -208,8 +214,7 @@ class Notebook:
                     others += 1
                     continue
                 kind, content = message['msg_type'], message['content']
-                if kind == 'status' and content['execution_state'] == 'idle':
-                    return ''.join(shown)
+                has_ended |= kind == 'status' and content['execution_state'] == 'idle'
                 if kind == 'stream':
                     shown.append(content['text'])
                 elif 'data' in content:

@@ -37,11 +37,13 @@ CASES = {
     'types.other': (_types('String', 'Twist'), _types('Twist', 'Twist')),
     'types.service': (
         "node('server').create_service(SetBool, 'lamp', heard)\n"
-        "other_process('client').create_client(Trigger, 'lamp'); all_named(3)",
+        "other_process('client').create_client(Trigger, 'lamp')\n"
+        "served('/lamp', 1); all_named(3)",
         # Two servers of two types, and the client finds its own.
         "node('server').create_service(SetBool, 'lamp', heard)\n"
         "other_process('client').create_client(SetBool, 'lamp')\n"
-        "other_process('another').create_service(Trigger, 'lamp', heard); all_named(4)",
+        "other_process('another').create_service(Trigger, 'lamp', heard)\n"
+        "served('/lamp', 2); all_named(4)",
     ),
     'qos.reliability': (
         _profiles('', 'reliability=ReliabilityPolicy.BEST_EFFORT'),

@@ -113,6 +113,18 @@ def all_named(count):
     )
 
 
+def served(name, servers):
+    """Wait until the graph has so many servers of a service, and one client.
+
+    The name of a node may come before its ends.
+    """
+    helper: Any = runtime.helper
+    lab.wait_until(
+        lambda: (helper.count_services(name), helper.count_clients(name)) == (servers, 1),
+        timeout_sec=20,
+    )
+
+
 def look():
     """Print what is told now."""
     found = watch.look()
