@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 PAGES = [*ROOT.glob('*.md'), *(ROOT / 'docs').rglob('*.md')]
-LINK = re.compile(r'\]\((?!https?:|mailto:|#)([^)#\s]+)')
+LINK = re.compile(r'(?:\]\(|\bsrc(?:set)?=")(?!https?:|mailto:|#)([^)#\s"]+)')
 TEST = re.compile(r'`(test_\w+?)(\.py)?(…)?`')
 
 
@@ -49,7 +49,7 @@ def test_what_is_named_is_there(page: Path) -> None:
 
 def test_what_is_not_there_is_found(tmp_path: Path) -> None:
     page = tmp_path / 'page.md'
-    page.write_text('[a](gone.md) [b](page.md#part) [c](https://gone.example)')
-    assert missing_files(page) == ['gone.md']
+    page.write_text('[a](gone.md) [b](page.md#part) [c](https://gone.example) <img src="x.png">')
+    assert missing_files(page) == ['gone.md', 'x.png']
     text = '`test_unheard_of_…` `test_no.py` `test_docs.py` `test_what_is_…` `test_what_`'
     assert missing_tests(text) == ['test_unheard_of_', 'test_no', 'test_what_']

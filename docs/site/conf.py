@@ -11,6 +11,7 @@ include_patterns = ['*.md', 'docs/*.md', 'docs/pictures/*.md', 'notebooks/*']
 nb_execution_mode = 'off'
 nb_merge_streams = True
 myst_heading_anchors = 3
+myst_enable_extensions = ['html_image']
 # Cells with magics are no plain Python, and launch files are none.
 suppress_warnings = ['misc.highlighting_failure']
 

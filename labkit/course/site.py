@@ -48,9 +48,11 @@ def build_site(folder: Path) -> str:
         for path in (path for name in _FILES for path in ROOT.glob(name)):
             shutil.copy(path, copy)
         shutil.move(copy / 'docs' / 'site' / 'index.md', copy)
-        # A badge is a page beside the one that shows the repository, which the site is not.
+        # A badge is a page beside the one that shows the repository, which the site is not. Of a
+        # picture in two themes it has the light one.
         readme = copy / 'README.md'
-        readme.write_text(re.sub(r'(?m)^\[!\[.*\n', '', readme.read_text('utf-8')), 'utf-8')
+        text = re.sub(r'(?m)^(\[!\[|</?picture>|<source ).*\n', '', readme.read_text('utf-8'))
+        readme.write_text(text, 'utf-8')
         new = Path(place) / 'site'
         command = [str(python), '-m', 'sphinx', '-q', '-W', '--keep-going']
         command += ['-c', str(copy / 'docs' / 'site'), str(copy), str(new)]

@@ -89,7 +89,7 @@ class Topics {
       this.grab(canvas, (event) => event.offsetX / canvas.clientWidth);
       return element('tr', {},
         element('th', { scope: 'row' }, button,
-          element('span', { className: 'labkit-bag-type', textContent: type })),
+          element('span', { className: 'labkit-bag-type' }, ...breakable(type))),
         element('td', { textContent: count }), element('td', { textContent: rate || '–' }),
         element('td', {}, element('div', { className: 'labkit-bag-strip' }, canvas)));
     }));
@@ -156,6 +156,12 @@ class Trail {
     return `Robot at x = ${x.toFixed(2)} m, y = ${y.toFixed(2)} m, heading ${degrees}°, `
       + `${v.toFixed(2)} m/s, ${w.toFixed(2)} rad/s.`;
   }
+}
+
+// The name of a type, which may go on in a new line after each slash.
+function breakable(type) {
+  const [first, ...others] = type.split('/');
+  return [first, ...others.flatMap((word) => ['/', element('wbr'), word])];
 }
 
 // What a message says, as lines of text.

@@ -122,8 +122,7 @@ def image(topic: str) -> ImageView:
 
     Colour, grey and depth images work: rgb8, bgr8, rgba8, bgra8, mono8, mono16, 16UC1, 32FC1 and a
     few more. In a depth image, near is light. A page gets at most 10 images a second, of at most
-    640
-    by 480 pixels.
+    640 by 480 pixels.
 
     Args:
         topic: Name of the topic, such as `'/camera/image_raw'`. It need not exist yet.

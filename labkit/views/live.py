@@ -1,8 +1,7 @@
 """The lifetime of a live view, from the cell that shows it to its end.
 
 It ends when it is closed, when its cell is run again, or when ROS is stopped. A view in a page
-also
-ends when nobody looks at it (`labkit.views.live_page`).
+also ends when nobody looks at it (`labkit.views.live_page`).
 """
 
 from __future__ import annotations

@@ -4,18 +4,8 @@
     python -m tests.browser.screenshot 02 --out pictures --cell two-talkers --dark
 
 opens the lesson in JupyterLab, runs all of its cells, and saves a picture of each screenful, or of
-one that starts at a cell. Cells that ended with an error are named. The README's picture is
-
-    python -m tests.browser.screenshot 00 --cell first-node --until robot --height 730 --width 1480
-
-and those of `docs/pictures`, with `--out docs/pictures --height 760 --width 1200` (the first
-as wide as it is by itself),
-
-    python -m tests.browser.screenshot 00 --cell first-node --until first-node
-    python -m tests.browser.screenshot 01 --cell visitor --until visitor
-    python -m tests.browser.screenshot 07 --cell robot --until robot
-    python -m tests.browser.screenshot 07 --cell robot --until robot --dark
-    python -m tests.browser.screenshot 10 --cell trip --until trip
+one that starts at a cell. Cells that ended with an error are named. Those of the README and of
+docs/pictures are taken by `tests.browser.pictures`.
 """
 
 from __future__ import annotations
@@ -58,7 +48,7 @@ def main(argv: list[str] | None = None) -> int:
         notebook = open_notebook(lab, browser, name)
         if options.dark:
             notebook.execute('apputils:change-theme', theme='JupyterLab Dark')
-        _run(notebook, options.until)
+        run_until(notebook, options.until)
         _take(notebook, options.out / name, options.cell, '-dark' * options.dark)
         return _report(notebook)
 
@@ -80,7 +70,8 @@ def _published(word: str) -> list[Path]:
     return [path for path in notebooks if path.stem.startswith(word)]
 
 
-def _run(notebook: Notebook, last: str) -> None:
+def run_until(notebook: Notebook, last: str) -> None:
+    """Run the cells of a notebook one by one, to this one; all at once without its id."""
     if not last:
         notebook.run_all()
         return

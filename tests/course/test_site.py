@@ -40,6 +40,13 @@ def test_each_page_of_the_docs_is_there_and_can_be_searched_for(built: Path) -> 
     assert '"docs/faults"' in index and '"notebooks/07_turtlebot"' in index
 
 
+def test_the_front_page_has_its_picture(built: Path) -> None:
+    page = (built / 'index.html').read_text(encoding='utf-8')
+    found = re.search(r'<img [^>]*src="(_images/readme[^"]*)"', page)
+    assert found and (built / found[1]).is_file()
+    assert 'readme-dark' not in page
+
+
 def test_pages_load_nothing_from_elsewhere(built: Path) -> None:
     loaded = re.compile(r'<(?:script|img|link rel="stylesheet")[^>]*(?:src|href)="(https?:[^"]+)"')
     found = [
