@@ -63,11 +63,12 @@ LEFT_BEHIND = Mistake(
 
 def _draw() -> list[str]:
     """Return texts with and without the word, in the middle and in other letters."""
-    names = iter(draw_names(11))
+    names = iter(draw_names(12))
     number = random.randint(10, 99)
     texts = [
         f'{next(names)}: now that I am here I say Hello to number {number}',
         f'{next(names)}: Hello Hello {number}',
+        f'{next(names)}: Hello Ada',
         f'{next(names)}:  {number}  Hello  ',
         'Hello',
         f'{next(names)}: hello {number}',

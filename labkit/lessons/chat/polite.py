@@ -67,6 +67,8 @@ def _draw() -> list[str]:
     """Return what people say whom nobody knows yet, and whom all know by then."""
     bo, chidi, eva, finn, guo, hana, *more = draw_names(18)
     kitty = f'Hello {draw_names(2)[0]}'
+    # A name that begins as that of the greeter does, and is another one.
+    adam = f'{ME}m {draw_names(2)[0]}'
     return [
         f'{bo}: Hello',
         f'{chidi}: How are you?',
@@ -78,6 +80,7 @@ def _draw() -> list[str]:
         f'{bo}: Hello {finn}',
         f'{ME}: Hello',
         f'{kitty}: Good morning',
+        f'{adam}: Hello Hello',
         f'{guo}: hello',
         f'{guo}: HELLO',
         f'{hana}: at 7: 30 I say Hello',

@@ -116,6 +116,7 @@ class _Typed(GraphClause):
             due += _say(line) is not None
             probe.wait(lambda: len(watch) >= due, ARRIVES_SEC)  # noqa: B023
             if len(watch) < due:
+                evidence.asked[TOPIC][-1]['late'] = True
                 break
         # A timer may say more, later.
         evidence.life = evidence.live({TOPIC: STRING}, AFTER_SEC, [self])
@@ -150,21 +151,24 @@ class _Says(GraphClause):
     def judge(self, evidence: Evidence) -> str:
         """Compare what came with what was typed, one after the other."""
         came = evidence.heard[TOPIC].values('data')
-        lines = [fields['data'] for fields in evidence.asked[TOPIC]]
         before = ''
         empty: str | None = None
-        for line in lines:
+        for fields in evidence.asked[TOPIC]:
+            line = fields['data']
             right = _say(line)
             if right is None:
                 empty = line
                 continue
+            if came[:1] == [right] and 'late' in fields:
+                raise self._wrong(line, right, (), before, empty)
             if came[:1] != [right]:
                 raise self._wrong(line, right, came, before, empty)
             del came[0]
             before, empty = right, None
         if came:
             raise self._wrong('', '', came, before, empty)
-        return f'{lines[0]!r} became {_say(lines[0])!r}.'
+        first = evidence.asked[TOPIC][0]['data']
+        return f'{first!r} became {_say(first)!r}.'
 
     def _wrong(
         self, line: str, right: str, came: Sequence[str], before: str, empty: str | None

@@ -8,6 +8,11 @@ __all__ = ['ANSWERS']
 
 ANSWERS = [
     wrong(
+        'not to who speaks to Ada',
+        'were answered correctly, the others were not',
+        ("'Hello' in msg.data", "'Hello' in msg.data and 'Ada' not in msg.data"),
+    ),
+    wrong(
         'keeps one publisher',
         'A publisher that is kept is used again and again.',
         ("            publisher = self.create_publisher(String, 'lobby', 10)\n", ''),

@@ -8,6 +8,16 @@ __all__ = ['ANSWERS']
 
 ANSWERS = [
     wrong(
+        'greets nobody whose name holds Ada',
+        'says Hello and was not greeted yet',
+        ('who not in self.greeted', "'Ada' not in who"),
+    ),
+    wrong(
+        'greets twice who says it twice',
+        'polite',
+        ("f'Ada: Hello, {who}'", "f'Ada: Hello, {who}' + '!' * (text.count('Hello') - 1)"),
+    ),
+    wrong(
         'greets itself, without an end',
         'without an end',
         ("if 'Hello' in text and who not in self.greeted:", "if 'Hello' in text:"),

@@ -30,6 +30,11 @@ ANSWERS = [
         ),
     ),
     wrong(
+        'four seconds later',
+        'nothing was published for it within 3 s',
+        ('        teller.say(text)', '        teller.create_timer(4.0, lambda: teller.say(text))'),
+    ),
+    wrong(
         'no function', 'There is no function called ask', ('def ask', 'ask = None\n\n\ndef tell')
     ),
     wrong(
