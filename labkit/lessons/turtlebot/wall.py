@@ -173,6 +173,9 @@ def _draw() -> list[Trial]:
         _thin(side, random.choice((1, 3)) - uniform(0.05, 0.2), ROD, nothing=math.nan),
         _edge(1, AHEAD - 1),
         _edge(-1, AHEAD),
+        # The next beam on each side is none of those ahead.
+        _edge(1, AHEAD, stops=False),
+        _edge(-1, AHEAD + 1, stops=False),
     ]
 
 
@@ -197,19 +200,23 @@ def _thin(side: int, angle: float, radius: float, nothing: float) -> Trial:
     return Trial((0.0, 0.0, turn), nothing=nothing, posts=posts)
 
 
-def _edge(side: int, outermost: int) -> Trial:
+def _edge(side: int, outermost: int, *, stops: bool = True) -> Trial:
     """Return a drive past a wall along the way that only the outermost beam of a side meets near.
 
     Args:
         side: 1 for the left, -1 for the right.
         outermost: How many degrees from ahead that beam looks.
+        stops: Whether that is to stop it; otherwise a wall ahead does, before it is there.
     """
-    turn, begin = random.uniform(-3, 3), random.uniform(0.95, 1.1)
+    turn, begin = random.uniform(-3, 3), random.uniform(0.95, 1.1) - 0.3 * (not stops)
     # The outermost beam meets it nearer than what is too near, the next one farther away, wherever
     # the robot is. So it can be long enough for each scan and timer.
     off = side * NEAR * sum(math.sin(math.radians(outermost - n)) for n in (0, 1)) / 2
-    ends = _turned((begin, off), turn), _turned((begin + 0.2, off), turn)
-    return Trial((0.0, 0.0, turn), walls=[(*ends[0], *ends[1])])
+    walls = [((begin, off), (begin + 0.2, off))]
+    if not stops:
+        walls.append(((begin + 0.25, -0.3), (begin + 0.25, 0.3)))
+    ends = [(*_turned(one, turn), *_turned(other, turn)) for one, other in walls]
+    return Trial((0.0, 0.0, turn), walls=ends)
 
 
 def _turned(point: tuple[float, float], turn: float) -> tuple[float, float]:

@@ -8,6 +8,11 @@ __all__ = ['ANSWERS']
 
 ANSWERS = [
     wrong(
+        'at most what the robot can do',
+        'linear.x',
+        ('-self.x', 'max(-0.22, min(0.22, -self.x))'),
+    ),
+    wrong(
         'a gain that is nearly right',
         'This is 1.0001 * x',
         ('= -self.x', '= -1.0001 * self.x'),

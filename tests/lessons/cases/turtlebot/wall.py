@@ -8,6 +8,12 @@ __all__ = ['ANSWERS']
 
 ANSWERS = [
     wrong(
+        'two beams more on each side',
+        'Something beside or behind the robot was taken for the wall ahead.',
+        ('[:10]', '[:12]'),
+        ('[-10:]', '[-12:]'),
+    ),
+    wrong(
         'forgets to stop',
         'leaves it driving',
         (
