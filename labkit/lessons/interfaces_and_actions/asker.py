@@ -9,6 +9,7 @@ from typing import Any
 from labkit.exercises import Exercise, Fail, Mistake, Solution, anything, expect
 from labkit.exercises.callbacks import find_node
 from labkit.exercises.clauses import WITHIN, Answers, Evidence, GraphClause, Named
+from labkit.exercises.draws import MANY
 from labkit.lessons.interfaces_and_actions.calculator import is_calculator
 from labkit.lessons.interfaces_and_actions.goals import ACTION
 
@@ -96,7 +97,8 @@ class _Sends(GraphClause):
         )
         expect.only_given(evidence.probe, NAME, '/calculator')
         expect.asks(evidence.probe, NODE, NAME)
-        found.factor = random.randint(2, 9)
+        # With some of them the last sum is the least one.
+        found.factor = random.choice((-1, 1)) * random.randint(2, 9)
 
     def tests(self, evidence: Evidence) -> Sequence[Any]:
         # Those of the answers; the goals are counted from now on.
@@ -135,8 +137,8 @@ asker = Exercise(
             INT16,
             f'publish the last number of each result on `{SUM}` (`{INT32}`), once, {WITHIN}',
             answer=lambda order: int(find_node('/calculator').factor) * order * (order + 1) // 2,
-            # More than ten, of which two are the same, with the smallest one and a large one.
-            draw=lambda: [3, 3, 1, random.randint(200, 300), *random.sample(range(2, 60), k=10)],
+            # Many, of which two are the same, with the smallest one and a large one.
+            draw=lambda: [3, 3, 1, random.randint(200, 300), *random.sample(range(2, 60), k=MANY)],
             outer_type=INT32,
             by=NODE,
             mistakes=[OTHER_NUMBER],

@@ -40,10 +40,15 @@ TOO_LATE = Mistake(
 
 
 def _draw() -> list[Goal]:
-    """Return goals with both limits, what is next to them, and some further inside and outside."""
+    """Return goals with both limits, what is next to them, and some further inside and outside.
+
+    One comes twice in a row.
+    """
     inside, outside = random.randint(LEAST + 1, MOST - 1), random.randint(MOST + 2, 99)
     orders = [LEAST, MOST, inside, LEAST - 1, MOST + 1, -outside, -1, outside]
-    return goals(*random.sample(orders, k=len(orders)))
+    random.shuffle(orders)
+    orders.insert(orders.index(inside), inside)
+    return goals(*orders)
 
 
 def _accepts(pursuits: Sequence[Pursuit]) -> None:

@@ -15,7 +15,8 @@ KEEPER = 'Ada'
 def make_door() -> Node:
     """Return a node that serves `/move_door`: true opens the door, false closes it.
 
-    Its `keeper` is named in the responses, and `calls` holds what was asked for.
+    Its `keeper` is named in the responses, which succeed if the door has moved, and `calls` holds
+    what was asked for.
     """
     from rclpy.node import Node
     from std_srvs.srv import SetBool
@@ -25,11 +26,13 @@ def make_door() -> Node:
             super().__init__('door')
             self.keeper = KEEPER
             self.calls: list[bool] = []
+            self.is_open = False
             self.create_service(SetBool, 'move_door', self.on_move)
 
         def on_move(self, request: Any, response: Any) -> Any:
             self.calls.append(request.data)
-            response.success = True
+            response.success = request.data != self.is_open
+            self.is_open = request.data
             response.message = f'{self.keeper} {"opened" if request.data else "closed"} the door'
             return response
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from labkit.exercises import Exercise, Fail, Mistake, Solution
 from labkit.exercises.clauses import Call, Named, Responds, Serves, Words
+from labkit.exercises.draws import MANY
 from labkit.exercises.judging import naming
 
 __all__ = ['lamp']
@@ -75,9 +76,10 @@ _TELLS_CHANGES = Words('`success` is `True` only if that is a change')
 
 
 def _draw() -> Sequence[Sequence[Mapping[str, Any]]]:
-    """Return requests in which changes and repetitions are, alone and two at once."""
+    """Return many requests in which changes and repetitions are, alone and two at once."""
     value = random.choice([True, False])
     one = [value, value, not value, not value, not value, value, not value]
+    one += [*random.choices([True, False], k=MANY), not value]
     groups = [[{'data': data}] for data in one]
     return [*groups, [{'data': value}, {'data': value}], [{'data': not value}], [{'data': value}]]
 

@@ -9,6 +9,7 @@ from typing import Any
 from labkit.exercises import Exercise, Fail, Mistake, Solution, anything, expect
 from labkit.exercises.callbacks import find_node
 from labkit.exercises.clauses import WITHIN, Answers, Evidence, GraphClause, Named
+from labkit.exercises.draws import MANY
 from labkit.lessons.services_and_parameters.door import is_door
 
 __all__ = ['porter']
@@ -182,8 +183,7 @@ porter = Exercise(
             BOOL,
             f'publish the `message` of each response on `{NEWS}` (`{STRING}`), once, {WITHIN}',
             answer=_message,
-            # More than ten: some nodes have had enough then.
-            draw=lambda: [True, False, *random.choices([True, False], k=10)],
+            draw=lambda: [True, False, *random.choices([True, False], k=MANY)],
             outer_type=STRING,
             by=NODE,
             mistakes=MISTAKES,

@@ -8,6 +8,15 @@ __all__ = ['ANSWERS']
 
 ANSWERS = [
     wrong(
+        'stops after twenty',
+        'Some messages lead to a goal, and others do not.',
+        (
+            '        future = self',
+            "        self.count = getattr(self, 'count', 0) + 1\n"
+            '        if self.count > 20:\n            return\n        future = self',
+        ),
+    ),
+    wrong(
         'send_goal() in the callback',
         'inside a callback would wait for ever',
         (

@@ -7,6 +7,16 @@ from cases import ERROR, right, wrong
 __all__ = ['ANSWERS']
 
 ANSWERS = [
+    wrong(
+        'never the same twice',
+        'goal_callback did not return GoalResponse.ACCEPT for it.',
+        (
+            '        if 1 <=',
+            '        before, self.before = getattr(self, "before", 0), goal.order\n'
+            '        if goal.order != before and 1 <=',
+        ),
+        ('"before"', "'before'"),
+    ),
     wrong('another topic', "Write the name as '/stairs'"),
     wrong(
         'no goal_callback',

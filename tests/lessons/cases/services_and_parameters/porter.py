@@ -8,6 +8,23 @@ __all__ = ['ANSWERS']
 
 ANSWERS = [
     wrong(
+        'news of what succeeded alone',
+        'porter',
+        (
+            '        self.publisher.publish(',
+            '        if future.result().success:\n            self.publisher.publish(',
+        ),
+    ),
+    wrong(
+        'stops after twenty',
+        'Some messages lead to a call, and others do not.',
+        (
+            '        future = self',
+            "        self.count = getattr(self, 'count', 0) + 1\n"
+            '        if self.count > 20:\n            return\n        future = self',
+        ),
+    ),
+    wrong(
         'call() in the callback',
         'inside a callback would wait for ever',
         (
