@@ -48,6 +48,7 @@ def draw_texts(*, empty: bool = True) -> list[str]:
     plain = [f'{word(_WORDS)} {n}' for n in random.sample(range(2, 100), PLAIN)]
     traps = [
         f'{word(_WORDS)}{word(_WORDS).upper()} {word("!?.,;:")}',
+        f'{word(_WORDS)} {word(_WORDS)}.',
         f'{number(1000, 9999)}',
         f'-{number(1, 9)}.0',
         '0',

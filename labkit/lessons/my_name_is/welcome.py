@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution, expect
+from labkit.exercises import Exercise, Fail, Mistake, Probe, Solution, expect
 from labkit.exercises.clauses import (
     WITHIN,
     Answers,
@@ -21,6 +22,9 @@ from labkit.lessons.my_name_is.stages import (
     OPENING,
     STRING,
 )
+
+if TYPE_CHECKING:
+    from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['welcome']
 
@@ -110,6 +114,7 @@ class _ThreeNodes(GraphClause):
         if len(ends) > 1:
             seen = f'{len(ends)} of them: {", ".join(sorted(ends))}'
             raise Fail(f'one publisher on {OUTER}', seen, SEVERAL_HOSTS)
+        _is_here(probe, evidence.publisher(OUTER))
         hears = {end.topic: end for end in probe.all_subscriptions() if end.node == host}
         listeners = {end.node for end in probe.subscriptions(INNER)}
         said = [
@@ -131,9 +136,7 @@ class _ThreeNodes(GraphClause):
             evidence.ends['subscription', end.topic, host] = hears[end.topic]
             evidence.subscription(INNER, end.node)
         for (kind, _, _), end in evidence.ends.items():
-            if probe.node_object(end.node) is None:
-                seen = f'{end.node} {probe.place(end)}'
-                raise Fail('nodes of this notebook', seen, ELSEWHERE)
+            _is_here(probe, end)
             if kind == 'subscription':
                 expect.spun(probe, end)
 
@@ -210,6 +213,11 @@ class _OneIsEnough(GraphClause):
             except Fail as fail:
                 raise Fail(fail.expected, fail.seen, WAITS) from None
         return ''
+
+
+def _is_here(probe: Probe, end: Endpoint) -> None:
+    if probe.node_object(end.node) is None:
+        raise Fail('nodes of this notebook', f'{end.node} {probe.place(end)}', ELSEWHERE)
 
 
 def _names_differ(evidence: Evidence) -> str:

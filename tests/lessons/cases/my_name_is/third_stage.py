@@ -8,6 +8,11 @@ __all__ = ['ANSWERS']
 
 ANSWERS = [
     wrong(
+        'one full stop',
+        'were answered correctly, the others were not',
+        ('msg.data + ', "msg.data.rstrip('.') + "),
+    ),
+    wrong(
         'publishes where it listens',
         'The node hears what it says itself',
         ("String, 'greeting', 10", "String, 'complete', 10"),
