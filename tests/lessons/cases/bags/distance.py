@@ -7,6 +7,16 @@ from cases import ERROR, right, wrong
 __all__ = ['ANSWERS']
 
 ANSWERS = [
+    wrong(
+        'a limit that is a little too low',
+        'Steps before this one were counted, and this one is not.',
+        ('step < 0.5', 'step < 0.45'),
+    ),
+    wrong(
+        'leaves out tiny steps',
+        'That is not the length of this step.',
+        ('step < 0.5', '0.001 < step < 0.5'),
+    ),
     wrong('a limit that is too high', 'The jump was counted', ('step < 0.5', 'step < 1.0')),
     wrong(
         'publishes only when something is added',
