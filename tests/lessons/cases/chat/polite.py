@@ -13,9 +13,12 @@ ANSWERS = [
         ('who not in self.greeted', "'Ada' not in who"),
     ),
     wrong(
-        'greets twice who says it twice',
+        'says the name as often as Hello is said',
         'polite',
-        ("f'Ada: Hello, {who}'", "f'Ada: Hello, {who}' + '!' * (text.count('Hello') - 1)"),
+        (
+            '            self.publisher.publish(',
+            "            who = who * text.count('Hello')\n            self.publisher.publish(",
+        ),
     ),
     wrong(
         'greets itself, without an end',
