@@ -14,7 +14,7 @@ ANSWERS = [
     ),
     wrong(
         'says the name as often as Hello is said',
-        'polite',
+        'The text goes on after that',
         (
             '            self.publisher.publish(',
             "            who = who * text.count('Hello')\n            self.publisher.publish(",

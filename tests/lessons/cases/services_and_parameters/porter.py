@@ -9,7 +9,7 @@ __all__ = ['ANSWERS']
 ANSWERS = [
     wrong(
         'news of what succeeded alone',
-        'porter',
+        'were answered correctly, the others were not',
         (
             '        self.publisher.publish(',
             '        if future.result().success:\n            self.publisher.publish(',
