@@ -62,7 +62,7 @@ def _chat(notebook: Notebook) -> None:
 
 
 def _readme(notebook: Notebook) -> None:
-    """Show a verdict, the robot and its keys in the panel, and the graph of all nodes below."""
+    """Show a verdict, the robot and its keys in the panel, and the graph of two nodes below."""
     page = notebook.page
     notebook.execute('application:toggle-left-area')
     notebook.run_cell('setup')

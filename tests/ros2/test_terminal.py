@@ -7,6 +7,8 @@ import os
 import signal
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
+from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 
 import pytest
@@ -132,10 +134,37 @@ def test_domain_of_the_one_running_notebook(monkeypatch):
 
 def test_notes_of_servers_that_tell_nothing(monkeypatch, tmp_path):
     monkeypatch.setenv('JUPYTER_RUNTIME_DIR', str(tmp_path))
-    gone = {'url': f'http://127.0.0.1:{free_port()}/', 'token': 'secret'}
-    for number, note in enumerate(('', '[]', '{}', '{"url": 3, "token": 4}', json.dumps(gone))):
+    here = {'pid': os.getpid(), 'port': free_port(), 'base_url': '/', 'token': 'secret'}
+    odd = {**here, 'pid': 'me', 'port': [4]}
+    notes = ('', '[]', '{}', json.dumps(odd), json.dumps(here), json.dumps({**here, 'pid': 0}))
+    for number, note in enumerate(notes):
         (tmp_path / f'jpserver-{number}.json').write_text(note)
     assert notebooks_in_pages() == {}
+
+
+def test_only_the_process_of_a_note_gets_its_token(monkeypatch, tmp_path):
+    monkeypatch.setenv('JUPYTER_RUNTIME_DIR', str(tmp_path))
+    asked = []
+
+    class Server(BaseHTTPRequestHandler):
+        def do_GET(self):
+            asked.append((self.path, self.headers['Authorization']))
+            self.send_response(200)
+            self.end_headers()
+            self.wfile.write(b'[{"path": "a/04.ipynb", "kernel": {"connections": 1}}]')
+
+        def log_message(self, *_):
+            pass
+
+    with HTTPServer(('127.0.0.1', 0), Server) as server, ThreadPoolExecutor() as pool:
+        pool.submit(server.serve_forever, 0.01)
+        note = {'pid': os.getppid(), 'port': server.server_port, 'base_url': '/x/', 'token': 'one'}
+        (tmp_path / 'jpserver-1.json').write_text(json.dumps(note))
+        assert (notebooks_in_pages(), asked) == ({}, [])
+        (tmp_path / 'jpserver-1.json').write_text(json.dumps({**note, 'pid': os.getpid()}))
+        assert notebooks_in_pages() == {'04.ipynb': True}
+        server.shutdown()
+    assert asked == [('/x/api/sessions', 'token one')]
 
 
 def test_what_reads_files_needs_no_domain(monkeypatch, capsys):

@@ -114,6 +114,7 @@ class Evidence:
         asked: Fields of what was sent before time passed, by topic: somebody may answer only then.
         tests: The tests that each clause has asked for, as they were sent.
         heard: What clauses listen to by themselves, by topic. Nobody else subscribes there.
+        partners: Full names of nodes of the lesson that the learner's ask: time passes for them.
         began: When it was begun, ns since 1970.
     """
 
@@ -124,6 +125,7 @@ class Evidence:
     asked: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
     tests: dict[GraphClause, list[Sent]] = field(default_factory=dict)
     heard: dict[str, Watch] = field(default_factory=dict)
+    partners: set[str] = field(default_factory=set)
     began: int = field(default_factory=time.time_ns)
 
     def publisher(self, topic: str, by: str = '') -> Endpoint:
@@ -270,10 +272,15 @@ class Evidence:
     ) -> Life:
         """Let time pass for some nodes, as exactly as the clauses need it.
 
-        Time passes for the nodes that clauses have found, if none are named. What else has an end
-        on these topics, such as a node of an earlier exercise, stands still. `before` is called
-        when it stands still for all of them.
+        Time passes for the nodes that clauses have found, if none are named, and for their
+        partners, if all of them are in this process. What else has an end on these topics, such as
+        a node of an earlier exercise, stands still. `before` is called when it stands still for
+        all of them.
         """
+        names = {*(nodes or (end.node for end in self.ends.values()))}
+        if all(self.probe.node_object(name) is not None for name in names):
+            # What another process asks comes at some real time, when no time may pass here.
+            names |= self.partners
         also = {'/rosout': LOG} if any('/rosout' in s.answers for s in stimuli) else {}
         # Who only answers needs the time no more often than for a timer that is in time.
         periods = [clause.period for clause in clauses if clause.period]
@@ -284,7 +291,7 @@ class Evidence:
             seconds,
             stimuli=stimuli,
             also=also,
-            nodes=nodes or {end.node for end in self.ends.values()},
+            nodes=names,
             step=step,
             before=None if before is None else lambda passing: before(),
         )

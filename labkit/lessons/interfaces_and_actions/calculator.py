@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from labkit.lessons._partner import take_time
+
 if TYPE_CHECKING:
     from rclpy.node import Node
 
@@ -13,7 +15,8 @@ __all__ = ['is_calculator', 'make_calculator']
 def make_calculator() -> Node:
     """Return a node that serves `/add_up` (`test_msgs/action/Fibonacci`).
 
-    The result of a goal are the sums of the numbers from 1 to `order`, each times `factor`.
+    The result of a goal are the sums of the numbers from 1 to `order`, each times `factor`. It
+    takes a moment, see `take_time`.
     """
     from rclpy.action.server import ActionServer
     from rclpy.node import Node
@@ -26,8 +29,9 @@ def make_calculator() -> Node:
             self.orders: list[int] = []
             ActionServer(self, Fibonacci, 'add_up', self.execute)  # type: ignore[no-untyped-call]
 
-        def execute(self, handle: Any) -> Any:
+        async def execute(self, handle: Any) -> Any:
             self.orders.append(handle.request.order)
+            await take_time(self)
             sums = [self.factor * n * (n + 1) // 2 for n in range(1, handle.request.order + 1)]
             handle.publish_feedback(Fibonacci.Feedback(sequence=sums[:1]))
             handle.succeed()

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from labkit.lessons._partner import take_time
+
 if TYPE_CHECKING:
     from rclpy.node import Node
 
@@ -15,6 +17,7 @@ KEEPER = 'Ada'
 def make_door() -> Node:
     """Return a node that serves `/move_door`: true opens the door, false closes it.
 
+    That takes a moment, see `take_time`, and the response comes when it is done.
     Its `keeper` is named in the responses, which succeed if the door has moved, and `calls` holds
     what was asked for.
     """
@@ -29,8 +32,9 @@ def make_door() -> Node:
             self.is_open = False
             self.create_service(SetBool, 'move_door', self.on_move)
 
-        def on_move(self, request: Any, response: Any) -> Any:
+        async def on_move(self, request: Any, response: Any) -> Any:
             self.calls.append(request.data)
+            await take_time(self)
             response.success = request.data != self.is_open
             self.is_open = request.data
             response.message = f'{self.keeper} {"opened" if request.data else "closed"} the door'

@@ -119,6 +119,7 @@ class _Calls(GraphClause):
         door = _door()
         expect.only_given(evidence.probe, SERVICE, '/door')
         expect.asks(evidence.probe, NODE, SERVICE)
+        evidence.partners.add('/door')
         door.keeper = random.choice([name for name in KEEPERS if name != door.keeper])
 
     def tests(self, evidence: Evidence) -> Sequence[Any]:

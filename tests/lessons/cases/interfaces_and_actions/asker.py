@@ -8,6 +8,19 @@ __all__ = ['ANSWERS']
 
 ANSWERS = [
     wrong(
+        'drops a wish while the calculator adds',
+        'Some messages lead to a goal, and others do not.',
+        (
+            '        future = self',
+            "        if getattr(self, 'busy', False):\n            return\n"
+            '        self.busy = True\n        future = self',
+        ),
+        (
+            '        self.publisher.publish(',
+            '        self.busy = False\n        self.publisher.publish(',
+        ),
+    ),
+    wrong(
         'stops after twenty',
         'Some messages lead to a goal, and others do not.',
         (

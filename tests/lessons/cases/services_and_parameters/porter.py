@@ -8,6 +8,27 @@ __all__ = ['ANSWERS']
 
 ANSWERS = [
     wrong(
+        'drops a wish while the door moves',
+        'Some messages lead to a call, and others do not.',
+        (
+            '        future = self',
+            "        if getattr(self, 'busy', False):\n            return\n"
+            '        self.busy = True\n        future = self',
+        ),
+        (
+            '        self.publisher.publish(',
+            '        self.busy = False\n        self.publisher.publish(',
+        ),
+    ),
+    wrong(
+        'one future for all calls',
+        "AttributeError: 'NoneType' object has no attribute 'message'",
+        ('        future = self', '        self.future = self'),
+        ('        future.add', '        self.future.add'),
+        ('future.result().message', 'self.future.result().message'),
+        outcome=ERROR,
+    ),
+    wrong(
         'news of what succeeded alone',
         'were answered correctly, the others were not',
         (
