@@ -446,7 +446,7 @@ class _Course:
             self.catch_up()
         if not due or answered() or not self.go(self.passing.seconds + ANSWERS_SOON_SEC):
             return
-        if self.patience and not answered():
+        if self.patience and not (self.remote and self.remote.is_deaf) and not answered():
             self.patience -= not wait_for(answered, ANSWER_SEC)
 
     def _count(self, topics: Sequence[str] | Mapping[str, Watch]) -> int:

@@ -118,7 +118,8 @@ class RemoteTime:
     def _end(self) -> None:
         for name, follows in self._told.items():
             # Who has not answered may still do what was asked, and has to take it back then.
-            self._use_sim_time(name, False, ANSWER_SEC if follows else UNDERWAY_SEC)
+            answers = follows and name not in self._deaf
+            self._use_sim_time(name, False, ANSWER_SEC if answers else UNDERWAY_SEC)
         for client in self._clients.values():
             self._node.destroy_client(client)
         if self._clock is not None:
@@ -163,6 +164,11 @@ class RemoteTime:
         late = self._clients.keys() - {*self.names, *self._deaf}
         asked = [(name, self._ask(name)[0]) for name in late]
         self._deaf |= {name for name, done in asked if not self._answers(name, done)}
+
+    @property
+    def is_deaf(self) -> bool:
+        """Whether each node that was told the time has stopped to answer for good."""
+        return bool(self._clients) and self._clients.keys() <= self._deaf
 
     def _answers_in_time(self, name: str, done: threading.Event) -> bool:
         """Wait for an answer; tell whether it came within the time that the node has in all."""
