@@ -9,6 +9,7 @@ from __future__ import annotations
 from labkit.exercises.clauses.acting import Goal, Pursues, Pursuit
 from labkit.exercises.clauses.answering import WITHIN, Answers
 from labkit.exercises.clauses.asked import Asked, Words
+from labkit.exercises.clauses.asking import AsksForEach
 from labkit.exercises.clauses.base import Evidence, Graph, GraphClause, Stream, Test
 from labkit.exercises.clauses.logs import Logs
 from labkit.exercises.clauses.messages import HasText, Messages, Says
@@ -23,6 +24,7 @@ __all__ = [
     'WITHIN',
     'Answers',
     'Asked',
+    'AsksForEach',
     'Call',
     'Evidence',
     'Follows',

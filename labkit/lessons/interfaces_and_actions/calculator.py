@@ -9,7 +9,7 @@ from labkit.lessons._partner import take_time
 if TYPE_CHECKING:
     from rclpy.node import Node
 
-__all__ = ['is_calculator', 'make_calculator']
+__all__ = ['make_calculator']
 
 
 def make_calculator() -> Node:
@@ -26,11 +26,11 @@ def make_calculator() -> Node:
         def __init__(self) -> None:
             super().__init__('calculator')
             self.factor = 1
-            self.orders: list[int] = []
+            self.asked: list[int] = []
             ActionServer(self, Fibonacci, 'add_up', self.execute)  # type: ignore[no-untyped-call]
 
         async def execute(self, handle: Any) -> Any:
-            self.orders.append(handle.request.order)
+            self.asked.append(handle.request.order)
             await take_time(self)
             sums = [self.factor * n * (n + 1) // 2 for n in range(1, handle.request.order + 1)]
             handle.publish_feedback(Fibonacci.Feedback(sequence=sums[:1]))
@@ -38,8 +38,3 @@ def make_calculator() -> Node:
             return Fibonacci.Result(sequence=sums)
 
     return Calculator()
-
-
-def is_calculator(node: object) -> bool:
-    """Tell whether a node is such a calculator."""
-    return hasattr(node, 'factor') and hasattr(node, 'orders')

@@ -9,7 +9,7 @@ from labkit.lessons._partner import take_time
 if TYPE_CHECKING:
     from rclpy.node import Node
 
-__all__ = ['is_door', 'make_door']
+__all__ = ['make_door']
 
 KEEPER = 'Ada'
 
@@ -18,7 +18,7 @@ def make_door() -> Node:
     """Return a node that serves `/move_door`: true opens the door, false closes it.
 
     That takes a moment, see `take_time`, and the response comes when it is done.
-    Its `keeper` is named in the responses, which succeed if the door has moved, and `calls` holds
+    Its `keeper` is named in the responses, which succeed if the door has moved, and `asked` holds
     what was asked for.
     """
     from rclpy.node import Node
@@ -28,12 +28,12 @@ def make_door() -> Node:
         def __init__(self) -> None:
             super().__init__('door')
             self.keeper = KEEPER
-            self.calls: list[bool] = []
+            self.asked: list[bool] = []
             self.is_open = False
             self.create_service(SetBool, 'move_door', self.on_move)
 
         async def on_move(self, request: Any, response: Any) -> Any:
-            self.calls.append(request.data)
+            self.asked.append(request.data)
             await take_time(self)
             response.success = request.data != self.is_open
             self.is_open = request.data
@@ -41,8 +41,3 @@ def make_door() -> Node:
             return response
 
     return Door()
-
-
-def is_door(node: object) -> bool:
-    """Tell whether a node is such a door."""
-    return hasattr(node, 'keeper') and hasattr(node, 'calls')

@@ -8,6 +8,59 @@ __all__ = ['ANSWERS']
 
 ANSWERS = [
     wrong(
+        'sends no goal',
+        'No goal has come to /calculator.',
+        (
+            'future = self.client.send_goal_async(Fibonacci.Goal(order=msg.data))\n'
+            '        future.add_done_callback(self.on_accepted)\n',
+            'self.order = msg.data\n',
+        ),
+    ),
+    wrong(
+        'two goals',
+        '/calculator is asked more often than messages come.',
+        (
+            '        future = self',
+            '        self.client.send_goal_async(Fibonacci.Goal(order=msg.data))\n'
+            '        future = self',
+        ),
+    ),
+    wrong(
+        'not three',
+        'Some messages lead to a goal, and others do not.',
+        (
+            '        future = self',
+            '        if msg.data == 3:\n            return\n        future = self',
+        ),
+    ),
+    wrong(
+        'one more',
+        'What is asked differs from what was heard.',
+        ('order=msg.data', 'order=msg.data + 1'),
+    ),
+    wrong(
+        'always ten',
+        'The goal is always the same, whatever the message says.',
+        ('order=msg.data', 'order=10'),
+    ),
+    wrong(
+        'send_goal() in the callback, in a process of its own',
+        'So it waits for ever: a deadlock.',
+        (
+            '        future = '
+            'self.client.send_goal_async(Fibonacci.Goal(order=msg.data))\n'
+            '        future.add_done_callback(self.on_accepted)\n\n'
+            '    def on_accepted(self, future):\n'
+            '        future.result().get_result_async().add_done_callback(self.on_re'
+            'sult)\n\n    def on_result(self, future):\n'
+            '        self.publisher.publish(Int32(data=future.result().result.sequen'
+            'ce[-1]))\n',
+            '        answer = self.client.send_goal(Fibonacci.Goal(order=msg.data))\n'
+            '        self.publisher.publish(Int32(data=answer.result.sequence[-1]))\n',
+        ),
+        run='process',
+    ),
+    wrong(
         'drops a wish while the calculator adds',
         'Some messages lead to a goal, and others do not.',
         (

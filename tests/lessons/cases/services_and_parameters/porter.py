@@ -8,8 +8,48 @@ __all__ = ['ANSWERS']
 
 ANSWERS = [
     wrong(
+        'makes the request alone',
+        'No request has come to /door.',
+        (
+            '        future = self.client.call_async(SetBool.Request(data=msg.data))\n'
+            '        future.add_done_callback(self.on_response)\n',
+            '        self.request = SetBool.Request(data=msg.data)\n',
+        ),
+    ),
+    wrong(
+        'calls more',
+        '/door is asked more often than messages come.',
+        (
+            '        future = self',
+            '        self.client.call_async(SetBool.Request(data=msg.data))\n'
+            '        future = self',
+        ),
+    ),
+    wrong(
+        'opens only',
+        'Some messages lead to a request, and others do not.',
+        (
+            '        future = self',
+            '        if not msg.data:\n            return\n        future = self',
+        ),
+    ),
+    wrong(
+        'always true',
+        'The request is always the same, whatever the message says.',
+        ('data=msg.data', 'data=True'),
+    ),
+    wrong(
+        'turns around',
+        'What is asked differs from what was heard.',
+        (
+            '        future = self',
+            "        self.is_open = not getattr(self, 'is_open', False)\n        future = self",
+        ),
+        ('data=msg.data', 'data=self.is_open'),
+    ),
+    wrong(
         'drops a wish while the door moves',
-        'Some messages lead to a call, and others do not.',
+        'Some messages lead to a request, and others do not.',
         (
             '        future = self',
             "        if getattr(self, 'busy', False):\n            return\n"
@@ -38,7 +78,7 @@ ANSWERS = [
     ),
     wrong(
         'stops after twenty',
-        'Some messages lead to a call, and others do not.',
+        'Some messages lead to a request, and others do not.',
         (
             '        future = self',
             "        self.count = getattr(self, 'count', 0) + 1\n"
@@ -93,7 +133,7 @@ ANSWERS = [
     ),
     wrong(
         'has had enough after ten',
-        'Some messages lead to a call, and others do not.',
+        'Some messages lead to a request, and others do not.',
         (
             '    def on_wish(self, msg):\n',
             '    def on_wish(self, msg):\n'
