@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from labkit.exercises import Exercise, Lesson
+from labkit.exercises import Exercise, Lesson, Outcome
 from labkit.exercises.lesson import all_lessons
 
 sys.path.insert(0, str(Path(__file__).with_name('lessons')))
@@ -17,6 +17,7 @@ sys.path.insert(0, str(Path(__file__).with_name('lessons')))
 from mutants.changes import plain_changes
 from mutants.generate import Mutant, equivalents, mutants_of, parsed
 from mutants.ros_changes import ros_changes
+from mutants.run import Result, run_mutants
 
 EXERCISES = {
     f'{lesson.name}-{exercise.name}': (lesson, exercise)
@@ -118,3 +119,13 @@ def test_lines_are_left_out_and_exchanged() -> None:
     assert not any(
         text.index('self.timer =') < text.index('self.publisher =') for text in texts['order']
     )
+
+
+@pytest.mark.slow('starts a kernel, and goes through a lesson')
+def test_one_is_run_in_the_notebook_of_its_lesson() -> None:
+    lesson, exercise = EXERCISES['start_here-first_node']
+    one = next(mutant for mutant in mutants('start_here-first_node') if 'not-spun' in mutant.id)
+    results: list[Result] = []
+    run_mutants(lesson, exercise, [one], results.append)
+    [found] = results
+    assert found.finding.outcome in (Outcome.FAIL, Outcome.NOT_ATTEMPTED), found

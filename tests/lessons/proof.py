@@ -33,7 +33,7 @@ DRAW = os.environ.get('PROOF_DRAW', '1')
 # Cells of the kernel: before an answer is tried, and between two of them.
 # (A lesson may go to another folder, so the tools are looked for beside the notebook.)
 MARK = 'import sys\nsys.path.insert(0, {!r})\nimport kernel_tools\nkernel_tools.mark()'
-RESET = (
+_RESET = (
     'import random\nimport kernel_tools\nkernel_tools.clean()\nlesson.{name}.forget()\n'
     'random.seed({seed!r})'
 )
@@ -68,6 +68,11 @@ class Finding:
     text: str
     seconds: float
     told: str = ''
+
+
+def reset_before(exercise: Exercise, name: str) -> str:
+    """Return a cell that takes away what an answer has left, before the one of a name."""
+    return _RESET.format(name=exercise.name, seed=f'{exercise.name} {name} {DRAW}')
 
 
 def states_of(exercise: Exercise) -> list[Answer]:
@@ -162,8 +167,7 @@ class Proof:
             if (exercise.name, state.name) not in wanted and state.name != 'solution':
                 continue
             if state.code:
-                seed = f'{exercise.name} {state.name} {DRAW}'
-                reset.source = RESET.format(name=exercise.name, seed=seed)
+                reset.source = reset_before(exercise, state.name)
                 run.execute(check + 1)
                 script = f'import kernel_tools\nkernel_tools.run_script({state.code!r})'
                 cells[starter].source = script if state.process else state.code

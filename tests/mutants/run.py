@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mutants.generate import Mutant
-from proof import MARK, PRESSES, RESET, Finding, copied, insert, press
+from proof import MARK, PRESSES, Finding, copied, insert, press, reset_before
 
 from labkit.course.lesson_run import LessonError, LessonRun
 from labkit.exercises import Exercise, Lesson, Outcome
@@ -128,7 +128,7 @@ class _Bench:
             cells = run.notebook.cells
             cells[self._reset].source = '\n'.join(
                 (
-                    RESET.format(name=self._exercise.name),
+                    reset_before(self._exercise, code),
                     'kernel_tools.forget_names()',
                     f'kernel_tools.stop_next_cell_after({STOP_SEC})',
                 )
