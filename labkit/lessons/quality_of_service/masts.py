@@ -21,7 +21,7 @@ INT16 = 'std_msgs/msg/Int16'
 NODES = ('/gauge', '/mast_a', '/mast_b', '/mast_c', '/town')
 TOPICS = ('/level', '/level_a', '/level_b', '/level_c', '/display')
 DEAF = (1, 2, 3)
-PERIOD_SEC = 0.2
+PERIOD_SEC = 0.1
 # How much higher the next level is: so no number is another one with 1 more or less.
 STEPS = (2, 3, 4)
 HIGHEST = 30_000

@@ -26,6 +26,25 @@ ONE_LINE = (
 
 ANSWERS = [
     wrong(
+        'ten numbers',
+        'Not each number is passed on.',
+        (
+            '        self.publisher.publish(msg)',
+            "        self.count = getattr(self, 'count', 0) + 1\n        if self.count <= 10:\n"
+            '            self.publisher.publish(msg)',
+        ),
+    ),
+    wrong(
+        'fails at the twentieth',
+        'RuntimeError: enough',
+        (
+            '        self.publisher.publish(msg)',
+            "        self.count = getattr(self, 'count', 0) + 1\n        if self.count > 20:\n"
+            "            raise RuntimeError('enough')\n        self.publisher.publish(msg)",
+        ),
+        outcome=ERROR,
+    ),
+    wrong(
         'the default profile',
         'best effort publisher and reliable subscription',
         (HEARS, ONE_LINE.format(10)),
