@@ -5,6 +5,7 @@ from __future__ import annotations
 import grp
 import os
 import pwd
+import shutil
 import subprocess
 import zlib
 from collections.abc import Iterable, Sequence
@@ -13,7 +14,7 @@ from pathlib import Path
 from labkit.errors import LabError
 from labkit.hub.class_list import Member
 
-__all__ = ['GROUP', 'make_accounts', 'make_class_folder']
+__all__ = ['GROUP', 'make_accounts', 'make_class_folder', 'make_private_folder']
 
 GROUP = 'labkit-class'
 """The group of all accounts made here, to tell them from others."""
@@ -75,6 +76,28 @@ def make_class_folder(folder: Path, members: Sequence[Member]) -> None:
         place.mkdir(exist_ok=True)
         os.chown(place, owner, number)
         place.chmod(mode)
+    known = {member.name for member in members}
+    for place in folder.iterdir():
+        # Its account may be gone, and the next one get its number.
+        if place.name not in known:
+            os.chown(place, 0, number)
+
+
+def make_private_folder(folder: Path, names: Iterable[str]) -> None:
+    """Make sure that servers have a place for their certificates and temporary files.
+
+    What is left there of others goes: another account may have got their number.
+
+    Args:
+        folder: The folder of one class.
+        names: The members of the class.
+    """
+    folder.mkdir(exist_ok=True)
+    folder.chmod(0o711)
+    kept = {place for name in names for place in (name, f'{name}-tmp')}
+    for place in folder.iterdir():
+        if place.name not in kept:
+            shutil.rmtree(place)
 
 
 def _members() -> list[str]:

@@ -12,6 +12,7 @@ from labkit import hub
 from labkit.hub.class_list import read_class
 from labkit.hub.command import PORT
 from labkit.hub.containers import HUB_IP, MOUNTED, mount_class
+from labkit.hub.login import TEACHER
 from labkit.hub.passwords import HASHES
 from labkit.hub.proxy import proxy_command
 
@@ -25,7 +26,7 @@ c.ClassAuthenticator.create_users = False  # everybody has a password from the s
 c.ClassAuthenticator.min_password_length = 10
 c.JupyterHub.template_paths = [str(Path(hub.__file__).with_name('templates'))]
 c.Authenticator.allowed_users = {member.name for member in members}
-c.Authenticator.admin_users = {member.name for member in members if member.teaches}
+teachers = c.ClassAuthenticator.teachers = {member.name for member in members if member.teaches}
 c.Authenticator.allow_existing_users = False  # people removed from the list are out
 
 # --- Where ---------------------------------------------------------------------------------------
@@ -113,5 +114,20 @@ c.JupyterHub.load_roles = [
         'name': 'new-password',
         'services': ['new-password'],
         'scopes': ['delete:users', 'delete:servers'],
+    },
+    # No admins: JupyterHub keeps those for good, and a role only for who is in it at the start.
+    # And no `admin:users`: "Edit User" in the admin page takes a user's name away if it is left as
+    # it was, and the hub does not start again then (JupyterHub 5.5, UserAPIHandler.patch).
+    {
+        'name': TEACHER,
+        'users': sorted(teachers),
+        'scopes': [
+            'admin-ui',
+            'list:users',
+            'read:users',
+            'delete:users',
+            'servers',
+            'access:servers',
+        ],
     },
 ]

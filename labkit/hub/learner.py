@@ -39,7 +39,8 @@ def start(arguments: Sequence[str]) -> NoReturn:
         # Sockets in the learner's home, not ports: anybody could listen to a kernel's port.
         '--KernelManager.transport=ipc',
     ]
-    os.chdir(learner_folder.WORK)
+    # Not the lessons: where a server's own folder is deleted, it starts no kernel any more.
+    os.chdir(Path.home())
     # Isolated, so that the learner's modules can't shadow those that JupyterLab needs.
     command = [str(python), '-I', '-m', 'jupyterhub.singleuser', *options, *arguments]
     os.execve(python, command, variables)

@@ -12,9 +12,14 @@ from firstuseauthenticator.firstuseauthenticator import (  # type: ignore[import
     CustomLoginHandler,
     ResetPasswordHandler,
 )
+from jupyterhub.orm import Role
+from sqlalchemy.orm import object_session
+from traitlets import Set
 
-__all__ = ['LONGEST', 'ClassAuthenticator']
+__all__ = ['LONGEST', 'TEACHER', 'ClassAuthenticator']
 
+TEACHER = 'teacher'
+"""The role of teachers."""
 LONGEST = 72
 """How many bytes of a password bcrypt takes."""
 # Somebody who is not of the class takes as long as a wrong password.
@@ -48,6 +53,8 @@ class _ChangePassword(ResetPasswordHandler):  # type: ignore[misc]
 class ClassAuthenticator(FirstUseAuthenticator):  # type: ignore[misc]
     """Lets in whose password is right. There is none that the first to come may choose."""
 
+    teachers = Set(help='Who teaches.').tag(config=True)
+
     async def authenticate(self, handler: Any, data: dict[str, str]) -> str | None:
         """Return the name of who logs in, None if name and password don't fit.
 
@@ -73,8 +80,23 @@ class ClassAuthenticator(FirstUseAuthenticator):  # type: ignore[misc]
             new_password: What they have chosen.
         """
         if len(new_password.encode()) > LONGEST:
-            return f'Password too long! Please choose one of up to {LONGEST} characters.'
+            return (
+                f'Password too long! Please choose one of up to {LONGEST} bytes: a letter with an '
+                'accent has two.'
+            )
         return str(super().reset_password(username, new_password))
+
+    def add_user(self, user: Any) -> None:
+        """Make a teacher of who is one in the list, and an admin of nobody: see `load_roles`.
+
+        Args:
+            user: Somebody whom the hub knows at its start, or gets to know at a login.
+        """
+        super().add_user(user)
+        user.admin = False
+        role = Role.find(object_session(getattr(user, 'orm_user', user)), TEACHER)
+        if role is not None and user.name in self.teachers and role not in user.roles:
+            user.roles.append(role)
 
     def delete_user(self, user: Any) -> None:
         """Keep name and password: who may log in says the list of the class.

@@ -11,7 +11,7 @@ import bcrypt
 
 from labkit.files import write_atomically
 
-__all__ = ['FIRST_PASSWORDS', 'HASHES', 'make_passwords']
+__all__ = ['FIRST_PASSWORDS', 'HASHES', 'has_password', 'make_passwords']
 
 HASHES = 'passwords.dbm'
 """Names and hashes, for jupyterhub-firstuseauthenticator."""
@@ -21,6 +21,15 @@ FIRST_PASSWORDS = 'first-passwords.txt'
 # No look-alike characters, in three groups to be read from paper: 59 bits.
 _SIGNS = 'abcdefghijkmnpqrstuvwxyz23456789'.replace('v', '')
 _GROUPS, _SIGNS_EACH = 3, 4
+
+
+def has_password(folder: Path, name: str) -> bool:
+    """Return whether somebody can log in on the hub of a folder."""
+    try:
+        with dbm.open(str(folder / HASHES), 'r') as hashes:
+            return name.encode() in hashes
+    except dbm.error:
+        return False
 
 
 def make_passwords(folder: Path, names: Iterable[str], *, anew: Iterable[str] = ()) -> list[str]:

@@ -14,7 +14,7 @@ from pathlib import Path
 from labkit.errors import LabError
 from labkit.files import write_atomically
 
-__all__ = ['end_all', 'note_hub']
+__all__ = ['end_all', 'note_hub', 'noted_hub']
 
 # How the hub is reached, in its folder, which only root reads.
 _NOTE = 'hub.json'
@@ -36,6 +36,14 @@ def note_hub(folder: Path, address: str) -> str:
     note = json.dumps({'api': f'{address}/hub/api', 'token': token})
     write_atomically(folder / _NOTE, note.encode(), mode=0o600)
     return token
+
+
+def noted_hub(folder: Path) -> str:
+    """Return where the hub was reached when it was started last, '' if it never was."""
+    try:
+        return str(json.loads((folder / _NOTE).read_bytes())['api']).removesuffix('/hub/api')
+    except (OSError, ValueError, LookupError, TypeError):
+        return ''
 
 
 def end_all(folder: Path, name: str, *, account: bool) -> None:

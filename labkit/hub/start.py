@@ -14,11 +14,11 @@ from pathlib import Path
 import numpy
 
 from labkit.errors import LabError
-from labkit.hub.accounts import make_accounts, make_class_folder
+from labkit.hub.accounts import make_accounts, make_class_folder, make_private_folder
 from labkit.hub.class_list import read_class
 from labkit.hub.containers import HUB_IP, make_class_volumes
-from labkit.hub.passwords import FIRST_PASSWORDS, make_passwords
-from labkit.hub.sessions import end_all, note_hub
+from labkit.hub.passwords import FIRST_PASSWORDS, has_password, make_passwords
+from labkit.hub.sessions import end_all, note_hub, noted_hub
 from labkit.setup.compiler import fix_exported_paths
 from labkit.setup.environment import ROOT, environment_variables
 
@@ -44,10 +44,9 @@ def main(words: Sequence[str]) -> int:
         return 0
     members = read_class(options.class_list)
     names = [member.name for member in members]
-    anew = options.new_password
-    if anew is not None and anew not in names:
-        raise LabError(f'{anew!r} is not in {options.class_list.name}.')
     os.umask(0o077)
+    if options.new_password is not None:
+        return _renew(options, names)
     options.folder.mkdir(parents=True, exist_ok=True)
     options.folder.chmod(0o700)
     if options.image is None:
@@ -57,23 +56,20 @@ def main(words: Sequence[str]) -> int:
         # Beside the hub's folder, which learners can't read.
         class_folder = options.folder.with_name(f'{options.folder.name}-class')
         make_class_folder(class_folder, members)
-        private = class_folder.with_name(f'{class_folder.name}-private')
-        private.mkdir(exist_ok=True)
-        private.chmod(0o711)
+        make_private_folder(class_folder.with_name(f'{class_folder.name}-private'), names)
     else:
         class_folder = options.folder / 'class'
         make_class_volumes(class_folder, members)
-    new = make_passwords(options.folder, names, anew=[anew] if anew else [])
-    passwords = options.folder / FIRST_PASSWORDS
-    if new:
-        print(f'New passwords, for {", ".join(new)}: {passwords}')
-    if anew is not None:
-        end_all(options.folder, anew, account=options.image is None)
-        print(f'Sessions, tokens and processes of {anew} are ended.')
-        return 0
+    _tell(options.folder, make_passwords(options.folder, names))
     _check_free(options.port + 1)
+    address = _address(options)
+    if noted_hub(options.folder) not in ('', address):
+        print(
+            'The hub was at another port or address. A server that still runs from then can not '
+            'be opened: "Stop All" in the admin page ends all of them.'
+        )
     variables = environment_variables() | {
-        'LABKIT_HUB_TOKEN': note_hub(options.folder, _address(options)),
+        'LABKIT_HUB_TOKEN': note_hub(options.folder, address),
         'LABKIT_PORT': str(options.port),
         'LABKIT_CLASS': str(options.class_list),
         'LABKIT_CLASS_FOLDER': str(class_folder),
@@ -84,6 +80,28 @@ def main(words: Sequence[str]) -> int:
     os.chdir(options.folder)
     command = [sys.executable, '-m', 'jupyterhub', '-f', str(_CONFIG), *options.arguments]
     os.execve(sys.executable, command, variables)
+
+
+def _renew(options: argparse.Namespace, names: Sequence[str]) -> int:
+    """Give somebody another password, and end what was begun with the old one."""
+    name = options.new_password
+    if name not in names:
+        raise LabError(f'{name!r} is not in {options.class_list.name}.')
+    if not has_password(options.folder, name):
+        raise LabError(
+            f'{name!r} has no password in the hub of {str(options.folder)!r}.',
+            todo='If the hub of this class was started with --folder, give it here, too. Who is '
+            'new in the list gets a password when the hub is started.',
+        )
+    _tell(options.folder, make_passwords(options.folder, [name], anew=[name]))
+    end_all(options.folder, name, account=options.image is None)
+    print(f'Sessions, tokens and processes of {name} are ended.')
+    return 0
+
+
+def _tell(folder: Path, new: Sequence[str]) -> None:
+    if new:
+        print(f'New passwords, for {", ".join(new)}: {folder / FIRST_PASSWORDS}')
 
 
 def _address(options: argparse.Namespace) -> str:
@@ -109,18 +127,21 @@ def _check_free(port: int) -> None:
 
 def _check_access(name: str) -> None:
     """Check that learners can read the course and run its Python."""
-    done = subprocess.run(
-        [sys.executable, '-c', 'import rclpy, labkit'],
-        cwd='/',
-        env=environment_variables(),
-        user=name,
-        group=name,
-        extra_groups=[],
-        capture_output=True,
-        text=True,
-    )
-    if done.returncode != 0:
-        last = (done.stderr.strip().splitlines() or ['no output'])[-1]
+    try:
+        done = subprocess.run(
+            [sys.executable, '-c', 'import rclpy, labkit'],
+            cwd='/',
+            env=environment_variables(),
+            user=name,
+            group=name,
+            extra_groups=[],
+            capture_output=True,
+            text=True,
+        )
+        last = (done.stderr.strip().splitlines() or ['no output'])[-1] if done.returncode else ''
+    except OSError as error:  # the Python itself
+        last = str(error)
+    if last:
         raise LabError(
             f'{name} can not use the course in {str(ROOT)!r}: {last}',
             todo='Put the course, and the Python that it is made with, where everybody may read: '

@@ -224,6 +224,8 @@ def test_who_deletes_all_lessons_gets_them_back_by_one_command(hub: Hub) -> None
     said = notebook.run('!labkit restore')
     assert f'/home/anna/work/{name} is as it was saved at' in said
     assert anna.api(f'contents/{name}')['content']['cells'][0]['source'] == 'my = "own cell"'
+    anna.api(f'kernels/{notebook.kernel_id}/restart', 'POST', {})
+    assert notebook.run('import os\nprint(os.getcwd())').strip() == '/home/anna/work'
     assert (
         'Permission denied'
         in hub.machine.run(

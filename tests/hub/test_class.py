@@ -14,9 +14,10 @@ import pytest
 
 from labkit.__main__ import main
 from labkit.errors import LabError
-from labkit.hub import command
+from labkit.hub import command, start
 from labkit.hub.class_list import Member, read_class
 from labkit.hub.passwords import FIRST_PASSWORDS, HASHES, make_passwords
+from labkit.hub.sessions import note_hub, noted_hub
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -146,6 +147,23 @@ def test_what_the_command_lets_pass(
         main(['hub', '--class', str(path), *options])
     passed = [option for option in options if 'image' not in option]
     assert seen[0][-len(passed) - 1 :] == ['--', *passed]
+
+
+def test_where_the_hub_was_is_noted(tmp_path: Path) -> None:
+    assert noted_hub(tmp_path) == ''
+    note_hub(tmp_path, 'https://127.0.0.1:801')
+    assert noted_hub(tmp_path) == 'https://127.0.0.1:801'
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason='only root can run a program as somebody else')
+def test_a_python_that_learners_can_not_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    python = tmp_path / 'python'
+    python.write_text('#!/bin/sh\n')
+    monkeypatch.setattr(sys, 'executable', str(python))
+    with pytest.raises(LabError, match=r'can not use the course in .*Permission denied'):
+        start._check_access('daemon')
 
 
 def test_only_root_may_start_a_hub(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 
 import pytest
@@ -121,3 +122,56 @@ def test_who_leaves_is_gone(notebooks: dict[str, Notebook], hub: Hub) -> None:
     assert hub.machine.run('ls', '-A', place(hub, 'ben')).stdout == ''
     shown = notebooks['maria'].run('print(lab.classroom(names=True))')
     assert 'Class: 1 share' in shown and 'ben' not in shown
+
+
+def test_a_teacher_ends_users_and_servers_and_changes_nobody(
+    notebooks: dict[str, Notebook], hub: Hub
+) -> None:
+    maria = Person(hub, 'maria')
+    maria.log_in()
+    assert maria.ask('/hub/admin').status == 200
+    maria.get_token()
+    # As "Edit User" in the admin page sends it: a hub whose user has no name can't start again.
+    change = {'name': 'anna', 'admin': True}
+    assert maria.ask('/hub/api/users/anna', 'PATCH', change).status == 403
+    assert maria.ask('/user/ben/api/contents').status == 200
+    assert maria.ask('/hub/api/users/ben/server', 'DELETE').status in (202, 204)
+    hub.wait(
+        lambda: maria.ask('/hub/api/users/ben', 'DELETE').status in (204, 404), 'the end of ben'
+    )
+    users = json.loads(maria.ask('/hub/api/users').text)
+    assert {user['name'] for user in users} == {'anna', 'maria'}
+
+
+def test_who_is_taken_out_and_who_teaches_no_more(
+    notebooks: dict[str, Notebook], hub: Hub
+) -> None:
+    maria = Person(hub, 'maria')
+    maria.log_in()
+    maria.get_token()
+    # The hub forgets her with her old password.
+    assert hub.command(f'--class={hub.list}', '--new-password=maria')[0] == 0
+    assert maria.ask('/hub/api/users').status == 403
+    maria = Person(hub, 'maria')
+    maria.log_in()
+    maria.get_token()
+    assert maria.ask('/hub/admin').status == 200
+    kept = hub.machine.run('ls', f'{hub.state}-class-private').stdout.split()
+    assert {'anna', 'ben', 'maria'} <= {*kept}
+    hub.list.write_text('anna\nmaria\n')
+    hub.end('TERM')
+    hub.start()
+    # (A server asks the hub again after five minutes: she was not in this one before.)
+    for path in ('/hub/admin', '/hub/api/users', '/user/anna/api/contents'):
+        assert maria.ask(path).status == 403, path
+    # Another account may get ben's number.
+    owner = hub.machine.run('stat', '--format=%U %a', place(hub, 'ben')).stdout.strip()
+    assert owner == 'root 750'
+    kept = hub.machine.run('ls', f'{hub.state}-class-private').stdout.split()
+    assert 'ben' not in kept and 'anna' in kept
+    # The account of another class, whose hub has another folder.
+    other = hub.list.with_name('others.txt')
+    other.write_text('zoe\n')
+    code, said = hub.command(f'--class={other}', '--new-password=zoe')
+    assert code == 2 and "'zoe' has no password in the hub of" in said, said
+    assert hub.machine.run('id', 'zoe').returncode != 0

@@ -80,7 +80,8 @@ def test_each_setting_is_one_that_jupyterhub_knows(
                 if hasattr(trait, 'validate'):  # a hook may be anything
                     trait.validate(HasTraits(), value)
     assert config.Authenticator.allowed_users == {'anna', 'maria'}
-    assert config.Authenticator.admin_users == {'maria'}
+    assert config.ClassAuthenticator.teachers == {'maria'}
+    assert 'admin_users' not in config.Authenticator
     # A container runs what its image says.
     assert ('cmd' in config[classes[form].__name__]) == (form != 'docker')
     assert 'cmd' not in config.Spawner
