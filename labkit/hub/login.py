@@ -12,8 +12,7 @@ from firstuseauthenticator.firstuseauthenticator import (  # type: ignore[import
     CustomLoginHandler,
     ResetPasswordHandler,
 )
-from jupyterhub.orm import Role
-from sqlalchemy.orm import object_session
+from jupyterhub.orm import Role, object_session
 from traitlets import Set
 
 __all__ = ['LONGEST', 'TEACHER', 'ClassAuthenticator']
