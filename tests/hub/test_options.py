@@ -108,6 +108,7 @@ def test_a_password_that_one_changes(hub: Hub, trust: ssl.SSLContext) -> None:
     anna = Person(hub, 'anna', trust)
     first = hub.password('anna')
     anna.log_in()
+    assert 'href="/hub/auth/change-password"' in anna.ask('/hub/home').text
     assert 'name="old_password"' in anna.ask('/hub/auth/change-password').text
     assert 'The old password is wrong.' in change('not it, I guess', 'a new password')
     assert 'too short' in change(first, 'short')

@@ -23,6 +23,9 @@ EXPECTED = re.compile(
     r'|IndexError: list index out of range'
     # rclpy itself, where the cell that imports labkit comes later.
     r'|NotInitializedException: rclpy.init\(\) has not been called'
+    r"|TypeError: 'NoneType' object does not support the context manager|AttributeError: __enter__"
+    # A file that a later cell writes.
+    r'|FileNotFoundError: |RCLInvalidROSArgsError: .*cruiser.yaml'
     # A node that ended with its name's next one, whose cell was interrupted before it was kept.
     r'|InvalidHandle: cannot use Destroyable because destruction was requested'
 )
