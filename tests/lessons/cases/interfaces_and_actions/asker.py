@@ -193,4 +193,5 @@ ANSWERS = [
         ),
     ),
     right('own process, several threads, and send_goal()', run='process'),
+    right('a thread for each wish'),
 ]

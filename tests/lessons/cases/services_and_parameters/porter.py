@@ -221,4 +221,7 @@ ANSWERS = [
         ),
     ),
     right('own process, two threads, and call()', run='process'),
+    right('one wish at a time'),
+    right('a thread that calls'),
+    right('an executor of its own and call'),
 ]
