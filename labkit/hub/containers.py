@@ -52,7 +52,6 @@ def mount_class(folder: Path, members: Sequence[Member]) -> Callable[[Any], None
     def mount(spawner: Any) -> None:
         name = spawner.user.name
         volumes: dict[str, Any] = {str(folder / name): f'{MOUNTED}/{name}'}
-        # Not `user.admin`: the hub keeps that for former teachers.
         if name in teachers:
             volumes[str(folder)] = {'bind': MOUNTED, 'mode': 'ro'}
         spawner.volumes = {**spawner.volumes, **volumes}

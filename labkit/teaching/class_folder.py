@@ -84,7 +84,8 @@ class ClassFolder:
             with _opened(self.path, os.O_DIRECTORY) as folder:
                 return self._read(folder)
         except OSError as error:
-            return Reading(note=f'{str(self.path)!r} can not be read: {error.strerror}.')
+            who = ' On a hub its teachers alone can.' if error.errno == errno.EACCES else ''
+            return Reading(note=f'{str(self.path)!r} can not be read: {error.strerror}.{who}')
 
     def _read(self, folder: int) -> Reading:
         around = os.fstat(folder)

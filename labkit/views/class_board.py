@@ -105,7 +105,7 @@ class Board:
     def told(self) -> str:
         """How far the data can be trusted."""
         if not self.shared:
-            return EMPTY
+            return '' if self.note else EMPTY
         names = NAMES_OF_ACCOUNTS if self.certain else NAMES_TOLD
         silent = f' {self.silent} more of the class share nothing.' if self.silent else ''
         return f'{TOLD} {names}{silent}'

@@ -67,6 +67,8 @@ def test_a_class_joins_and_its_teacher_sees_it(notebooks: dict[str, Notebook], h
     assert '1 more of the class share nothing.' in shown
     assert 'The names are those of their accounts.' in shown
     assert 'can not be used' not in shown and 'others can write' not in shown
+    seen = notebooks['anna'].run(board)
+    assert 'Permission denied. On a hub its teachers alone can.' in seen, seen
 
 
 @pytest.mark.parametrize(

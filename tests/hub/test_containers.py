@@ -61,7 +61,7 @@ class Containers:
 
     def binds(self, member: Member) -> dict[str, dict[str, str]]:
         """Return what DockerSpawner asks Docker to mount."""
-        # Somebody who taught once is an admin for good.
+        # An admin of the hub's database teaches only if the list says so.
         user = SimpleNamespace(name=member.name, admin=True)
         spawner = DockerSpawner(user=user, config=self._config)
         for _ in range(2):  # one spawner starts a container again and again

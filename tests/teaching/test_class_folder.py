@@ -230,7 +230,8 @@ def test_a_folder_that_is_gone_or_closed_is_said(
 ) -> None:
     reading = ClassFolder(tmp_path / 'nowhere').read()
     assert reading.learners == () and 'can not be read' in reading.note
-    assert 'Nobody shares' in text_form(count(reading, NOW), names=True)
+    shown = text_form(count(reading, NOW), names=True)
+    assert 'can not be read' in shown and 'Nobody shares' not in shown
     for wrong in (tmp_path / 'nowhere', share('anna')):
         with pytest.raises(LabError, match='is not a folder'):
             chosen_folder(wrong)
