@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any
 
 from labkit.exercises.scope import PUBLISHER, SERVICE, SUBSCRIPTION, Scope
@@ -38,9 +39,16 @@ class Callbacks:
             if error.count > before and _is_under_test(error, scope):
                 raise _learner_error(error)
 
-    def raise_old_error(self, scope: Scope) -> None:
-        """Raise LearnerError if a node under test that still runs raised before the check."""
+    def raise_old_error(self, scope: Scope, nodes: Collection[str] | None = None) -> None:
+        """Raise LearnerError if a node under test that still runs raised before the check.
+
+        Args:
+            scope: What the lesson looks at.
+            nodes: Full names of those that it is about; all if None.
+        """
         for error in reversed(self._runtime.console.errors):
+            if nodes is not None and error.node_name not in nodes:
+                continue
             if _is_under_test(error, scope) and _is_of_running_node(error):
                 raise _learner_error(error)
 

@@ -26,6 +26,8 @@ READY_SEC = 5.0
 ANSWER_SEC = 5.0
 # What it has published before the result comes so long after it at the latest, s.
 LATE_SEC = 0.1
+# So long it is looked at what a server does that nobody asks, s.
+ALONE_SEC = 1.0
 # What rclpy logs, with the id of the goal, when execute_callback has not said how it ended, and
 # when it has raised (rclpy/action/server.py, _execute_goal).
 NOT_SAID, RAISED = 'Goal state not set', 'Error raised in execute callback'
@@ -141,7 +143,9 @@ class Pursues(GraphClause):
     def _live(
         self, evidence: Evidence, node: str, topics: Mapping[str, str], asking: _Asking
     ) -> None:
-        """Let time pass for the server until all goals are over."""
+        """Let time pass for the server, without a goal and then until all goals are over."""
+        alone = live(evidence.probe, topics, ALONE_SEC, nodes={node})
+        replace(evidence, life=alone).refuse_trouble(())
         (topic,) = topics
         passing_now: list[VirtualTime] = []
 

@@ -251,6 +251,13 @@ class Evidence:
                 words.FLOOD,
             )
 
+    def refuse_old_errors(self) -> None:
+        """Raise what a node has raised since its cell ran: in a terminal that ends a program."""
+        probe = self.probe
+        nodes = {end.node for end in self.ends.values()}
+        nodes |= {s.node for s in probe.all_servers() if s.service in probe.scope.serves}
+        probe.callbacks.raise_old_error(probe.scope, nodes)
+
     def has_ended_early(self) -> bool:
         """Tell whether a process that has said nothing yet is over, while it was looked at."""
         return any(
@@ -345,6 +352,7 @@ class Graph(Stage[Evidence]):
             if not any(clause.own_life for clause in asked):
                 evidence.gather(asked)
             yield [evidence]
+            evidence.refuse_old_errors()
         except (Fail, NotAttempted):
             if evidence.has_ended_early():
                 # That it is not there any more is the cause, and what is seen now tells it.

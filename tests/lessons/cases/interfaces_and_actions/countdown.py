@@ -7,6 +7,12 @@ from cases import ERROR, right, wrong
 __all__ = ['ANSWERS']
 
 ANSWERS = [
+    wrong(
+        'raises until the first goal',
+        "'Countdown' object has no attribute 'tick'",
+        ('        self.tick = Future()\n        self.timer', '        self.timer'),
+        outcome=ERROR,
+    ),
     wrong('another topic', "Write the name as '/countdown'"),
     wrong(
         'no cancel_callback',

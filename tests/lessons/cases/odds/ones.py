@@ -7,6 +7,17 @@ from cases import ERROR, right, wrong
 __all__ = ['ANSWERS']
 
 ANSWERS = [
+    wrong(
+        'raised before the check, once',
+        'RuntimeError: the first time',
+        (
+            '        msg = Int16()\n',
+            "        if not hasattr(self, 'late'):\n            self.late = True\n"
+            "            raise RuntimeError('the first time')\n        msg = Int16()\n",
+        ),
+        ('lab.spin(Ones())', "lab.spin(Ones())\nlab.wait_until(lambda: hasattr(ones, 'late'))"),
+        outcome=ERROR,
+    ),
     wrong('capital letter', 'Capital and small letters differ in names'),
     wrong(
         'in the namespace of the node',
