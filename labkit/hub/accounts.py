@@ -81,6 +81,7 @@ def make_class_folder(folder: Path, members: Sequence[Member]) -> None:
         # Its account may be gone, and the next one get its number.
         if place.name not in known:
             os.chown(place, 0, number)
+            place.chmod(0o750)
 
 
 def make_private_folder(folder: Path, names: Iterable[str]) -> None:

@@ -34,10 +34,14 @@ def start(arguments: Sequence[str]) -> NoReturn:
     # Shared memory is per account, but Fast DDS assumes one per machine. With UDP, nodes that look
     # beyond LOCALHOST, as with `lab.join()`, reach those of other learners.
     variables.setdefault('FASTDDS_BUILTIN_TRANSPORTS', 'UDPv4')
+    shell = os.environ.get('SHELL') or '/bin/sh'
     options = [
         *jupyterlab.lesson_options(),
         # Sockets in the learner's home, not ports: anybody could listen to a kernel's port.
         '--KernelManager.transport=ipc',
+        # A terminal is opened beside the lessons, if not in a folder of the file browser.
+        '--ServerApp.terminado_settings=shell_command=/bin/sh -c '
+        f"'case $PWD in $HOME) cd $LABKIT_WORK;; esac; exec {shell}'",
     ]
     # Not the lessons: where a server's own folder is deleted, it starts no kernel any more.
     os.chdir(Path.home())

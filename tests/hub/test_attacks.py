@@ -226,6 +226,12 @@ def test_who_deletes_all_lessons_gets_them_back_by_one_command(hub: Hub) -> None
     assert anna.api(f'contents/{name}')['content']['cells'][0]['source'] == 'my = "own cell"'
     anna.api(f'kernels/{notebook.kernel_id}/restart', 'POST', {})
     assert notebook.run('import os\nprint(os.getcwd())').strip() == '/home/anna/work'
+    anna.api('terminals', 'POST', {})
+    where = 'readlink -e $(printf "/proc/%s/cwd " $(pgrep -u anna -x bash))'
+    hub.wait(
+        lambda: hub.machine.run('sh', '-c', where).stdout.split() == ['/home/anna/work'],
+        'a terminal beside the lessons',
+    )
     assert (
         'Permission denied'
         in hub.machine.run(

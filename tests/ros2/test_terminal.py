@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 
@@ -156,14 +157,18 @@ def test_only_the_process_of_a_note_gets_its_token(monkeypatch, tmp_path):
         def log_message(self, *_):
             pass
 
-    with HTTPServer(('127.0.0.1', 0), Server) as server, ThreadPoolExecutor() as pool:
+    with (
+        HTTPServer(('127.0.0.1', 0), Server) as server,
+        ThreadPoolExecutor() as pool,
+        ExitStack() as stack,
+    ):
         pool.submit(server.serve_forever, 0.01)
+        stack.callback(server.shutdown)
         note = {'pid': os.getppid(), 'port': server.server_port, 'base_url': '/x/', 'token': 'one'}
         (tmp_path / 'jpserver-1.json').write_text(json.dumps(note))
         assert (notebooks_in_pages(), asked) == ({}, [])
         (tmp_path / 'jpserver-1.json').write_text(json.dumps({**note, 'pid': os.getpid()}))
         assert notebooks_in_pages() == {'04.ipynb': True}
-        server.shutdown()
     assert asked == [('/x/api/sessions', 'token one')]
 
 

@@ -16,6 +16,7 @@ __all__ = ['AsksForEach']
 
 # Of a process that is slow the last one may be on its way, s of real time.
 UNDERWAY_SEC = 1.0
+# A node that answers nobody for so long waits for itself, s of real time.
 ANSWER_SEC = 2.5
 
 NO_PARTNER = Mistake(

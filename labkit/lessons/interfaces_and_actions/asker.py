@@ -52,12 +52,12 @@ asker = Exercise(
             WISH,
             NODE,
             NAME,
-            '/calculator',
-            'calculator = lab.spin(make_calculator())',
-            f'for each message on `{WISH}` (`{INT16}`), send one goal to `{NAME}` (`{ACTION}`), '
-            'with its `data` as `order`',
-            'Fibonacci.Goal(order=msg.data)',
-            _change,
+            partner='/calculator',
+            cell='calculator = lab.spin(make_calculator())',
+            words=f'for each message on `{WISH}` (`{INT16}`), send one goal to `{NAME}` '
+            f'(`{ACTION}`), with its `data` as `order`',
+            request='Fibonacci.Goal(order=msg.data)',
+            change=_change,
             is_action=True,
         ),
         Answers(

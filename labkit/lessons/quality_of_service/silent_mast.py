@@ -139,7 +139,8 @@ class _Carries(GraphClause):
 
         if not probe.wait(lambda: not silent(), SEVERAL * PERIOD_SEC + FIRST_SEC):
             topic, *_ = silent()
-            if topic != LEVEL:  # else the machine is too busy for the gauge
+            # On a busy machine the gauge itself is late, or some numbers are still on their way.
+            if topic != LEVEL and due[topic] - len(heard[topic]) > SEVERAL // 2:
                 raise Fail(
                     f'each number of {LEVEL} on {topic}',
                     f'{len(heard[topic])} of {len(heard[LEVEL])}, and no more',

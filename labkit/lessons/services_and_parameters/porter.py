@@ -71,13 +71,13 @@ porter = Exercise(
             WISH,
             NODE,
             SERVICE,
-            '/door',
-            'door = lab.spin(make_door())',
-            f"for each message on `{WISH}` (`{BOOL}`), call `{SERVICE}` once, with the message's "
-            '`data` as that of the request',
-            'SetBool.Request(data=msg.data)',
-            _change,
-            [OPPOSITE],
+            partner='/door',
+            cell='door = lab.spin(make_door())',
+            words=f'for each message on `{WISH}` (`{BOOL}`), call `{SERVICE}` once, with the '
+            "message's `data` as that of the request",
+            request='SetBool.Request(data=msg.data)',
+            change=_change,
+            mistakes=[OPPOSITE],
         ),
         Answers(
             WISH,
