@@ -36,6 +36,8 @@ ROOT = Path(__file__).resolve().parents[2]
 VENV = ROOT / '.venv'
 PYTHON = VENV / 'bin' / 'python'
 STAMP = VENV / 'labkit.json'
+# Where the environment of before waits until a new one stands in its place.
+ASIDE = ROOT / '.venv.old'
 LEARNER = ('environment.txt',)
 # A new environment takes 0.9 GB with what the tests need, and pip keeps what it has fetched.
 SPACE_BYTES = 1_200_000_000
@@ -72,6 +74,7 @@ def make_environment(requirements: Sequence[str] = LEARNER) -> Path:
             stamp = _read_stamp()
             lacking = _lacking(stamp, requirements)
             if lacking:
+                _refuse_others(stamp, lacking)
                 _bring_up(stamp, lacking, requirements)
     return PYTHON
 
@@ -199,14 +202,39 @@ def _lock() -> Iterator[None]:
         os.close(folder)
 
 
-def _bring_up(stamp: dict[str, Any] | None, lacking: str, requirements: Sequence[str]) -> None:
-    """Complete the environment if it is sound, else make it anew."""
-    foreign = stamp is None and VENV.exists() and not (VENV / 'pyvenv.cfg').exists()
-    if foreign and (not VENV.is_dir() or any(VENV.iterdir())):
+def _refuse_others(stamp: dict[str, Any] | None, lacking: str) -> None:
+    """Refuse to change what is not an environment, or one that a link leads to.
+
+    Behind a link an empty folder may be filled, and the course's own environment be updated.
+    All else there may be somebody's: nothing is written to it, and nothing is deleted.
+    """
+    filled = VENV.exists() and (not VENV.is_dir() or any(VENV.iterdir()))
+    if filled and stamp is None and not (VENV / 'pyvenv.cfg').exists():
         raise SetupError(
             f'{str(VENV)!r} is there, but it is not a Python environment.',
             todo='Move it away, and repeat the command.',
         )
+    if not VENV.is_symlink():
+        return
+    target = os.path.realpath(VENV)
+    owner = (stamp or {}).get('folder', str(VENV))
+    if not VENV.exists():
+        why = 'is not there'
+    elif owner != str(VENV):
+        why = f'is the environment of {owner!r}'
+    elif filled and (not stamp or _version() is None):
+        why = f'is no environment that this course has made, or not in order ({lacking})'
+    else:
+        return
+    raise SetupError(
+        f'{str(VENV)!r} is a link to {target!r}, which {why}. Nothing was changed.',
+        todo=f'For an environment of its own, remove the link (`rm {VENV}`), or let it lead to an '
+        'empty folder. Then repeat the command.',
+    )
+
+
+def _bring_up(stamp: dict[str, Any] | None, lacking: str, requirements: Sequence[str]) -> None:
+    """Complete the environment if it is sound, else make it anew."""
     # Without a stamp: made by hand, with the conventional commands. Those stay and are completed.
     sound = stamp is None or stamp.get('folder') == str(VENV)
     version = _version() if sound else None
@@ -235,11 +263,11 @@ def _make_anew(lacking: str, requirements: Sequence[str]) -> None:
         '{}.{}.'.format(*interpreter.version),
         flush=True,
     )
-    VENV.mkdir(exist_ok=True)
+    _check_space()
     try:
+        _set_aside()
+        VENV.mkdir(exist_ok=True)
         _write_stamp({})  # from here on it is known to be unfinished, and to be ours
-        _clear()
-        _check_space()
         _create(interpreter.path)
         version = _version()
         if version is None:
@@ -249,41 +277,70 @@ def _make_anew(lacking: str, requirements: Sequence[str]) -> None:
             )
         _install(version, requirements)
     except BaseException:
+        _put_back()
+        raise
+    if ASIDE.exists():
+        shutil.rmtree(ASIDE)
+
+
+def _set_aside() -> None:
+    """Let the environment of before wait: one can't be made elsewhere and moved here later."""
+    if not VENV.exists() or not any(VENV.iterdir()):
+        return
+    if ASIDE.exists() and _read_stamp() == {}:
+        _clear()  # a run that was killed has set one aside, and has not finished this one
+    else:
+        if ASIDE.exists():
+            shutil.rmtree(ASIDE)
+        VENV.rename(ASIDE)
+
+
+def _put_back() -> None:
+    """Remove what was made, and let the environment of before stand where it stood."""
+    if VENV.exists() and _read_stamp() == {}:
         _clear()
-        if STAMP.exists():
-            STAMP.unlink()
         if not VENV.is_symlink():
             VENV.rmdir()
-        raise
+    if ASIDE.exists() and not VENV.exists():
+        ASIDE.rename(VENV)
 
 
 def _check_space() -> None:
-    free = shutil.disk_usage(VENV).free
+    place = os.path.realpath(VENV) if VENV.exists() else str(ROOT)
+    free = shutil.disk_usage(place).free
     if free < SPACE_BYTES:
+        is_old = VENV.exists() and any(VENV.iterdir())
+        old = f', delete the old environment ({VENV})' if is_old else ''
         raise SetupError(
             f'The environment needs {SPACE_BYTES / 1e9:.1f} GB of disk space, but only '
-            f'{free / 1e9:.1f} GB are free in {str(ROOT)!r}.',
-            todo='Free some space, or move the course to another disk, and repeat the command.',
+            f'{free / 1e9:.1f} GB are free in {place!r}.',
+            todo=f'Free some space{old}, or move the course to another disk, and repeat the '
+            'command.',
         )
 
 
 def _clear() -> None:
-    """Remove all of the environment but its stamp, so that a half removed one is known as such."""
-    for path in VENV.iterdir():
+    """Remove what this course has begun to make, the stamp that says so last."""
+    for path in sorted(VENV.iterdir(), key=lambda path: path == STAMP):
         if path.is_dir() and not path.is_symlink():
             shutil.rmtree(path)
-        elif path != STAMP:
+        else:
             path.unlink()
 
 
 def _create(python: str) -> None:
-    command = [python, '-I', '-m', 'venv', '--without-pip', str(VENV)]
+    # `venv` takes no link. What it writes has the real path then, which is as good.
+    place = os.path.realpath(VENV)
+    command = [python, '-I', '-m', 'venv', '--without-pip', place]
     done = run(command, stderr=subprocess.STDOUT)
     if done.returncode != 0:
         lines = done.stdout.strip().splitlines() or ['']
+        no_module = 'No module named' in done.stdout
         raise SetupError(
             f'{python} could not make an environment: {lines[-1]!r}',
-            todo='On Debian and Ubuntu, install python3-venv. Then repeat the command.',
+            todo='On Debian and Ubuntu, install python3-venv. Then repeat the command.'
+            if no_module
+            else 'Put that right, and repeat the command.',
         )
 
 

@@ -7,6 +7,7 @@ import os
 import shutil
 import signal
 import subprocess
+import sys
 import venv
 from collections.abc import Iterator
 from pathlib import Path
@@ -154,6 +155,89 @@ def test_broken_environment_is_made_anew(course: Course, damage: str, reason: st
     assert done.returncode == 0, done.stderr
     assert f'Making the environment {course.venv} ({reason})' in done.stdout
     assert course.installed() == {'alpha-1.0'}
+
+
+def held(folder: Path) -> dict[Path, bytes | str]:
+    """Return all that a folder holds: files with their content, links with where they lead."""
+    links = {path: os.readlink(path) for path in folder.rglob('*') if path.is_symlink()}
+    files = [path for path in folder.rglob('*') if path.is_file() and path not in links]
+    return {**links, **{path: path.read_bytes() for path in files}}
+
+
+def as_if_made(folder: Path, owner: Path) -> None:
+    """Write what tells an environment from another folder, and a file that can be lost."""
+    (folder / 'bin').mkdir(parents=True)
+    (folder / 'bin' / 'python').symlink_to(sys.executable)
+    (folder / 'pyvenv.cfg').write_text('')
+    (folder / 'precious').write_text('kept')
+    (folder / 'labkit.json').write_text(json.dumps({'installed': {}, 'folder': str(owner)}))
+
+
+@pytest.mark.parametrize(
+    ('content', 'why'),
+    [
+        ('other', 'is the environment of'),
+        ('unstamped', 'is no environment that this course has made'),
+        ('unfinished', 'making it was interrupted'),
+        ('none', 'is not a Python environment'),
+        ('gone', 'is not there'),
+    ],
+)
+def test_nothing_behind_a_link_is_changed(course: Course, content: str, why: str) -> None:
+    behind = course.folder.with_name('elsewhere') / '.venv'
+    if content in ('other', 'unstamped', 'unfinished'):
+        as_if_made(behind, behind)
+    if content == 'unstamped':
+        (behind / 'labkit.json').unlink()
+    elif content == 'unfinished':
+        (behind / 'labkit.json').write_text('{}')
+    elif content == 'none':
+        behind.mkdir(parents=True)
+        (behind / 'thesis.txt').write_text('years of work')
+    course.venv.symlink_to(behind)
+    before = held(behind.parent)
+    said = sentence(course.make())
+    assert why in said and 'venv`' not in said.replace(f'`rm {course.venv}`', '')
+    assert held(behind.parent) == before
+    assert os.readlink(course.venv) == str(behind)
+
+
+@pytest.mark.slow('it makes environments')
+def test_an_empty_folder_behind_a_link_is_filled_and_used(course: Course) -> None:
+    behind = course.folder.with_name('big_disk')
+    behind.mkdir()
+    course.venv.symlink_to(behind)
+    course.require('./missing-1.0-py3-none-any.whl')
+    assert 'missing-1.0' in sentence(course.make())
+    assert course.venv.is_symlink() and held(behind) == {}
+    course.require(course.wheel('alpha'))
+    assert 'Making the environment' in course.make().stdout
+    assert (behind / 'labkit.json').exists()
+    assert course.make().stdout == ''
+    course.require(course.wheel('alpha'), course.wheel('beta'))
+    assert 'Updating the environment' in course.make().stdout
+    assert course.installed() == {'alpha-1.0', 'beta-1.0'}
+
+
+def test_an_environment_that_can_not_be_replaced_is_kept(course: Course) -> None:
+    as_if_made(course.venv, course.folder / 'before' / '.venv')
+    before = held(course.venv)
+    # There is no such package, so no new environment can be made.
+    course.require('./missing-1.0-py3-none-any.whl')
+    done = course.make()
+    assert 'Making the environment' in done.stdout and 'missing-1.0' in sentence(done)
+    assert held(course.venv) == before
+    assert not course.folder.joinpath('.venv.old').exists()
+
+
+def test_a_full_disk_does_not_cost_the_environment(course: Course) -> None:
+    as_if_made(course.venv, course.folder / 'before' / '.venv')
+    # Afterwards, on that disk, what is left is printed.
+    look = 'set +e; (cd "$0"; "$@"); code=$?; cat "$0/.venv/precious"; exit $code'
+    done = in_namespace(course, f'{on_disk_of(40, course)}; {look}')
+    said = sentence(done)
+    assert 'needs 1.2 GB of disk space' in said and 'delete the old environment' in said
+    assert done.stdout.endswith('kept')
 
 
 @pytest.mark.slow('it makes environments')
