@@ -47,7 +47,11 @@ def restore(notebook: str | None = None, at: str | None = None) -> list[str]:
         before = _there()
         said = learner_folder.copy_lessons()
         lost = [name for name in names if _is_lost(name)]
-        said += [_put_back(name, _times(name)[-1]) for name in lost]
+        for name in lost:
+            try:
+                said.append(_put_newest_back(name))
+            except LabError as error:
+                said.append(error.message)  # the others come back all the same
         uncopied = _there() - set(names)
         fresh = sorted(uncopied - before)
         broken = sorted(n for n in uncopied if _source(learner_folder.WORK / n) is None)
@@ -65,17 +69,20 @@ def restore(notebook: str | None = None, at: str | None = None) -> list[str]:
         raise LabError(
             f'There is no copy of {name}.', todo=f'For a fresh lesson: labkit reset {name[:2]}'
         )
-    fitting = [time for time in times if time.startswith(at or '')]
     if at is None:
-        here = _source(learner_folder.WORK / name)
-        fitting = [time for time in times if _content(name, time) != here]
-    if not fitting:
-        raise LabError(
-            f'There is no other copy of {name}.' if at is None else f'None is of {at!r}.',
-            todo=f'There are those of {", ".join(times[-_TOLD:])}.',
-        )
-    said = [_put_back(name, fitting[-1])]
-    others = [time for time in times if time != fitting[-1]][-_TOLD:]
+        said = [_put_newest_back(name, other_than=_source(learner_folder.WORK / name))]
+    else:
+        fitting = [time for time in times if time.startswith(at)]
+        content = _content(name, fitting[-1]) if fitting else None
+        if content is None:
+            raise LabError(
+                f'The copy of {fitting[-1]} can not be read.'
+                if fitting
+                else f'None is of {at!r}.',
+                todo=f'There are those of {", ".join(times[-_TOLD:])}.',
+            )
+        said = [_put_back(name, fitting[-1], content)]
+    others = [time for time in times if time not in said[0]][-_TOLD:]
     if others:
         said.append(f'Others are of {", ".join(others)}: labkit restore {notebook} --at TIME')
     return said
@@ -109,17 +116,34 @@ def _source(path: Path) -> bytes | None:
         return None
 
 
-def _content(name: str, time: str) -> bytes:
-    path = copies_folder() / name / f'{time}{_ENDING}'
+def _content(name: str, time: str) -> bytes | None:
+    """Return what a copy holds, None if it can't be read."""
     try:
-        return gzip.decompress(path.read_bytes())
-    except (OSError, EOFError, zlib.error) as error:
-        raise LabError(f'The copy {str(path)!r} can not be read: {error}.') from error
+        packed = (copies_folder() / name / f'{time}{_ENDING}').read_bytes()
+        return gzip.decompress(packed) or None  # of an empty file gzip makes an empty one
+    except (OSError, EOFError, zlib.error):
+        return None
 
 
-def _put_back(name: str, time: str) -> str:
+def _put_newest_back(name: str, other_than: bytes | None = None) -> str:
+    """Put back the newest copy that can be read and is another one than what is there."""
+    damaged: list[str] = []
+    for time in reversed(_times(name)):
+        content = _content(name, time)
+        if content is None:
+            damaged.append(time)
+        elif content != other_than:
+            newer = f' Newer, but damaged: {", ".join(damaged[:_TOLD])}.' if damaged else ''
+            return _put_back(name, time, content) + newer
+    unread = f' that can be read. Damaged: {", ".join(damaged[:_TOLD])}' if damaged else ''
+    raise LabError(
+        f'There is no other copy of {name}{unread}.',
+        todo=f'There are those of {", ".join(_times(name)[-_TOLD:])}.',
+    )
+
+
+def _put_back(name: str, time: str, content: bytes) -> str:
     path = learner_folder.WORK / name
-    content = _content(name, time)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         own = os.path.lexists(path) and not learner_folder.is_untouched(name)

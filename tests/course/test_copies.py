@@ -165,6 +165,30 @@ def test_one_can_go_further_back(
     assert source_of(work / 'backups' / '02_talker_listener.backup-1.ipynb') == 'all deleted'
 
 
+@pytest.mark.parametrize('damage', [b'', b'no gzip', b'\x1f\x8b\x08\x00'])
+def test_a_damaged_copy_is_told_and_holds_up_no_other(
+    work: Path, save: Save, capsys: pytest.CaptureFixture[str], damage: bytes
+) -> None:
+    save(START, notebook('begun'), '2026-11-26 09:00:00')
+    save(TALKER, notebook('one'), '2026-11-26 09:01:00')
+    for name, minute in ((TALKER, 2), (START, 3)):
+        save(name, notebook('newest'), f'2026-11-26 09:0{minute}:00')
+        (copies.copies_folder() / name / f'2026-11-26 09:0{minute}:00.gz').write_bytes(damage)
+    save('own.ipynb', notebook('x'), '2026-11-26 09:04:00')
+    (copies.copies_folder() / 'own.ipynb' / '2026-11-26 09:04:00.gz').write_bytes(damage)
+    shutil.rmtree(work)
+    assert main(['restore']) == 0
+    said = capsys.readouterr().out
+    assert (source_of(work / START), source_of(work / TALKER)) == ('begun', 'one')
+    assert 'saved at 2026-11-26 09:01:00, without outputs. Newer, but damaged: 2026-11-26' in said
+    assert 'no other copy of own.ipynb that can be read. Damaged: 2026-11-26 09:04:00' in said
+    assert main(['restore', '02']) == 2
+    assert 'There is no other copy of 02_talker_listener.ipynb' in capsys.readouterr().err
+    assert main(['restore', '02', '--at', '2026-11-26 09:02']) == 2
+    assert 'can not be read' in (error := capsys.readouterr().err) and '09:01:00' in error
+    assert main(['restore', '02', '--at', '2026-11-26 09:01']) == 0
+
+
 def test_copies_take_so_much_and_no_more(
     work: Path, save: Save, hook: Callable[..., None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
