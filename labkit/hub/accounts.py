@@ -5,13 +5,13 @@ from __future__ import annotations
 import grp
 import os
 import pwd
-import shutil
 import subprocess
 import zlib
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from labkit.errors import LabError
+from labkit.hub import leftovers
 from labkit.hub.class_list import Member
 
 __all__ = ['GROUP', 'make_accounts', 'make_class_folder', 'make_private_folder']
@@ -84,7 +84,7 @@ def make_class_folder(folder: Path, members: Sequence[Member]) -> None:
             place.chmod(0o750)
 
 
-def make_private_folder(folder: Path, names: Iterable[str]) -> None:
+def make_private_folder(folder: Path, names: Iterable[str]) -> str:
     """Make sure that servers have a place for their certificates and temporary files.
 
     What is left there of others goes: another account may have got their number.
@@ -92,13 +92,15 @@ def make_private_folder(folder: Path, names: Iterable[str]) -> None:
     Args:
         folder: The folder of one class.
         names: The members of the class.
+
+    Returns:
+        A sentence about what could not be removed, '' if nothing is left.
     """
     folder.mkdir(exist_ok=True)
     folder.chmod(0o711)
-    kept = {place for name in names for place in (name, f'{name}-tmp')}
-    for place in folder.iterdir():
-        if place.name not in kept:
-            shutil.rmtree(place)
+    kept = {leftovers.ASIDE, *(place for name in names for place in (name, f'{name}-tmp'))}
+    said = [leftovers.remove(place) for place in [*folder.iterdir()] if place.name not in kept]
+    return said[-1] if said else ''
 
 
 def _members() -> list[str]:

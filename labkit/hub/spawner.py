@@ -20,6 +20,8 @@ from jupyterhub.spawner import LocalProcessSpawner
 from systemdspawner import SystemdSpawner  # type: ignore[import-untyped]
 from traitlets import HasTraits, Integer, Unicode, default
 
+from labkit.hub import leftovers
+
 __all__ = ['GroupSpawner', 'LimitedSpawner']
 
 # Out of 1000: when memory runs out, the kernel kills a learner's process, not the hub.
@@ -130,7 +132,8 @@ class LimitedSpawner(_OwnAddress, LocalProcessSpawner):  # type: ignore[misc]
             return None
         account = pwd.getpwnam(self.user.name)
         folder = Path(self.private_folder, f'{self.user.name}-tmp')
-        shutil.rmtree(folder, ignore_errors=True)
+        if left := leftovers.remove(folder):
+            self.log.warning(left)
         folder.mkdir()
         os.chown(folder, account.pw_uid, account.pw_gid)
         folder.chmod(0o700)

@@ -56,7 +56,9 @@ def main(words: Sequence[str]) -> int:
         # Beside the hub's folder, which learners can't read.
         class_folder = options.folder.with_name(f'{options.folder.name}-class')
         make_class_folder(class_folder, members)
-        make_private_folder(class_folder.with_name(f'{class_folder.name}-private'), names)
+        private = class_folder.with_name(f'{class_folder.name}-private')
+        if left := make_private_folder(private, names):
+            print(left)
     else:
         class_folder = options.folder / 'class'
         make_class_volumes(class_folder, members)
