@@ -38,6 +38,7 @@ PYTHON = VENV / 'bin' / 'python'
 STAMP = VENV / 'labkit.json'
 # Where the environment of before waits until a new one stands in its place.
 ASIDE = ROOT / '.venv.old'
+LOCKED = ROOT / '.venv.lock'
 LEARNER = ('environment.txt',)
 # A new environment takes 0.9 GB with what the tests need, and pip keeps what it has fetched.
 SPACE_BYTES = 1_200_000_000
@@ -182,24 +183,29 @@ def _interpreter_mark() -> list[Any] | None:
 def _lock() -> Iterator[None]:
     """Let one process at a time change the environment.
 
-    The lock is on the course's folder itself, so it leaves no file. The installer inherits it:
-    should this process be killed, the lock lasts until the installer has ended too.
+    The lock is on a file that only its owner can open: whoever can open one can lock it for ever.
+    The installer inherits it: should this process be killed, the lock lasts until the installer
+    has ended too.
     """
     import fcntl  # only there on Unix
 
-    folder = os.open(ROOT, os.O_RDONLY)
+    try:
+        file = os.open(LOCKED, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
+    except OSError:
+        yield  # where nothing can be written, there is nothing to keep apart
+        return
     try:
         try:
-            fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             print('Another labkit is setting up the environment. Waiting for it ...', flush=True)
-            fcntl.flock(folder, fcntl.LOCK_EX)
+            fcntl.flock(file, fcntl.LOCK_EX)
         except OSError:
             pass  # a network file system without locks
-        os.set_inheritable(folder, True)
+        os.set_inheritable(file, True)
         yield
     finally:
-        os.close(folder)
+        os.close(file)
 
 
 def _refuse_others(stamp: dict[str, Any] | None, lacking: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
 import shutil
@@ -122,6 +123,18 @@ def test_two_at_once(course: Course, gate: Gate) -> None:
     assert second.communicate(timeout=TIMEOUT_SEC)[0] == ''
     assert (first.returncode, second.returncode) == (0, 0)
     assert course.installed() == {'slow-1.0'}
+
+
+def test_nobody_else_can_hold_it_up(course: Course) -> None:
+    course.require('./missing-1.0-py3-none-any.whl')
+    # Whoever can read the course's folder can lock that, as a learner on a hub can.
+    folder = os.open(course.folder, os.O_RDONLY)
+    fcntl.flock(folder, fcntl.LOCK_EX)
+    try:
+        assert 'missing-1.0' in sentence(course.make())
+    finally:
+        os.close(folder)
+    assert (course.folder / '.venv.lock').stat().st_mode & 0o777 == 0o600
 
 
 @pytest.mark.slow('it makes environments')
