@@ -5,10 +5,11 @@ This part runs in a bare Python. `labkit.hub.start` continues in the environment
 
 from __future__ import annotations
 
+import argparse
 import os
-import re
 from collections.abc import Sequence
 from pathlib import Path
+from urllib.parse import urlsplit
 
 from labkit.errors import LabError
 from labkit.hub.class_list import read_class
@@ -22,6 +23,15 @@ FOLDER = Path('/var/lib/labkit-hub')
 """State of the hub: sessions, password hashes, first passwords."""
 PORT = 800
 """Of the hub's pages. The two after it are the hub's and its proxy's own."""
+_THIS_MACHINE = ('127.0.0.1', 'localhost', '::1', '[::1]')
+# JupyterHub takes the last of several values, and each must be one that may be.
+_REACHED = {
+    'ip': ('--ip', '--JupyterHub.ip'),
+    'port': ('--port', '--JupyterHub.port'),
+    'url': ('--url', '--JupyterHub.bind_url'),
+    'certificate': ('--ssl-cert', '--JupyterHub.ssl_cert'),
+    'config': ('-f', '--config', '--JupyterHub.config_file'),
+}
 _FIRST_FOR_ALL = Path('/proc/sys/net/ipv4/ip_unprivileged_port_start')
 
 
@@ -81,25 +91,44 @@ def _check(arguments: Sequence[str], class_list: str | None, image: str | None) 
             'may do.',
             todo='sudo python3 -m labkit hub --class ' + class_list,
         )
+    given = _given(arguments)
+    if given.config:
+        raise LabError(
+            'A configuration file of its own would take the place of the one that keeps learners '
+            'apart.',
+            todo='Leave out --config, and give single settings: --Spawner.mem_limit=4G',
+        )
     if not image:
         _check_port(_port(arguments))
-    text = ' '.join(arguments)
-    address = re.search(r'(?:--ip|--JupyterHub\.ip)[= ](\S*)|bind_url[= ]\S*?//([^:/\s]*)', text)
-    open_to = (address[1] or address[2] or '*') if address else '127.0.0.1'
-    encrypted = re.search(r'ssl[-_]cert', text)
-    if open_to not in ('127.0.0.1', 'localhost', '[::1]', '::1') and not encrypted:
+    hosts = [*given.ip, *(urlsplit(url).hostname or '' for url in given.url)]
+    open_to = [host or '*' for host in hosts if host not in _THIS_MACHINE]
+    if open_to and not all(given.certificate or ['']):
         raise LabError(
-            f'At {open_to}, passwords and all that is typed would cross the network unencrypted.',
+            f'At {open_to[0]}, passwords and all that is typed would cross the network '
+            'unencrypted.',
             todo='Give --ssl-key and --ssl-cert too (docs/hub.md tells how they are made), or '
             'leave out --ip, and let a web server with TLS of this machine lead here.',
         )
 
 
+def _given(arguments: Sequence[str]) -> argparse.Namespace:
+    """Return all values of the options for JupyterHub that say where it can be reached."""
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    for name, words in _REACHED.items():
+        parser.add_argument(*words, dest=name, action='append', nargs='?', const='', default=[])
+    return parser.parse_known_args(arguments)[0]
+
+
 def _port(arguments: Sequence[str]) -> int:
     """Return the port of the hub's pages."""
-    text = ' '.join(arguments)
-    given = re.search(r'(?:--port|--JupyterHub\.port)[= ](\d+)|bind_url[= ]\S*:(\d+)', text)
-    return int(given[1] or given[2]) if given else PORT
+    given = _given(arguments)
+    try:
+        ports = [*map(int, given.port), *(urlsplit(url).port or PORT for url in given.url)]
+    except ValueError as error:
+        raise LabError(f'That is no port: {error}.', todo='Such as --port=900') from error
+    if len(set(ports)) > 1:
+        raise LabError(f'Two ports are given, {ports[0]} and {ports[-1]}.', todo='Give one.')
+    return ports[0] if ports else PORT
 
 
 def _check_port(port: int) -> None:
