@@ -49,10 +49,17 @@ def parameter_names(node: Node, node_name: str, prefixes: Iterable[str] = ()) ->
     return sorted(response.result.names)
 
 
-def get_parameters(node: Node, node_name: str, names: list[str]) -> list[ParameterValue]:
-    """Return the values of parameters, in their order; none at all if one is missing."""
+def get_parameters(node: Node, node_name: str, names: list[str]) -> dict[str, ParameterValue]:
+    """Return the values of those parameters that the node has and that have one, in this order."""
     request = GetParameters.Request(names=names)
-    return list(call_node(node, GetParameters, node_name, 'get_parameters', request).values)
+    values = call_node(node, GetParameters, node_name, 'get_parameters', request).values
+    if len(values) == len(names):
+        return dict(zip(names, values, strict=True))
+    # A node answers with nothing at all if one of them is missing, or declared without a value.
+    found: dict[str, ParameterValue] = {}
+    for name in names if len(names) > 1 else ():
+        found |= get_parameters(node, node_name, [name])
+    return found
 
 
 def describe_parameters(node: Node, node_name: str, names: list[str]) -> list[ParameterDescriptor]:

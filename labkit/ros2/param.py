@@ -8,7 +8,7 @@ from argparse import Namespace
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from rcl_interfaces.msg import Parameter
+from rcl_interfaces.msg import Parameter, ParameterValue
 
 from labkit.asking.parameters import (
     delete_parameter,
@@ -82,7 +82,8 @@ def get(args: Namespace) -> str | None:
     node = asking_node(args)
     name = check_node_name(node, args.node_name)
     values = get_parameters(node, name, [args.parameter_name])
-    kind = type_word(values[0].type) if values else NOT_SET
+    found = values.get(args.parameter_name)
+    kind = type_word(found.type) if found else NOT_SET
     if kind == NOT_SET:
         names = parameter_names(node, name)
         if args.parameter_name not in names:
@@ -91,9 +92,9 @@ def get(args: Namespace) -> str | None:
                     f"Parameter not set: {name} has no parameter '{args.parameter_name}'.",
                     todo=_other_name(args.parameter_name, names),
                 )
-    if not values:
+    if found is None:
         return 'Parameter not set'
-    value = python_value(values[0])
+    value = python_value(found)
     if args.hide_type:
         print(value)
     else:
@@ -158,7 +159,10 @@ def dump(args: Namespace) -> None:
     name = check_node_name(node, args.node_name)
     names = parameter_names(node, name)
     values = get_parameters(node, name, names)
-    print(to_yaml(name, dict(zip(names, values, strict=False))))
+    bare = [each for each in names if python_value(values.get(each, ParameterValue())) is None]
+    print(to_yaml(name, {each: values[each] for each in names if each not in bare}))
+    if bare:
+        print(f'Left out, as without a value: {", ".join(bare)}', file=sys.stderr)
 
 
 def load(args: Namespace) -> None:
@@ -297,6 +301,8 @@ COMMAND = Command(
             'Show all of the parameters of a node in a YAML file format',
             dump,
             _node_arguments,
+            'A parameter declared without a value is left out here, and named; the real one then '
+            'leaves out all of them, without a word.',
         ),
         Verb('get', 'Get parameter', get, _get_arguments),
         Verb('list', 'Output a list of available parameters', list_parameters, _list_arguments),

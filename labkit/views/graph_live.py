@@ -227,6 +227,6 @@ def _parameters_of(node_name: str, asking: Node) -> str:
             break
     else:
         names = parameter_names(asking, node_name)
-        values = map(python_value, get_parameters(asking, node_name, names))
-        found = list(zip(names, values, strict=False))  # it may have lost one meanwhile
+        values = get_parameters(asking, node_name, names)
+        found = [(n, python_value(values[n]) if n in values else None) for n in names]
     return ', '.join(f'{name} = {quoted(value)}' for name, value in found)

@@ -55,6 +55,32 @@ def test_read(ros2):
     ]
 
 
+def test_a_parameter_without_a_value_hides_no_other(script, domain):
+    code = """
+import contextlib, io
+import rclpy
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+import labkit as lab
+from labkit.ros2.shell import run_line
+class Tub(Node):
+    def __init__(self):
+        super().__init__('tub')
+        self.declare_parameter('b.size', 3)
+        self.declare_parameter('b.place', Parameter.Type.STRING)
+        self.declare_parameter('a')
+lab.spin(Tub())
+err = io.StringIO()
+with contextlib.redirect_stderr(err):
+    code = run_line('param dump /tub')
+print([code, err.getvalue()])
+"""
+    result = script(code, **domain)
+    assert '    b:\n      size: 3\n    start_type_description_service: true\n' in result.stdout
+    assert 'place' not in result.stdout.partition('[')[0] and '    a' not in result.stdout
+    assert "[0, 'Left out, as without a value: a, b.place\\n']" in result.stdout
+
+
 @pytest.mark.slow('starts other processes')
 def test_names_can_be_filtered(ros2):
     every, one, nothing, wrong = ros2(

@@ -55,7 +55,7 @@ def get_values(probe: Probe, node: str, names: list[str]) -> dict[str, Any]:
 
     with asked(probe, node):
         found = get_parameters(probe.spun_node, node, names)
-    return dict(zip(names, map(python_value, found), strict=False))
+    return {name: python_value(value) for name, value in found.items()}
 
 
 @contextmanager

@@ -85,7 +85,7 @@ class System:
 
         names = parameter_names(self.probe.spun_node, node)
         values = get_parameters(self.probe.spun_node, node, names)
-        return dict(zip(names, map(python_value, values), strict=True))
+        return {name: python_value(value) for name, value in values.items()}
 
     def remaps(self, node: str) -> list[tuple[str, str]]:
         """Return the remaps that the program of a node was given: a name, and what it is to be."""
