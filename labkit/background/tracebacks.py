@@ -64,25 +64,49 @@ _DESTROYED = """
 This {kind} exists no more: it was destroyed, as all parts of a node are with their node: by
 destroy_node(), when its cell is run again, or when ROS is stopped. Use one that exists, and let no
 callback or thread keep the old one."""
+# A round of up to so many functions that call each other is folded from more rounds than these on.
+_LONGEST_ROUND, _SHOWN_ROUNDS = 8, 3
 # Generated modules of interfaces: std_msgs/msg/_int16.py
 _INTERFACES = tuple(f'{os.sep}{kind}{os.sep}_' for kind in ('msg', 'srv', 'action'))
 
 
 def short_traceback(error: BaseException) -> str:
     """Return the learner's lines of a traceback, and the message."""
-    lines = []
+    calls = []
     for frame, number in traceback.walk_tb(error.__traceback__):
         name = frame.f_code.co_filename
         if not is_learners(name):
             continue
-        lines.append(f'  {cell_name(name) or name}, line {number}, in {frame.f_code.co_name}')
+        call = f'  {cell_name(name) or name}, line {number}, in {frame.f_code.co_name}'
         source = linecache.getline(name, number).strip()
-        if source:
-            lines.append(f'    {source}')
+        calls.append(f'{call}\n    {source}' if source else call)
+    lines = list(_folded(calls))
     if isinstance(error, LabError):
         return '\n'.join([*lines, f'{type(error).__name__}: {error}'])
     said = map(str.rstrip, traceback.format_exception_only(error))
     return '\n'.join([*lines, *said, *map(str.strip, _hint(error, error.__traceback__))])
+
+
+def _folded(calls: list[str]) -> Iterator[str]:
+    """Yield calls without what follows itself again and again, as functions that call each other.
+
+    The first round of it stays, as does what comes before and after.
+    """
+    at = 0
+    while at < len(calls):
+        for size in range(1, _LONGEST_ROUND + 1):
+            first = calls[at : at + size]
+            rounds = 1
+            while calls[at + rounds * size : at + (rounds + 1) * size] == first:
+                rounds += 1
+            if rounds > _SHOWN_ROUNDS:
+                yield from first
+                yield f'  ... and so on, {rounds - 1} times more'
+                at += rounds * size
+                break
+        else:
+            yield calls[at]
+            at += 1
 
 
 def is_learners(filename: str) -> bool:

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
+
+from labkit.background.tracebacks import short_traceback
 
 SETUP = """
 import labkit as lab
@@ -126,3 +130,51 @@ def test_other_errors_and_the_verbose_mode_show_all(kernel):
     assert 'SyntaxError' in kernel.run('1 +').error
     kernel.run('%xmode Verbose')
     assert '_int16.py' in kernel.run('Int16(data=40000)').traceback
+
+
+def ping(step):
+    pong(step)
+
+
+def pong(step):
+    if step == 40:
+        raise ValueError('at the end')
+    ping(step + 1)
+
+
+def twice(step):
+    if step < 3:
+        twice(step + 1)
+    raise ValueError('no endless one')
+
+
+@pytest.mark.parametrize(
+    ('start', 'names', 'told'),
+    [
+        (ping, ['ping', 'pong'] * 2, ['and so on, 39 times more']),
+        (twice, ['twice'] * 4, []),
+    ],
+)
+def test_what_calls_itself_without_end_is_told_once(start, names, told):
+    with pytest.raises(ValueError, match='end') as caught:
+        start(0)
+    said = short_traceback(caught.value)
+    assert said.splitlines()[-1] == caught.exconly()
+    calls = [line.rpartition(', in ')[2] for line in said.splitlines() if ', in ' in line]
+    assert calls[1:] == names  # after this test itself
+    assert re.findall(r'and so on, \d+ times more', said) == told
+
+
+def test_an_endless_recursion_in_a_callback_is_a_few_lines(kernel):
+    kernel.run(SETUP)
+    cell = kernel.run(
+        'class Deep(Node):\n'
+        '    def __init__(self):\n'
+        "        super().__init__('deep')\n"
+        '        self.create_timer(0.01, self.on_timer)\n'
+        '    def on_timer(self):\n'
+        '        self.on_timer()\n'
+        'deep = lab.spin(Deep())'
+    )
+    said = kernel.wait_for_output(cell.msg_id, 'RecursionError: ')
+    assert said.count('self.on_timer()') == 1 and ' times more' in said
