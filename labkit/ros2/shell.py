@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import io
+import re
 import shlex
 import sys
 from argparse import Namespace
@@ -59,6 +60,13 @@ _ELSEWHERE = {
 }
 # At the end of a line it sends the command to the background, in a notebook too.
 BACKGROUND = '&'
+# What pages and word processors make of quotation marks and hyphens, where a word has its own, and
+# of spaces.
+_TYPOGRAPHIC = re.compile(
+    r"""[“”„‟«»‘’‚‛](?=[\s\]}),:]|$) | (?:(?<=[\s\[{(,:=]) | ^) [“”„‟«»‘’‚‛]
+    | (?:(?<=\s) | ^) [‐‑‒–—−] | [\u00a0\u2007\u202f\u200b\ufeff]""",
+    re.VERBOSE,
+)
 _SHELL_SIGNS = {'|', '||', '&', '&&', ';', '>', '>>', '<', '<<'}
 
 
@@ -189,9 +197,24 @@ def execute(words: Sequence[str], *, background: bool = False) -> int:
 
 def _complain(words: Sequence[str], code: int, error: LabError) -> int:
     reason = error.reason if isinstance(error, Refused) else Refusal.OTHER
-    history.append(Ran(tuple(words), str(error), reason, _topic_in(words)))
-    print(error, file=sys.stderr)
+    complaint = '\n'.join(filter(None, [str(error), _typographic(' '.join(words))]))
+    history.append(Ran(tuple(words), complaint, reason, _topic_in(words)))
+    print(complaint, file=sys.stderr)
     return code
+
+
+def _typographic(line: str) -> str:
+    """Return a hint if a line has signs that look like those which a command understands."""
+    signs = dict.fromkeys(_TYPOGRAPHIC.findall(line))
+    told = [
+        sign if sign.isprintable() else f'U+{ord(sign):04X} (no plain space)' for sign in signs
+    ]
+    return (
+        f'In this line is {" and ".join(told)}, as pages and word processors write it; to a '
+        'command it is a letter. Type plain signs instead: " or \', - or --, a space.'
+        if told
+        else ''
+    )
 
 
 def _end_as(told: RealOne) -> int:

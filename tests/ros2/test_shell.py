@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 
 from labkit.ros2.completion import complete_line
 from labkit.ros2.parser import Done, Usage
-from labkit.ros2.shell import COMMANDS, command, run_line, split
+from labkit.ros2.shell import COMMANDS, command, history, run_line, split
 
 VERBS = [verb.name for name in COMMANDS for verb in command(name).verbs]
 OPTIONS = sorted(
@@ -56,6 +56,31 @@ def test_split(line, words):
 def test_what_only_a_terminal_can_do(line, sentence):
     with pytest.raises(Usage, match=sentence.replace('|', r'\|')):
         split(line)
+
+
+@pytest.mark.parametrize(
+    ('line', 'signs'),
+    [
+        ('topic pub /a std_msgs/msg/String “data: hello”', '“ and ”'),
+        ('topic pub /a std_msgs/msg/Int16 ‘{data: 5}’', '‘ and ’'),
+        ("topic pub /a std_msgs/msg/Int16 '{data: „5“}'", '„ and “'),
+        ('topic info "/chatter”', '”'),
+        ('topic list –t', '–'),
+        ('topic echo —once', '—'),
+        ('topic\u00a0list', 'U+00A0 (no plain space)'),
+        ('topik list', None),
+        ("topic pub /a std_msgs/msg/Int16 '{data: the dogs‘s}'", None),
+        ("topic pub /a std_msgs/msg/Int16 '{data: 3–5}'", None),
+    ],
+)
+def test_signs_that_a_page_has_made_are_named(capsys, line, signs):
+    assert run_line(line) != 0
+    shown = capsys.readouterr().err
+    if signs is None:
+        assert 'In this line' not in shown
+    else:
+        assert f'\nIn this line is {signs}, as pages' in shown
+    assert history[-1].complaint + '\n' == shown
 
 
 @pytest.mark.parametrize(
