@@ -102,7 +102,19 @@ def choose_domain() -> None:
 
 def _asks_nobody(words: list[str]) -> bool:
     """Tell whether a command reads only files, so that any domain will do."""
-    return words[:1] in ([], ['pkg'], ['interface']) or bool({'-h', '--help'} & {*words})
+    if words[:1] in ([], ['pkg'], ['interface']) or {'-h', '--help'} & {*words}:
+        return True
+    if words[0] == 'bag':
+        return words[1:2] in ([], ['convert'], ['info'], ['list'], ['reindex'])
+    if words[0] != 'launch':
+        return False
+    from labkit.ros2.shell import command
+
+    try:
+        args = command('launch').verbs[0].parser('launch').read(words[1:])
+    except LabError:
+        return True  # it will be said
+    return bool(args.print_description or args.show_args)
 
 
 def _profile(domains: Iterable[int]) -> str:

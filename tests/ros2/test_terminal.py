@@ -172,7 +172,7 @@ def test_only_the_process_of_a_note_gets_its_token(monkeypatch, tmp_path):
     assert asked == [('/x/api/sessions', 'token one')]
 
 
-def test_what_reads_files_needs_no_domain(monkeypatch, capsys):
+def test_what_reads_files_needs_no_domain(monkeypatch, capsys, tmp_path):
     monkeypatch.delenv('ROS_DOMAIN_ID', raising=False)
     monkeypatch.setattr(settings, 'is_ros2_command', False)
     monkeypatch.setattr(terminal, 'real_ros2', lambda: None)
@@ -181,6 +181,20 @@ def test_what_reads_files_needs_no_domain(monkeypatch, capsys):
     assert 'Choose one' in capsys.readouterr().err
     assert terminal.run(['pkg', 'prefix', 'std_msgs']) == 0
     assert capsys.readouterr().out == f'{sys.prefix}\n'
+    (tmp_path / 'a.launch.xml').write_text('<launch><arg name="x" default="1"/></launch>')
+    path = str(tmp_path / 'a.launch.xml')
+    for words in (
+        ['bag', 'list', 'storage'],
+        ['launch', '--show-args', path],
+        ['launch', path, '-s'],
+        ['launch', '--print', path],
+    ):
+        assert terminal.run(words) == 0, words
+        shown = capsys.readouterr()
+        assert shown.out and shown.err == ''
+    for words in (['bag', 'info', 'no-bag'], ['bag', 'reindex', 'no-bag'], ['launch']):
+        assert terminal.run(words) != 0, words
+        assert 'ROS_DOMAIN_ID' not in capsys.readouterr().err
 
 
 def test_a_kernel_claims_its_domain_by_the_name_of_its_notebook(start_kernel):
