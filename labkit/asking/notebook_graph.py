@@ -1,9 +1,10 @@
 """A notebook tells the terminals of its user what is on the graph.
 
 A process that has just been started discovers the others bit by bit, which takes seconds on a busy
-machine. A notebook knows them already, as the daemon of the real `ros2` does. It listens on a
-socket of Linux's abstract namespace, which goes with its process (unix(7)). Anybody can take the
-name of such a socket, so each end looks at the user of the other.
+machine. A notebook knows them already, as the daemon of the real `ros2` does, and when a cell
+of it was run last. It listens on a socket of Linux's abstract namespace, which goes with its
+process (unix(7)). Anybody can take the name of such a socket, so each end looks at the user of the
+other.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import partial
+from typing import Any
 
 from rclpy.node import Node
 
@@ -26,7 +28,7 @@ from labkit.background.runtime import runtime
 from labkit.rosgraph.listings import NamesAndTypes, actions, services, topics
 from labkit.rosgraph.snapshot import node_names
 
-__all__ = ['KINDS', 'ask_notebook', 'serve']
+__all__ = ['KINDS', 'ask_notebook', 'last_used', 'serve']
 
 # A graph of 10,000 topics has less, bytes.
 _MOST_BYTES = 10_000_000
@@ -42,7 +44,12 @@ KINDS: Mapping[str, Callable[[Node], NamesAndTypes]] = {
 }
 """What a notebook can be asked for, and how it looks."""
 
+_USED = 'used'
+_USED_SEC = 1.0
+
 _server: socket.socket | None = None
+# When a cell was run last, on the clock that all processes of a machine share, s.
+_used = 0.0
 
 
 def ask_notebook(kind: str) -> NamesAndTypes | None:
@@ -57,15 +64,36 @@ def ask_notebook(kind: str) -> NamesAndTypes | None:
     """
     if settings.in_kernel() or not _is_open_here():
         return None
-    with suppress(OSError, ValueError), socket.socket(socket.AF_UNIX) as asking:
+    with suppress(ValueError, TypeError):
         # A notebook waits so long for processes that have just been started.
-        asking.settimeout(2 * MOST_SEC)
-        asking.connect(_address(domain_ids.read_domain_id() or 0))
-        if not _is_own_user(asking):
-            return None
-        asking.sendall(f'{kind}\n'.encode())
-        with asking.makefile('rb') as answer:
-            return [(name, types) for name, types in json.loads(answer.read(_MOST_BYTES))]
+        told = _answer_of(domain_ids.read_domain_id() or 0, kind, 2 * MOST_SEC)
+        return [(name, types) for name, types in told]
+    return None
+
+
+def last_used(domain_id: int) -> float:
+    """Return when a cell of the notebook of a domain was run last, s; 0 if it does not tell.
+
+    The times of notebooks on one machine can be compared.
+    """
+    with suppress(ValueError, TypeError):
+        return float(_answer_of(domain_id, _USED, _USED_SEC))
+    return 0.0
+
+
+def _answer_of(domain_id: int, question: str, timeout_sec: float) -> Any:
+    """Return what a notebook of this user answers; None if there is none, or no answer.
+
+    Raises:
+        ValueError: The answer is no JSON.
+    """
+    with suppress(OSError), socket.socket(socket.AF_UNIX) as asking:
+        asking.settimeout(timeout_sec)
+        asking.connect(_address(domain_id))
+        if _is_own_user(asking):
+            asking.sendall(f'{question}\n'.encode())
+            with asking.makefile('rb') as answer:
+                return json.loads(answer.read(_MOST_BYTES))
     return None
 
 
@@ -86,6 +114,10 @@ def _is_own_user(connection: socket.socket) -> bool:
 def serve() -> None:
     """Listen for terminals of the domain that ROS has been started in."""
     global _server
+    shell = settings.shell()
+    if shell is not None:
+        _note_use()
+        shell.events.register('pre_run_cell', _note_use)  # once, however often it is called
     address = _address(runtime.domain_id or 0)
     if _server is not None and _server.getsockname() == address.encode():
         return
@@ -99,6 +131,11 @@ def serve() -> None:
         server.listen()
         _server = server
         threading.Thread(target=_answer, args=(server,), daemon=True).start()
+
+
+def _note_use(*_: object) -> None:
+    global _used
+    _used = time.monotonic()
 
 
 def _close() -> None:
@@ -131,6 +168,8 @@ def _answer(server: socket.socket) -> None:
             if node is not None and _is_own_user(connection):
                 with connection.makefile('rb') as question:
                     kind = question.readline(_MOST_WORD).decode(errors='replace').strip()
+                if kind == _USED:
+                    connection.sendall(json.dumps(_used).encode())
                 if kind in KINDS:
                     discover(node, least=0.0, most=time.monotonic() + MOST_SEC)
                     connection.sendall(json.dumps(KINDS[kind](node)).encode())

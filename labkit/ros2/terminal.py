@@ -5,8 +5,6 @@ from __future__ import annotations
 import os
 import shutil
 import sys
-from collections import Counter
-from collections.abc import Iterable
 from pathlib import Path
 
 from labkit import domain_ids, settings
@@ -39,12 +37,14 @@ def run(words: list[str]) -> int:
     if real is not None:
         sys.stdout.flush()
         os.execve(real, [str(real), *words], _environment_of_others())
-    try:
-        choose_domain()
-    except LabError as error:
-        if not _asks_nobody(words):
+    if not _asks_nobody(words):
+        try:
+            chosen = choose_domain()
+        except LabError as error:
             print(error, file=sys.stderr)
             return 2
+        if chosen:
+            print(chosen, file=sys.stderr, flush=True)
     from labkit.ros2.shell import execute
 
     settings.is_ros2_command = True
@@ -68,36 +68,39 @@ def real_ros2() -> Path | None:
     return None
 
 
-def choose_domain() -> None:
-    """Join the domain of the one running notebook, unless `ROS_DOMAIN_ID` says otherwise.
+def choose_domain() -> str:
+    """Join the domain of the running notebook, unless `ROS_DOMAIN_ID` says otherwise.
+
+    Returns:
+        Which one of several was taken, in a line: the one that was used last, of those that a page
+        shows. '' if there was no choice.
 
     Raises:
-        LabError: Several notebooks are running.
+        LabError: `ROS_DOMAIN_ID` is no domain.
     """
     if domain_ids.read_domain_id() is not None:
-        return
+        return ''
     notebooks = domains.claimed_domains()
-    if len(notebooks) > 1:
-        kernels = Counter(notebooks.values())
-        newest: dict[str, int] = {}
-        for number, name in notebooks.items():
-            newest.setdefault(name, number)
-        in_pages = notebooks_in_pages()
-        closed = {name for name in newest if not in_pages.get(name, True)}
-        lines = [
-            f'  ROS_DOMAIN_ID={number}  {name}'
-            + f' (its newest kernel of {kernels[name]})' * (kernels[name] > 1)
-            + ' (no page shows it)' * (name in closed)
-            for name, number in newest.items()
-        ]
-        one = next((newest[name] for name in newest if name not in closed), next(iter(notebooks)))
-        raise LabError(
-            'Several notebooks are running, each in a ROS domain of its own, the newest first:\n'
-            + '\n'.join(lines),
-            todo=f'Choose one: export ROS_DOMAIN_ID={one}{_profile(notebooks)}',
-        )
-    for domain_id in notebooks:
-        domain_ids.set_domain(domain_id)
+    if len(notebooks) < 2:
+        for domain_id in notebooks:
+            domain_ids.set_domain(domain_id)
+        return ''
+    from labkit.asking.notebook_graph import last_used
+
+    in_pages = notebooks_in_pages()
+    used = {number: last_used(number) for number in notebooks}
+    # The newest kernel comes first, and so is the one of those that tell nothing.
+    first, *others = sorted(
+        notebooks, key=lambda number: (not in_pages.get(notebooks[number], True), -used[number])
+    )
+    domain_ids.set_domain(first)
+    told = ', '.join(f'{number} ({notebooks[number]})' for number in others)
+    why = 'used' if used[first] else 'started'
+    profile = f' {domain_ids.PROFILES_FILE}={domain_ids.PROFILE}'
+    return (
+        f'Domain {first}, of the notebook {why} last: {notebooks[first]}. Others: {told}. To '
+        f'choose: export ROS_DOMAIN_ID={others[0]}' + profile * (others[0] in domain_ids.BETWEEN)
+    )
 
 
 def _asks_nobody(words: list[str]) -> bool:
@@ -115,16 +118,6 @@ def _asks_nobody(words: list[str]) -> bool:
     except LabError:
         return True  # it will be said
     return bool(args.print_description or args.show_args)
-
-
-def _profile(domains: Iterable[int]) -> str:
-    """Return what programs without labkit need for these domains; '' if nothing."""
-    if set(domains).isdisjoint(domain_ids.BETWEEN):
-        return ''
-    return (
-        f'\nWith a number above 232, programs that know nothing of labkit also need: '
-        f'export {domain_ids.PROFILES_FILE}={domain_ids.PROFILE}'
-    )
 
 
 def _complete() -> int:

@@ -108,7 +108,7 @@ def test_an_exercise_is_solved_in_two_terminals(
         check='lesson.listener.check()',
     )
     notebook.run_cell('setup')
-    # Where other notebooks run, as beside other tests, `ros2` asks for it.
+    # Where other notebooks run, as beside other tests, `ros2` might take another.
     domain = notebook.run_cell('domain').split()[-1]
     lines = listener.answer.code.removeprefix('%%bash\n')
     package, _, start = lines.partition('source install/setup.bash\n')

@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 
 from labkit import domain_ids, settings
+from labkit.asking import notebook_graph
 from labkit.background import domains
-from labkit.errors import LabError
 from labkit.ros2 import terminal
 from labkit.ros2.open_pages import notebooks_in_pages
 from tests.ports import free_port
@@ -103,31 +103,33 @@ def test_domain_of_the_one_running_notebook(monkeypatch):
     monkeypatch.setattr(domains, 'claimed_domains', lambda: two)
     pages: dict[str, bool] = {}
     monkeypatch.setattr(terminal, 'notebooks_in_pages', lambda: pages)
-    with pytest.raises(LabError) as caught:
-        terminal.choose_domain()
-    assert '  ROS_DOMAIN_ID=7  04_odds.ipynb\n  ROS_DOMAIN_ID=9  05_my' in str(caught.value)
-    assert domain_ids.PROFILES_FILE not in str(caught.value)
-    again = {12: '04_odds.ipynb', **two}
-    monkeypatch.setattr(domains, 'claimed_domains', lambda: again)
-    with pytest.raises(LabError) as caught:
-        terminal.choose_domain()
-    lines = str(caught.value).splitlines()[1:3]
-    assert lines == [
-        '  ROS_DOMAIN_ID=12  04_odds.ipynb (its newest kernel of 2)',
-        '  ROS_DOMAIN_ID=9  05_my_name_is.ipynb',
-    ]
-    assert caught.value.todo == 'Choose one: export ROS_DOMAIN_ID=12'
-    pages.update({'04_odds.ipynb': False, '05_my_name_is.ipynb': True})
-    with pytest.raises(LabError) as caught:
-        terminal.choose_domain()
-    assert '04_odds.ipynb (its newest kernel of 2) (no page shows it)\n' in str(caught.value)
-    assert caught.value.todo == 'Choose one: export ROS_DOMAIN_ID=9'
+    used: dict[int, float] = {}
+    monkeypatch.setattr(notebook_graph, 'last_used', lambda number: used.get(number, 0.0))
+
+    def choose() -> tuple[str, str]:
+        told = terminal.choose_domain()
+        return told, os.environ.pop('ROS_DOMAIN_ID')
+
+    assert choose() == (
+        'Domain 7, of the notebook started last: 04_odds.ipynb. Others: 9 (05_my_name_is.ipynb). '
+        'To choose: export ROS_DOMAIN_ID=9',
+        '7',
+    )
+    used.update({7: 20.0, 9: 30.0})
+    told, taken = choose()
+    assert told.startswith('Domain 9, of the notebook used last: 05_my_name_is.ipynb. Others: 7 (')
+    assert taken == '9'
+    pages.update({'04_odds.ipynb': True, '05_my_name_is.ipynb': False})
+    assert choose()[1] == '7'  # no page shows the other
+    two[one] = '06_chat.ipynb'
+    used[one] = 40.0
+    assert choose()[1] == str(one)
+    assert os.environ.pop(domain_ids.PROFILES_FILE) == str(domain_ids.PROFILE)
+    used.update({7: 50.0, one: 0.0})
     pages.clear()
-    monkeypatch.setattr(domains, 'claimed_domains', lambda: two)
-    two[domain_ids.BETWEEN[0]] = '06_chat.ipynb'
-    with pytest.raises(LabError) as caught:
-        terminal.choose_domain()
-    assert f'export {domain_ids.PROFILES_FILE}={domain_ids.PROFILE}' in caught.value.todo
+    del two[9]
+    told = f'ROS_DOMAIN_ID={one} {domain_ids.PROFILES_FILE}={domain_ids.PROFILE}'
+    assert choose()[0].endswith(f'export {told}')
     monkeypatch.setenv('ROS_DOMAIN_ID', '3')
     terminal.choose_domain()
     assert os.environ['ROS_DOMAIN_ID'] == '3'
@@ -177,8 +179,6 @@ def test_what_reads_files_needs_no_domain(monkeypatch, capsys, tmp_path):
     monkeypatch.setattr(settings, 'is_ros2_command', False)
     monkeypatch.setattr(terminal, 'real_ros2', lambda: None)
     monkeypatch.setattr(domains, 'claimed_domains', lambda: {7: 'a.ipynb', 9: 'b.ipynb'})
-    assert terminal.run(['topic', 'list']) == 2
-    assert 'Choose one' in capsys.readouterr().err
     assert terminal.run(['pkg', 'prefix', 'std_msgs']) == 0
     assert capsys.readouterr().out == f'{sys.prefix}\n'
     (tmp_path / 'a.launch.xml').write_text('<launch><arg name="x" default="1"/></launch>')
@@ -195,6 +195,25 @@ def test_what_reads_files_needs_no_domain(monkeypatch, capsys, tmp_path):
     for words in (['bag', 'info', 'no-bag'], ['bag', 'reindex', 'no-bag'], ['launch']):
         assert terminal.run(words) != 0, words
         assert 'ROS_DOMAIN_ID' not in capsys.readouterr().err
+
+
+def test_the_notebook_used_last_is_taken(start_kernel, monkeypatch):
+    monkeypatch.delenv('ROS_DOMAIN_ID', raising=False)
+    monkeypatch.setattr(terminal, 'notebooks_in_pages', dict)
+    code = (
+        'import labkit as lab\nlab.start()\nfrom labkit.background.runtime import runtime\n'
+        'print(runtime.domain_id)'
+    )
+    kernels = [start_kernel(ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST') for _ in range(2)]
+    numbers = [int(kernel.run(code).text) for kernel in kernels]
+    names = dict(zip(numbers, ('a.ipynb', 'b.ipynb'), strict=True))
+    monkeypatch.setattr(domains, 'claimed_domains', lambda: names)  # without those of others
+    for number, kernel in zip(numbers, kernels, strict=True):
+        kernel.run('1')
+        told = f'Domain {number}, of the notebook used last: {names[number]}. Others: '
+        assert terminal.choose_domain().startswith(told)
+        os.environ.pop(domain_ids.PROFILES_FILE, None)
+        assert os.environ.pop('ROS_DOMAIN_ID') == str(number)
 
 
 def test_a_kernel_claims_its_domain_by_the_name_of_its_notebook(start_kernel):
