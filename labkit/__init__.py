@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from labkit.bags.recorder import record
     from labkit.checkup.report import doctor
     from labkit.exercises.lesson import lesson
-    from labkit.exercises.membership import join_class, leave_class
-    from labkit.exercises.progress import progress
+    from labkit.exercises.record.membership import join_class, leave_class
+    from labkit.exercises.record.progress import progress
     from labkit.launching.launched import launch
     from labkit.packages.export import export
     from labkit.packages.workspace import build, source
@@ -99,16 +99,16 @@ _HOMES = {
     'graph': 'labkit.views.graph',
     'image': 'labkit.views.image',
     'join': 'labkit.sharing.joining',
-    'join_class': 'labkit.exercises.membership',
+    'join_class': 'labkit.exercises.record.membership',
     'launch': 'labkit.launching.launched',
-    'leave_class': 'labkit.exercises.membership',
+    'leave_class': 'labkit.exercises.record.membership',
     'lesson': 'labkit.exercises.lesson',
     'listen': 'labkit.asking.waiting',
     'monitor': 'labkit.views.monitor',
     'play': 'labkit.bags.player',
     'plot': 'labkit.views.plot',
     'processes': 'labkit.programs.child_processes',
-    'progress': 'labkit.exercises.progress',
+    'progress': 'labkit.exercises.record.progress',
     'projector': 'labkit.views.projector',
     'record': 'labkit.bags.recorder',
     'remove': 'labkit.background.runtime',

@@ -19,7 +19,7 @@ __all__ = ['main']
 # Command -> the module whose `main(argv)` runs it with all further words.
 _FORWARDED = {
     'classroom': 'labkit.teaching.command',
-    'progress': 'labkit.exercises.progress',
+    'progress': 'labkit.exercises.record.progress',
     'ros2': 'labkit.ros2',
 }
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import ast
+import importlib
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -285,3 +288,64 @@ def test_bare_python_really_has_nothing():
     command = [sys.executable, '-I', '-S', '-c', 'import rclpy']
     done = subprocess.run(command, capture_output=True, text=True, timeout=60)
     assert 'ModuleNotFoundError' in done.stderr
+
+
+def test_the_floors_are_those_of_the_design():
+    design = (ROOT / 'docs' / 'design.md').read_text(encoding='utf-8')
+    told = {
+        f'labkit.{name}': float(floor)
+        for floor, names in re.findall(r'^\| ([\d.]+) \| (.*?) \|', design, re.MULTILINE)
+        for name in re.findall(r'`(\w+)/`', names)
+    }
+    folders = {name for name in FLOORS if (ROOT / name.replace('.', '/')).is_dir()}
+    assert told == {name: FLOORS[name] for name in folders - {'labkit'}}
+
+
+# A name in two rooms sends half of its readers to the wrong one. What is called as the notebook
+# calls it (an exercise, a quiz) is found by its lesson.
+MOST_TWICE = 8
+
+
+def test_few_names_stand_in_two_rooms():
+    rooms: dict[str, set[str]] = {}
+    for name, source in modules().items():
+        room, _, base = name.rpartition('.')
+        of_notebook = '.lessons.' in name and (base == 'quiz' or exercise_in(source))
+        if room and not of_notebook and not (ROOT / name.replace('.', '/')).is_dir():
+            rooms.setdefault(base, set()).add(room)
+    rooms.pop('__main__')
+    twice = {base: sorted(found) for base, found in rooms.items() if len(found) > 1}
+    assert 0 < len(twice) <= MOST_TWICE, twice
+
+
+def exercise_in(source: str) -> bool:
+    """Tell whether a module makes an exercise, under the name that all of them have."""
+    return 'exercise' in defined(source)
+
+
+def defined(source: str) -> set[str]:
+    """Return the names that a module defines when it is loaded."""
+    return {
+        getattr(target, 'id', getattr(target, 'name', ''))
+        for node in ast.parse(source).body
+        for target in getattr(node, 'targets', [getattr(node, 'target', node)])
+    }
+
+
+def test_every_module_says_its_subject_first():
+    silent = [
+        name
+        for name, source in modules().items()
+        if not re.match(r'.+[.:?](\n|$)', ast.get_docstring(ast.parse(source)) or '')
+    ]
+    assert silent == []
+
+
+def test_an_exercise_does_not_hide_its_module():
+    hidden = [
+        name
+        for name, source in modules().items()
+        if '.lessons.' in name and name.rpartition('.')[2] in defined(source)
+    ]
+    assert hidden == []
+    assert isinstance(importlib.import_module('labkit.lessons.odds.evens'), ModuleType)

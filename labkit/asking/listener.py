@@ -12,7 +12,7 @@ from rclpy.subscription import Subscription
 
 from labkit.background.nodes import node_exists
 from labkit.rosgraph.matching import qos_mismatch
-from labkit.rosgraph.qos import match_all
+from labkit.rosgraph.qos_profiles import match_all
 
 __all__ = ['Listener', 'least_profile']
 

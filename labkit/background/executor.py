@@ -32,12 +32,12 @@ from rclpy.waitable import Waitable
 
 from labkit import settings
 from labkit.background import compat
-from labkit.background.conditions import Conditions
 from labkit.background.console import Console
 from labkit.background.foreground import ENDS
 from labkit.background.nodes import NodeEntry, callback_name
 from labkit.background.pending_tasks import PendingTasks, Work
 from labkit.background.wait import POLL_SEC
+from labkit.background.wait_conditions import Conditions
 from labkit.background.wait_set import KeptWaitSet, Ready
 from labkit.errors import LabError
 

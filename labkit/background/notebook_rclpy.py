@@ -4,7 +4,7 @@ Every tutorial has `rclpy.init(); rclpy.spin(node); rclpy.shutdown()`. In a kern
 for good: `rcl_wait` does not hear the stop button, and a second `rclpy.init()` raises. In a kernel
 that has imported labkit, the functions below replace those of rclpy (`packages/imports.py`). They
 do what rclpy's documentation says, with the node on labkit's background executor, and a program is
-what lies between `init` and `shutdown` (`program.py`). In a script nothing is replaced.
+what lies between `init` and `shutdown` (`notebook_program.py`). In a script nothing is replaced.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ from labkit.background.arguments import (
 from labkit.background.domains import number_for_ros
 from labkit.background.foreground import Spin
 from labkit.background.nodes import Origin, check_node, existing_nodes, full_name, made
+from labkit.background.notebook_program import Arguments, Program, look_at_files, renamed
 from labkit.background.pending_tasks import answered_by
-from labkit.background.program import Arguments, Program, look_at_files, renamed
 from labkit.errors import LabError, LabTimeout, first_few
 from labkit.rosgraph.matching import other_type_here
 from labkit.rosgraph.names import full_node_name, full_topic_name, is_hidden

@@ -33,7 +33,7 @@ __all__ = [
     'write_home',
 ]
 
-# The overview of all lessons; see `labkit.exercises.progress_page`.
+# The overview of all lessons; see `labkit.exercises.record.progress_page`.
 HOME = 'Home.md'
 
 
@@ -139,7 +139,7 @@ def write_home(python: Path, variables: Mapping[str, str]) -> str:
     """
     page = variables['LABKIT_HOME_PAGE']
     done = subprocess.run(
-        [str(python), '-m', 'labkit.exercises.progress_page', page],
+        [str(python), '-m', 'labkit.exercises.record.progress_page', page],
         cwd=ROOT,
         env=variables,
         stdin=subprocess.DEVNULL,

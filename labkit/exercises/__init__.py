@@ -145,12 +145,12 @@ from labkit.exercises import expect
 from labkit.exercises.exercise import Exercise, Solution
 from labkit.exercises.judging import Clause, Stage
 from labkit.exercises.lesson import Lesson
+from labkit.exercises.messages_heard import Watch
 from labkit.exercises.mistakes import Mistake, anything
 from labkit.exercises.probe import Probe
-from labkit.exercises.questions import Choice, Number, Several, Word, right, wrong
-from labkit.exercises.quiz import Quiz
+from labkit.exercises.quiz.questions import Choice, Number, Several, Word, right, wrong
+from labkit.exercises.quiz.quiz import Quiz
 from labkit.exercises.verdict import Fail, NotAttempted, Outcome
-from labkit.exercises.watch import Watch
 
 __all__ = [
     'Choice',

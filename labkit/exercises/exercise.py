@@ -11,21 +11,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from labkit.errors import LabError
+from labkit.exercises.attempts import refuse_nameless, refuse_traces
 from labkit.exercises.clauses.base import Graph
 from labkit.exercises.expect.endpoints import alone
 from labkit.exercises.history import history
 from labkit.exercises.judging import Clause, Stage, judge
 from labkit.exercises.learner_errors import explain_error, last_cell
 from labkit.exercises.lesson_progress import next_steps
-from labkit.exercises.other_time import other_times
+from labkit.exercises.messages_heard import Watch
 from labkit.exercises.pending import Pending, learner_task_runs
 from labkit.exercises.probe import Probe
-from labkit.exercises.progress_store import progress_store
-from labkit.exercises.recorder import Recorder
-from labkit.exercises.scope import NODE, PUBLISHER, SERVICE, SUBSCRIPTION, Role, Scope
-from labkit.exercises.traces import refuse_nameless, refuse_traces
+from labkit.exercises.record.progress_store import progress_store
+from labkit.exercises.sent_once import Recorder
+from labkit.exercises.time.other_time import other_times
 from labkit.exercises.verdict import Fail, LearnerError, NotAttempted, Outcome, Verdict
-from labkit.exercises.watch import Watch
+from labkit.exercises.what_is_asked import NODE, PUBLISHER, SERVICE, SUBSCRIPTION, Role, Scope
 from labkit.views.card import Card
 from labkit.views.solution import SolutionCard
 

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from weakref import ReferenceType, WeakKeyDictionary, ref
 
 from labkit import settings
-from labkit.exercises.learner_time import learner_time
+from labkit.exercises.time.learner_time import learner_time
 
 if TYPE_CHECKING:
     from rclpy.node import Node

@@ -12,8 +12,8 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from labkit.exercises.scope import Role
 from labkit.exercises.verdict import Fail
+from labkit.exercises.what_is_asked import Role
 
 if TYPE_CHECKING:
     from labkit.exercises.probe import Probe

@@ -7,16 +7,16 @@ import pkgutil
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from types import MappingProxyType
+from types import MappingProxyType, ModuleType
 
 from labkit import settings
 from labkit.errors import LabError, did_you_mean
-from labkit.exercises import learner_time
 from labkit.exercises.exercise import Exercise
 from labkit.exercises.learner_errors import last_cell
-from labkit.exercises.quiz import Quiz
-from labkit.exercises.scope import Role
+from labkit.exercises.quiz.quiz import Quiz
+from labkit.exercises.time import learner_time
 from labkit.exercises.variants import variants_card
+from labkit.exercises.what_is_asked import Role
 from labkit.views.card import Card
 
 __all__ = ['Lesson', 'NoSuchNameError', 'all_lessons', 'lesson', 'lesson_names']
@@ -38,7 +38,8 @@ class Lesson:
         title: The heading of the notebook.
         teaches: Its subject in a few words, as in the README.
         minutes: How long it takes, as its first cell says.
-        exercises: The exercises in the order of the notebook.
+        exercises: The exercises in the order of the notebook, or the modules that have each an
+            `exercise`.
         quizzes: The quizzes in the order of the notebook.
         topics: Further topics that the lesson's own cells use.
         given: Full names of nodes that the lesson's own cells leave running, see `Exercise`.
@@ -56,7 +57,7 @@ class Lesson:
         title: str = '',
         teaches: str = '',
         minutes: int = 0,
-        exercises: Sequence[Exercise] = (),
+        exercises: Sequence[Exercise | ModuleType] = (),
         quizzes: Sequence[Quiz] = (),
         topics: Sequence[str] = (),
         given: Mapping[str, str] = MappingProxyType({}),
@@ -66,14 +67,15 @@ class Lesson:
         self.title = title
         self.teaches = teaches
         self.minutes = minutes
-        self._refuse_names('exercises', exercises)
+        these = [each if isinstance(each, Exercise) else each.exercise for each in exercises]
+        self._refuse_names('exercises', these)
         self._refuse_names('quizzes', quizzes)
-        self._exercises = {exercise.name: exercise for exercise in exercises}
+        self._exercises = {exercise.name: exercise for exercise in these}
         self._quizzes = {quiz.name: quiz for quiz in quizzes}
-        known = frozenset(topics).union(*(exercise.scope.topics for exercise in exercises))
-        of_lesson = frozenset(role for e in exercises for role in e.scope.roles)
+        known = frozenset(topics).union(*(exercise.scope.topics for exercise in these))
+        of_lesson = frozenset(role for e in these for role in e.scope.roles)
         earlier: frozenset[Role] = frozenset()
-        for exercise in exercises:
+        for exercise in these:
             scope = exercise.scope
             exercise.lesson = name
             exercise.belongs_to = self
@@ -107,8 +109,8 @@ class Lesson:
 
     def begin(self) -> Lesson:
         """Prepare all exercises, for the setup cell."""
-        from labkit.exercises.membership import follow_class
-        from labkit.exercises.progress_page import follow_progress
+        from labkit.exercises.record.membership import follow_class
+        from labkit.exercises.record.progress_page import follow_progress
 
         last_cell.follow()
         for exercise in self.exercises:

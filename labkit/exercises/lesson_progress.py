@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from labkit import settings
-from labkit.exercises.progress_store import number_of, text_of
+from labkit.exercises.record.progress_store import number_of, text_of
 from labkit.views.progress_picture import Item, Row
 
 if TYPE_CHECKING:

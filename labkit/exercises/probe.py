@@ -15,15 +15,15 @@ from typing import TYPE_CHECKING, Any
 
 from labkit import stop_button
 from labkit.background.wait import wait_for
-from labkit.exercises.callbacks import Callbacks, find_node, is_given
-from labkit.exercises.scope import Scope
+from labkit.exercises.callback_count import Callbacks, find_node, is_given
+from labkit.exercises.messages_heard import Watch, build
 from labkit.exercises.verdict import Fail, LearnerError
-from labkit.exercises.watch import Watch, build
+from labkit.exercises.what_is_asked import Scope
 from labkit.progress_bar import ProgressBar
 from labkit.rosgraph.names import EVERY_NODE_HAS, is_hidden
 
 if TYPE_CHECKING:
-    from labkit.exercises.life import Life
+    from labkit.exercises.observation import Life
     from labkit.rosgraph.endpoints import Endpoint
     from labkit.rosgraph.servers import Server
 

@@ -23,7 +23,7 @@ from labkit.launching.model import (
     perform,
     pieces,
 )
-from labkit.launching.values import coerce
+from labkit.launching.parameter_types import coerce
 
 __all__ = [
     'AppendEnvironmentVariable',
@@ -298,7 +298,7 @@ class Source:
 
     def load(self, path: str) -> LaunchDescription:
         """Return the description in a file."""
-        from labkit.launching.files import load
+        from labkit.launching.launch_files import load
 
         return load(path, self.form)
 

@@ -13,9 +13,9 @@ from labkit.background.console import Cell
 from labkit.background.runtime import runtime
 from labkit.background.wait import wait_for
 from labkit.errors import LabError
-from labkit.launching.files import find
+from labkit.launching.launch_files import find
+from labkit.programs.child_environment import environment
 from labkit.programs.child_processes import Process, gids_in, keep, processes
-from labkit.programs.environment import environment
 from labkit.rosgraph.snapshot import is_whole, node_names
 from labkit.rosgraph.whose import note_end, process_id, process_of
 

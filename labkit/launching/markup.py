@@ -23,8 +23,8 @@ from labkit.launching.model import (
     TextSubstitution,
     at,
 )
+from labkit.launching.parameter_types import coerce, is_value, type_named
 from labkit.launching.templates import template, unescaped
-from labkit.launching.values import coerce, is_value, type_named
 from labkit.rosgraph.yaml_loading import load_yaml
 
 __all__ = ['from_xml', 'from_yaml']

@@ -20,7 +20,7 @@ from labkit.launching.model import (
     perform,
     pieces,
 )
-from labkit.launching.values import SCALARS, coerce, is_value
+from labkit.launching.parameter_types import SCALARS, coerce, is_value
 from labkit.rosgraph.packages import executable
 from labkit.rosgraph.parameter_files import is_meant, sections_in
 from labkit.rosgraph.yaml_loading import load_yaml

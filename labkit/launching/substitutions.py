@@ -22,7 +22,7 @@ from labkit.launching.model import (
     perform,
     pieces,
 )
-from labkit.launching.values import coerce
+from labkit.launching.parameter_types import coerce
 from labkit.rosgraph.packages import executable, prefix_of
 
 __all__ = ['REFUSED', 'WORDS', 'Substitution', 'TextSubstitution', 'substitution']

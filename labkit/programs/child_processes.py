@@ -26,8 +26,8 @@ from labkit.background.console import Cell
 from labkit.background.runtime import runtime
 from labkit.background.wait import wait_for
 from labkit.errors import LabTimeout
+from labkit.programs.child_environment import READY, environment
 from labkit.programs.children import SUPERVISOR
-from labkit.programs.environment import READY, environment
 from labkit.rosgraph.listings import ends_of_node
 from labkit.rosgraph.names import is_hidden
 from labkit.rosgraph.snapshot import is_whole, node_names

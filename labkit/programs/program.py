@@ -13,7 +13,7 @@ from rclpy.publisher import Publisher
 from rclpy.utilities import ok, try_shutdown
 
 from labkit.background.wait import wait_for
-from labkit.programs.environment import READY
+from labkit.programs.child_environment import READY
 from labkit.rosgraph.listings import ends_of_node
 
 __all__ = ['publish_when_heard', 'spin_until_interrupted']

@@ -14,7 +14,8 @@ from labkit import settings
 from labkit.asking.action_goals import ActionGoals, shown_id
 from labkit.asking.discovery import poll_until
 from labkit.errors import LabError
-from labkit.ros2.asking import (
+from labkit.ros2.graph_completion import action_names, types_of_action
+from labkit.ros2.graph_queries import (
     add_discovery_options,
     asking_node,
     full_name,
@@ -23,7 +24,6 @@ from labkit.ros2.asking import (
     unknown,
     values_text,
 )
-from labkit.ros2.graph_words import action_names, types_of_action
 from labkit.ros2.parser import Command, Parser, Verb, real_one
 from labkit.ros2.streams import tell
 from labkit.rosgraph import interfaces

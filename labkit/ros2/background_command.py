@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from labkit.asking.discovery import wait_until_announced
 from labkit.background.wait import wait_for
 from labkit.programs.child_processes import end_earlier, environment, start_process
-from labkit.ros2.asking import asking_node
+from labkit.ros2.graph_queries import asking_node
 from labkit.rosgraph.endpoints import publishers, subscriptions
 
 if TYPE_CHECKING:

@@ -18,10 +18,10 @@ from labkit.bags.reader import Bag, open_bag
 from labkit.bags.writer import STORAGES
 from labkit.errors import LabError, quoted
 from labkit.progress_bar import ProgressBar
-from labkit.ros2.asking import asking_node, full_name
+from labkit.ros2.graph_queries import asking_node, full_name
 from labkit.ros2.parser import Parser, Usage, Verb, positive_float
 from labkit.ros2.streams import Stop, log
-from labkit.rosgraph.qos import read_overrides
+from labkit.rosgraph.qos_profiles import read_overrides
 
 __all__ = ['PLAY', 'add_reader_arguments', 'bag_paths', 'check_storage']
 

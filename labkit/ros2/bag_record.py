@@ -14,11 +14,11 @@ from labkit.bags.recorder import CACHE_BYTES, NODE_NAME, Recording, start_record
 from labkit.bags.writer import STORAGES, BagWriter
 from labkit.errors import LabError
 from labkit.progress_bar import ProgressBar
-from labkit.ros2.asking import asking_node, full_name
-from labkit.ros2.graph_words import service_names, topic_names
+from labkit.ros2.graph_completion import service_names, topic_names
+from labkit.ros2.graph_queries import asking_node, full_name
 from labkit.ros2.parser import Parser, Verb, unsigned_int
 from labkit.ros2.streams import Stop, add_stop_options, log
-from labkit.rosgraph.qos import read_overrides
+from labkit.rosgraph.qos_profiles import read_overrides
 
 __all__ = ['RECORD']
 

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from labkit.ros2.asking import add_discovery_options, asking_node
+from labkit.ros2.graph_queries import add_discovery_options, asking_node
 from labkit.ros2.parser import Command, Parser, Verb
 from labkit.rosgraph.endpoints import Endpoint, publishers, subscriptions
 from labkit.rosgraph.listings import own_topics

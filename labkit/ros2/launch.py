@@ -15,9 +15,9 @@ from pathlib import Path
 from labkit import settings
 from labkit.errors import LabError
 from labkit.launching.actions import IncludeLaunchDescription, Source
-from labkit.launching.files import arguments, find, launch_files, load, tree
-from labkit.launching.service import Service
-from labkit.programs.environment import environment, teller
+from labkit.launching.launch_files import arguments, find, launch_files, load, tree
+from labkit.launching.launch_service import Service
+from labkit.programs.child_environment import environment, teller
 from labkit.ros2.parser import Command, Parser, Verb
 from labkit.rosgraph.packages import package_names
 

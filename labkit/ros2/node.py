@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from labkit.asking.discovery import poll_until
 from labkit.errors import LabError
-from labkit.ros2.asking import add_discovery_options, asking_node, known_names, unknown
-from labkit.ros2.graph_words import node_names
+from labkit.ros2.graph_completion import node_names
+from labkit.ros2.graph_queries import add_discovery_options, asking_node, known_names, unknown
 from labkit.ros2.parser import Command, Parser, Verb, real_one
 from labkit.rosgraph.listings import ends_of_node
 from labkit.rosgraph.names import is_hidden

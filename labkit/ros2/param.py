@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rcl_interfaces.msg import Parameter, ParameterValue
 
-from labkit.asking.parameters import (
+from labkit.asking.parameter_calls import (
     delete_parameter,
     describe_parameters,
     get_parameters,
@@ -19,11 +19,11 @@ from labkit.asking.parameters import (
     set_parameters,
 )
 from labkit.errors import LabError, quoted
-from labkit.ros2.asking import add_discovery_options, asking_node, check_node_name, unknown
-from labkit.ros2.graph_words import node_names
+from labkit.ros2.graph_completion import node_names
+from labkit.ros2.graph_queries import add_discovery_options, asking_node, check_node_name, unknown
 from labkit.ros2.parser import Command, Parser, Usage, Verb, positive_float, real_one
 from labkit.rosgraph.names import is_hidden
-from labkit.rosgraph.parameters import (
+from labkit.rosgraph.parameter_values import (
     NOT_SET,
     parameters_in,
     python_value,

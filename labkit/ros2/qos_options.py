@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from labkit.ros2.parser import Parser, positive_float, unsigned_int
 from labkit.rosgraph.endpoints import publishers
-from labkit.rosgraph.qos import POLICIES, PRESETS, make_profile, match_all
+from labkit.rosgraph.qos_profiles import POLICIES, PRESETS, make_profile, match_all
 
 if TYPE_CHECKING:
     from rclpy.node import Node

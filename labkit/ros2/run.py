@@ -15,7 +15,7 @@ from argparse import Namespace
 from labkit import settings
 from labkit.asking.discovery import is_only_process
 from labkit.programs.child_processes import end_earlier, environment, start_process
-from labkit.ros2.asking import asking_node
+from labkit.ros2.graph_queries import asking_node
 from labkit.ros2.parser import Command, Parser, Verb
 from labkit.rosgraph.packages import Executable, executable, executables, with_executables
 from labkit.rosgraph.snapshot import node_names

@@ -14,7 +14,8 @@ from labkit.asking.discovery import poll_until
 from labkit.asking.service_calls import ServiceCalls
 from labkit.background.runtime import runtime
 from labkit.errors import LabError
-from labkit.ros2.asking import (
+from labkit.ros2.graph_completion import service_names, types_of_service
+from labkit.ros2.graph_queries import (
     add_discovery_options,
     asking_node,
     full_name,
@@ -24,7 +25,6 @@ from labkit.ros2.asking import (
     unknown,
     values_text,
 )
-from labkit.ros2.graph_words import service_names, types_of_service
 from labkit.ros2.parser import Command, Parser, Verb, positive_float, real_one
 from labkit.ros2.service_echo import ECHO
 from labkit.rosgraph import interfaces

@@ -8,14 +8,14 @@ from typing import Any
 
 from labkit.asking.discovery import poll_until
 from labkit.errors import LabError
-from labkit.ros2.asking import add_discovery_options, asking_node, full_name, unknown
-from labkit.ros2.graph_words import service_names, types_of_service
+from labkit.ros2.graph_completion import service_names, types_of_service
+from labkit.ros2.graph_queries import add_discovery_options, asking_node, full_name, unknown
 from labkit.ros2.parser import Parser, Verb
 from labkit.ros2.streams import Arrivals, Stop, add_stop_options, subscribed, tell
 from labkit.ros2.topic_echo import add_form_options, text_of
 from labkit.rosgraph import interfaces
 from labkit.rosgraph.listings import service_types, services
-from labkit.rosgraph.qos import make_profile
+from labkit.rosgraph.qos_profiles import make_profile
 
 __all__ = ['ECHO']
 

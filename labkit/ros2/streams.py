@@ -19,7 +19,7 @@ from labkit.asking.listener import Listener
 from labkit.background.compat import RCLError
 from labkit.background.wait import wait_for
 from labkit.errors import LabError
-from labkit.ros2.asking import other_type, unknown
+from labkit.ros2.graph_queries import other_type, unknown
 from labkit.ros2.parser import Parser, Usage, positive_float, positive_int
 from labkit.rosgraph.listings import topic_types, topics
 

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from labkit.asking.discovery import poll_until
 from labkit.errors import LabError
-from labkit.ros2.asking import (
+from labkit.ros2.graph_completion import topic_names
+from labkit.ros2.graph_queries import (
     add_discovery_options,
     asking_node,
     known_names,
@@ -16,7 +17,6 @@ from labkit.ros2.asking import (
     print_names_of,
     unknown,
 )
-from labkit.ros2.graph_words import topic_names
 from labkit.ros2.parser import Command, Parser, Verb, real_one
 from labkit.ros2.topic_echo import ECHO
 from labkit.ros2.topic_pub import PUB

@@ -14,8 +14,8 @@ from labkit import settings
 from labkit.asking.silence import why_silent
 from labkit.background.runtime import runtime
 from labkit.errors import LabError, did_you_mean
-from labkit.ros2.asking import add_discovery_options, asking_node, full_name
-from labkit.ros2.graph_words import topic_names, types_of_topic
+from labkit.ros2.graph_completion import topic_names, types_of_topic
+from labkit.ros2.graph_queries import add_discovery_options, asking_node, full_name
 from labkit.ros2.parser import (
     Parser,
     Verb,

@@ -17,14 +17,14 @@ from labkit.background.nodes import destroy_node
 from labkit.background.runtime import runtime
 from labkit.background.wait import wait_for
 from labkit.errors import LabError, nearest, quoted
-from labkit.ros2.asking import (
+from labkit.ros2.graph_completion import topic_names, types_of_topic
+from labkit.ros2.graph_queries import (
     add_discovery_options,
     asking_node,
     full_name,
     other_type,
     values_text,
 )
-from labkit.ros2.graph_words import topic_names, types_of_topic
 from labkit.ros2.parser import Parser, Usage, Verb, positive_float, real_one, unsigned_int
 from labkit.ros2.qos_options import add_qos_options, profile_from
 from labkit.ros2.streams import MAX_SHOWN, Stop, tell

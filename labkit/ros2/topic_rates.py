@@ -13,8 +13,8 @@ from typing import Any, NoReturn
 
 from labkit.asking.silence import why_silent
 from labkit.errors import LabError
-from labkit.ros2.asking import add_discovery_options, asking_node, full_name
-from labkit.ros2.graph_words import topic_names
+from labkit.ros2.graph_completion import topic_names
+from labkit.ros2.graph_queries import add_discovery_options, asking_node, full_name
 from labkit.ros2.parser import Parser, Verb, positive_int
 from labkit.ros2.streams import (
     Arrivals,
@@ -27,7 +27,7 @@ from labkit.ros2.streams import (
 )
 from labkit.rosgraph import interfaces
 from labkit.rosgraph.interfaces import type_name
-from labkit.rosgraph.qos import make_profile
+from labkit.rosgraph.qos_profiles import make_profile
 
 __all__ = ['BW', 'DELAY', 'HZ']
 

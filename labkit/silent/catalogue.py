@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from labkit.silent.ends import look_at_history, look_at_pairs, look_at_servers
 from labkit.silent.kinds import KINDS, Fault
-from labkit.silent.life import look_at_calls, look_at_ends, look_at_spinning
-from labkit.silent.messages import look_at_messages
-from labkit.silent.names import look_at_kinds, look_at_names, look_at_nodes
-from labkit.silent.parameters import (
+from labkit.silent.matching_faults import look_at_history, look_at_pairs, look_at_servers
+from labkit.silent.message_faults import look_at_messages
+from labkit.silent.name_faults import look_at_kinds, look_at_names, look_at_nodes
+from labkit.silent.parameter_faults import (
     look_at_files,
     look_at_parameters,
     look_at_readers,
     look_at_rules,
 )
 from labkit.silent.scene import Scene
-from labkit.silent.timing import look_at_callbacks, look_at_clocks, look_at_timers
+from labkit.silent.spinning_faults import look_at_calls, look_at_ends, look_at_spinning
+from labkit.silent.timing_faults import look_at_callbacks, look_at_clocks, look_at_timers
 
 __all__ = ['AT_GRAPH', 'AT_NODES', 'KINDS', 'page']
 

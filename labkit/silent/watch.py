@@ -25,12 +25,12 @@ from labkit.background import compat
 from labkit.background.console import Cell
 from labkit.background.runtime import runtime
 from labkit.silent.catalogue import AT_GRAPH, AT_NODES
-from labkit.silent.ends import DEPTH
 from labkit.silent.kinds import Fault, in_words
-from labkit.silent.messages import checks_of, stamp_of
+from labkit.silent.matching_faults import DEPTH
+from labkit.silent.message_faults import checks_of, stamp_of
 from labkit.silent.reading import Reader
 from labkit.silent.scene import Scene
-from labkit.silent.timing import OVERRUN
+from labkit.silent.timing_faults import OVERRUN
 
 if TYPE_CHECKING:
     from labkit.rosgraph.snapshot import Graph

@@ -33,10 +33,7 @@ from labkit.background.runtime import runtime
 from labkit.errors import LabError
 from labkit.rosgraph.endpoints import publishers
 from labkit.rosgraph.interfaces import type_name
-from labkit.sim.camera import PI_CAMERA
-from labkit.sim.command_timeout import COMMAND_TIMEOUT, TIMED_OUT_TOPIC, timed_out_words
-from labkit.sim.kinematics import Pose, Twist2
-from labkit.sim.messages import (
+from labkit.sim.burger_messages import (
     battery_message,
     camera_info_message,
     image_message,
@@ -46,6 +43,9 @@ from labkit.sim.messages import (
     scan_message,
     time_message,
 )
+from labkit.sim.camera import PI_CAMERA
+from labkit.sim.command_timeout import COMMAND_TIMEOUT, TIMED_OUT_TOPIC, timed_out_words
+from labkit.sim.kinematics import Pose, Twist2
 from labkit.sim.pace import Beat, Stopwatch
 from labkit.sim.simulator import Simulator
 from labkit.sim.world import Contact, Wall, World

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from labkit.errors import LabError
-from labkit.exercises.class_sheet import FILE_NAME, MOST_BYTES, Sheet, catalogue, read_sheet
+from labkit.exercises.record.class_sheet import FILE_NAME, MOST_BYTES, Sheet, catalogue, read_sheet
 
 __all__ = ['ClassFolder', 'Learner', 'Reading', 'chosen_folder']
 

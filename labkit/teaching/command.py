@@ -9,7 +9,7 @@ from datetime import datetime, timezone
 
 from labkit.teaching.class_folder import ClassFolder, chosen_folder
 from labkit.teaching.counting import count
-from labkit.teaching.export import gradebook, table
+from labkit.teaching.tables import gradebook, table
 from labkit.views.class_board import text_form
 
 __all__ = ['main']

@@ -41,7 +41,7 @@ from labkit.views.message_tree import rows
 from labkit.views.plot_fields import Source, parse
 from labkit.views.plot_picture import COLOURS, in_words, thin
 from labkit.views.robot_messages import beam_ends, motion_of
-from labkit.views.stored import Stored
+from labkit.views.stored_form import Stored
 from labkit.views.widget import widget_class
 
 if TYPE_CHECKING:

@@ -11,12 +11,12 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from labkit.asking.parameters import get_parameters, parameter_names
+from labkit.asking.parameter_calls import get_parameters, parameter_names
 from labkit.asking.traffic import Traffic, Way
 from labkit.background.compat import RCLError, parameter_values
 from labkit.background.nodes import existing_nodes, full_name
 from labkit.errors import LabError, quoted
-from labkit.rosgraph.parameters import python_value
+from labkit.rosgraph.parameter_values import python_value
 from labkit.rosgraph.snapshot import Graph, read_graph
 from labkit.silent.kinds import Fault
 from labkit.silent.watch import watch

@@ -22,7 +22,7 @@ function setText(place, text) {
   if (place.textContent !== text) place.textContent = text;
 }
 
-// What every view is. Its stored form hides while it is there (see stored.py). JupyterLab's own keys
+// What every view is. Its stored form hides while it is there (see stored_form.py). JupyterLab's own keys
 // (a, b, x, arrows) stay out of it, but for those that run its cell; Escape leaves it.
 function makeView(model, el) {
   el.classList.add('labkit-view', model.get('mark'));

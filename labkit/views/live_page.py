@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 from labkit.background.compat import call_in_kernel
 from labkit.views.feed import Feed
 from labkit.views.live import Live, helper
-from labkit.views.stored import Stored
+from labkit.views.stored_form import Stored
 from labkit.views.widget import PageWidget, widget_class
 
 __all__ = ['LivePage', 'Update']

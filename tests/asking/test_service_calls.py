@@ -14,7 +14,7 @@ from rclpy.parameter import Parameter
 from std_srvs.srv import SetBool
 
 import labkit
-from labkit.asking.parameters import set_parameters
+from labkit.asking.parameter_calls import set_parameters
 from labkit.asking.service_calls import ServiceCalls
 from labkit.background.runtime import runtime
 from labkit.errors import LabError, LabTimeout

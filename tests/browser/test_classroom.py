@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import expect
 
-from labkit.exercises.class_sheet import FILE_NAME
+from labkit.exercises.record.class_sheet import FILE_NAME
 from tests.browser.accessibility import violations
 from tests.browser.page import Notebook
 

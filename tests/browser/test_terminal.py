@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import websocket
 
-from labkit.lessons.package.listener import listener
+from labkit.lessons.package.listener import exercise as listener
 from labkit.ros2.open_pages import notebooks_in_pages
 from labkit.setup.environment import PYTHON
 from tests.browser.jupyter import JupyterLab

@@ -11,7 +11,7 @@ import pytest
 
 import labkit
 from labkit import settings
-from labkit.exercises import learner_time
+from labkit.exercises.time import learner_time
 
 # With pytest's importlib mode a test can't import the file beside it by itself.
 sys.path.insert(0, str(Path(__file__).resolve().parent))

@@ -13,12 +13,12 @@ import pytest
 from rclpy.node import Node
 from std_msgs.msg import Int16
 
-from labkit.exercises import Fail, Probe, words
+from labkit.exercises import Fail, Probe, common_mistakes
 from labkit.exercises.clauses import Answers, Evidence, Logs, Says, Stream, answering
-from labkit.exercises.life import Life, Sent, Stimulus, live
+from labkit.exercises.messages_heard import Lived, Watch
 from labkit.exercises.mistakes import Mistake
-from labkit.exercises.scope import Scope
-from labkit.exercises.watch import Lived, Watch
+from labkit.exercises.observation import Life, Sent, Stimulus, live
+from labkit.exercises.what_is_asked import Scope
 
 INT16 = 'std_msgs/msg/Int16'
 CLAUSE = Answers('/odds', '/evens', INT16, 'add 1', answer=lambda n: n + 1, draw=lambda: [1])
@@ -496,7 +496,7 @@ def test_node_may_reply_where_it_listens(
 def test_model_of_a_mistake_stands_in_a_line() -> None:
     upper = Mistake('test/upper', 'In capital letters.', model=str.upper)
     clause = Logs('/chatter', 'std_msgs/msg/String', 'log it', mistakes=[upper])
-    for line, mistake in (('I heard HELLO', upper), ('I heard it', words.LOGS_ELSE)):
+    for line, mistake in (('I heard HELLO', upper), ('I heard it', common_mistakes.LOGS_ELSE)):
         with pytest.raises(Fail) as refused:
             clause.judge(lines([(2.0, 'hello')], [(2.1, line)]))
         assert refused.value.mistake is mistake
@@ -507,8 +507,8 @@ def test_model_of_a_mistake_is_said_each_time() -> None:
     clause = Says('/ones', 1, mistakes=[zero])
     for values, mistake in (
         ([0, 0], zero),
-        ([1, 0, 0], words.LATER_WRONG),
-        ([1, 2, 3], words.CHANGES),
+        ([1, 0, 0], common_mistakes.LATER_WRONG),
+        ([1, 2, 3], common_mistakes.CHANGES),
     ):
         seen = Evidence(cast(Any, None))
         samples = [Lived(SimpleNamespace(data=value), 0.0, 0, 0.0) for value in values]

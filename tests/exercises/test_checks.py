@@ -19,7 +19,7 @@ from std_msgs.msg import Int16, String
 from labkit.exercises import Exercise, Fail, Lesson, NotAttempted, Outcome, Probe, Solution, expect
 from labkit.exercises.clauses import Answers, Graph
 from labkit.exercises.draws import draw_int16s
-from labkit.exercises.scope import Scope
+from labkit.exercises.what_is_asked import Scope
 
 INT16 = 'std_msgs/msg/Int16'
 STRING = 'std_msgs/msg/String'

@@ -25,9 +25,9 @@ from labkit.exercises.draws import (
     filled,
 )
 from labkit.exercises.lesson import all_lessons
-from labkit.exercises.life import Life, Sent
-from labkit.exercises.scope import Scope
-from labkit.exercises.watch import Lived, build
+from labkit.exercises.messages_heard import Lived, build
+from labkit.exercises.observation import Life, Sent
+from labkit.exercises.what_is_asked import Scope
 
 Timed = list[tuple[float, Any]]
 Rule = Callable[[Any], Any]

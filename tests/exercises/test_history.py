@@ -16,8 +16,8 @@ from labkit.background.runtime import runtime
 from labkit.exercises import Fail, Probe
 from labkit.exercises.clauses import Answers, Evidence, Logs, Publishes, Says
 from labkit.exercises.history import history
-from labkit.exercises.learner_time import learner_time
-from labkit.exercises.scope import Scope
+from labkit.exercises.time.learner_time import learner_time
+from labkit.exercises.what_is_asked import Scope
 
 INT16 = 'std_msgs/msg/Int16'
 ODDS, EVENS = '/odds', '/evens'

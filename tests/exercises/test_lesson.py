@@ -9,7 +9,7 @@ from by_hand import ByHand
 from labkit.errors import LabError
 from labkit.exercises.exercise import Exercise, Solution
 from labkit.exercises.lesson import Lesson, NoSuchNameError, load
-from labkit.exercises.quiz import Quiz
+from labkit.exercises.quiz.quiz import Quiz
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 

@@ -14,10 +14,10 @@ from labkit.exercises import lesson as lesson_module
 from labkit.exercises.exercise import Exercise, Solution
 from labkit.exercises.lesson import Lesson, all_lessons
 from labkit.exercises.lesson_progress import next_steps
-from labkit.exercises.progress import progress
-from labkit.exercises.progress_store import progress_store
-from labkit.exercises.questions import Choice, right, wrong
-from labkit.exercises.quiz import Quiz
+from labkit.exercises.quiz.questions import Choice, right, wrong
+from labkit.exercises.quiz.quiz import Quiz
+from labkit.exercises.record.progress import progress
+from labkit.exercises.record.progress_store import progress_store
 from labkit.exercises.verdict import Verdict
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -50,7 +50,7 @@ def course(monkeypatch: pytest.MonkeyPatch) -> list[Lesson]:
         Lesson('chat', '06_chat.ipynb', title='Chat', exercises=[exercise('teller')]),
     ]
     monkeypatch.setattr(lesson_module, 'all_lessons', lambda: found)
-    monkeypatch.setattr('labkit.exercises.progress.all_lessons', lambda: found)
+    monkeypatch.setattr('labkit.exercises.record.progress.all_lessons', lambda: found)
     return found
 
 

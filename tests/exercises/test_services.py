@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from labkit.background.domains import claim_domain
-from labkit.exercises.scope import Scope
+from labkit.exercises.what_is_asked import Scope
 from labkit.rosgraph.servers import Server
 
 SERVES = {'/switch': 'std_srvs/srv/SetBool'}

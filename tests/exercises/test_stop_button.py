@@ -20,8 +20,8 @@ from std_msgs.msg import Int16
 from labkit import stop_button
 from labkit.background.nodes import existing_nodes
 from labkit.exercises import Probe
-from labkit.exercises.life import Life, live
-from labkit.exercises.scope import Scope
+from labkit.exercises.observation import Life, live
+from labkit.exercises.what_is_asked import Scope
 
 TOPICS = {'/odds': 'std_msgs/msg/Int16'}
 

@@ -9,14 +9,14 @@ import pytest
 from hub.machine import Hub, Machine
 from hub.person import Notebook, Person, at_once
 
-from labkit.exercises.class_sheet import FILE_NAME
+from labkit.exercises.record.class_sheet import FILE_NAME
 
 pytestmark = pytest.mark.slow('a hub, with servers and kernels')
 
 NAMES = ('anna', 'ben', 'maria')
 TRY = (
-    'from labkit.exercises.progress_store import progress_store\n'
-    'from labkit.exercises.membership import wait_until_sent\n'
+    'from labkit.exercises.record.progress_store import progress_store\n'
+    'from labkit.exercises.record.membership import wait_until_sent\n'
     'progress_store.note_check("talker_listener", "every_two_seconds", {!r})\n'
     'print(wait_until_sent(60))'
 )

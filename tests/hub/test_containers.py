@@ -20,7 +20,7 @@ from dockerspawner import DockerSpawner
 from hub.machine import ROOT, Machine
 from traitlets.config import PyFileConfigLoader
 
-from labkit.exercises.class_sheet import FILE_NAME
+from labkit.exercises.record.class_sheet import FILE_NAME
 from labkit.hub.class_list import Member
 from labkit.hub.containers import MOUNTED, make_class_volumes
 
@@ -28,8 +28,8 @@ CLASS = (Member('anna'), Member('ben_2'), Member('maria', teaches=True))
 HOME = '/home/jovyan'
 JOIN = """
 import labkit as lab
-from labkit.exercises.progress_store import progress_store
-from labkit.exercises.membership import wait_until_sent
+from labkit.exercises.record.progress_store import progress_store
+from labkit.exercises.record.membership import wait_until_sent
 
 print(lab.join_class())
 progress_store.note_check('talker_listener', 'every_two_seconds', 'PASS')

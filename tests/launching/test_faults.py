@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from labkit.errors import LabError
-from labkit.launching.files import arguments, find, load, tree
+from labkit.launching.launch_files import arguments, find, load, tree
 from tests.launching.stage import visit, write
 
 XML = [

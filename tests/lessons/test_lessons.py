@@ -17,7 +17,7 @@ from proof import lessons, notebook_of
 
 from labkit.exercises import Choice, Exercise, Lesson, Number, Outcome, Several, Word
 from labkit.exercises.lesson import lesson_names, load
-from labkit.exercises.questions import Question
+from labkit.exercises.quiz.questions import Question
 
 # How many answers of each kind an exercise has, beside the shown solution.
 WRONG, STYLES = 8, 4

@@ -14,8 +14,8 @@ import pytest
 from cases.scripts import started_by_subprocess
 
 from labkit.background.domains import claim_domain
-from labkit.lessons.turtlebot.bot import bot
-from labkit.lessons.turtlebot.square import square
+from labkit.lessons.turtlebot.bot import exercise as bot
+from labkit.lessons.turtlebot.square import exercise as square
 
 Script = Callable[..., Any]
 

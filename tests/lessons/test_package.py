@@ -10,12 +10,12 @@ from pathlib import Path
 import built_once
 import pytest
 
+from labkit.lessons.package.learner_workspace import workspace
 from labkit.lessons.package.made import make_broken
-from labkit.lessons.package.workspace import workspace
 from labkit.packages.skeleton import Part, Skeleton
 
 WORKSPACE = """
-from labkit.lessons.package.workspace import make_workspace, workspace
+from labkit.lessons.package.learner_workspace import make_workspace, workspace
 
 assert workspace() is None
 made = make_workspace()
@@ -62,7 +62,10 @@ def test_the_broken_package_is_made_anew_only_when_that_is_asked_for(tmp_path, m
 
 
 def test_what_is_recorded_has_a_workspace_that_is_always_called_the_same(script, tmp_path):
-    code = 'from labkit.lessons.package.workspace import make_workspace\nprint(make_workspace())\n'
+    code = (
+        'from labkit.lessons.package.learner_workspace import make_workspace\n'
+        'print(make_workspace())\n'
+    )
     result = script(code, TMPDIR=str(tmp_path), LABKIT_HEADLESS='1')
     assert result.stdout == f'{tmp_path}/ros2_ws\n', result.stderr
 

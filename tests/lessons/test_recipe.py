@@ -68,7 +68,7 @@ def write(course: Path, module: str, solution: str) -> None:
     assert 'exercises=[' in text
     text = text.replace('exercises=[', 'exercises=[halves, ')
     init.write_text(
-        text.replace('\nLESSON', '\nfrom labkit.lessons.odds.halves import halves\n\nLESSON', 1)
+        text.replace('\nLESSON', '\nfrom labkit.lessons.odds import halves\n\nLESSON', 1)
     )
     notebook = nbformat.read(ROOT / 'notebooks' / NOTEBOOK, as_version=4)
     where = [cell.id for cell in notebook.cells].index('evens-task')

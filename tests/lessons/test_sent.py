@@ -19,7 +19,7 @@ from labkit import settings
 from labkit.background import domains
 from labkit.exercises import Exercise
 from labkit.exercises.lesson import load
-from labkit.exercises.watch import Sample
+from labkit.exercises.messages_heard import Sample
 from labkit.lessons.command_line.sent import is_every, messages_at_once, newest_run, period
 
 NOTEBOOK = Path(__file__).resolve().parents[2] / 'notebooks' / '03_command_line.ipynb'

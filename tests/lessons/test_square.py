@@ -10,7 +10,7 @@ import pytest
 from labkit.exercises import Fail
 from labkit.exercises.clauses import Evidence
 from labkit.lessons.turtlebot.drive import Command, Drive
-from labkit.lessons.turtlebot.square import square
+from labkit.lessons.turtlebot.square import exercise as square
 from labkit.sim.kinematics import Motion, Pose, Twist2
 
 SIDE, TURN, REST = Twist2(0.2, 0.0), Twist2(0.0, math.pi / 2), Twist2(0.0, 0.0)

@@ -24,7 +24,7 @@ from labkit.bags.writer import BagWriter
 from labkit.errors import LabError
 from labkit.ros2 import bag_play, shell
 from labkit.ros2.completion import complete_line
-from labkit.rosgraph.qos import read_overrides
+from labkit.rosgraph.qos_profiles import read_overrides
 from tests.bags import made
 from tests.bags.made import Stored
 

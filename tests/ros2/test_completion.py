@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import pytest
 
 import labkit
-from labkit.ros2 import graph_words, terminal
+from labkit.ros2 import graph_completion, terminal
 from labkit.ros2.completion import complete_line
 
 
@@ -115,6 +115,6 @@ def test_a_type_that_comes_a_moment_later_is_awaited(monkeypatch):
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     answers = iter([[], [], [('/odds', ['std_msgs/msg/Int16'])]])
     node = SimpleNamespace(get_topic_names_and_types=lambda: next(answers))
-    monkeypatch.setattr(graph_words, 'asking_node', lambda args: node)
-    found = graph_words.types_of_topic(Namespace(topic_name='/odds'))
+    monkeypatch.setattr(graph_completion, 'asking_node', lambda args: node)
+    found = graph_completion.types_of_topic(Namespace(topic_name='/odds'))
     assert list(found) == ['std_msgs/msg/Int16']

@@ -13,7 +13,7 @@ import pytest
 
 from labkit import settings
 from labkit.errors import LabError
-from labkit.launching.files import find
+from labkit.launching.launch_files import find
 from labkit.packages import workspace as built
 from labkit.packages.skeleton import Skeleton
 from labkit.ros2.shell import run_line

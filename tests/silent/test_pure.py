@@ -15,15 +15,15 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 
 from labkit.rosgraph.endpoints import Endpoint
 from labkit.rosgraph.snapshot import Graph, GraphAction, GraphTopic
-from labkit.silent.ends import look_at_history, look_at_pairs, look_at_servers
 from labkit.silent.kinds import Fault
-from labkit.silent.life import look_at_spinning
-from labkit.silent.messages import NO_STAMP, look_at_messages
-from labkit.silent.names import alike, look_at_names
+from labkit.silent.matching_faults import look_at_history, look_at_pairs, look_at_servers
+from labkit.silent.message_faults import NO_STAMP, look_at_messages
+from labkit.silent.name_faults import alike, look_at_names
 from labkit.silent.reading import files_in
 from labkit.silent.rereading import reads_only_in_init
 from labkit.silent.scene import OwnNode, Publisher, Scene, Subscription, Timer
-from labkit.silent.timing import look_at_clocks
+from labkit.silent.spinning_faults import look_at_spinning
+from labkit.silent.timing_faults import look_at_clocks
 
 
 def end(node: str, msg_type: str, type_hash: str = '') -> Endpoint:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from labkit.silent.parameters import UNDECLARED
+from labkit.silent.parameter_faults import UNDECLARED
 from tests.conftest import Kernel
 
 PRELUDE = """

@@ -91,7 +91,7 @@ def test_it_sees_from_everywhere_also_where_nothing_is() -> None:
 def test_it_is_published_to_whoever_subscribes(stage: Stage, monkeypatch) -> None:
     made = []
     monkeypatch.setattr(
-        'labkit.sim.messages.picture', lambda *a, **k: made.append(k) or picture(*a, **k)
+        'labkit.sim.burger_messages.picture', lambda *a, **k: made.append(k) or picture(*a, **k)
     )
     robot = stage.robot(namespace='robot1', x=0.5)
     driver = stage.driver('robot1')

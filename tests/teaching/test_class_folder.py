@@ -16,11 +16,11 @@ from typing import Any
 import pytest
 
 from labkit.errors import LabError
-from labkit.exercises.class_sheet import FILE_NAME, MOST_BYTES
+from labkit.exercises.record.class_sheet import FILE_NAME, MOST_BYTES
 from labkit.teaching import class_folder
 from labkit.teaching.class_folder import MAX_LEARNERS, ClassFolder, chosen_folder
 from labkit.teaching.counting import count
-from labkit.teaching.export import gradebook, table
+from labkit.teaching.tables import gradebook, table
 from labkit.views.class_board import text_form
 
 NOW = datetime.now(timezone.utc).replace(microsecond=0)

@@ -10,12 +10,12 @@ from typing import Any
 
 import pytest
 
-from labkit.exercises.class_sheet import FILE_NAME, Entry, Sheet
 from labkit.exercises.lesson import all_lessons
+from labkit.exercises.record.class_sheet import FILE_NAME, Entry, Sheet
 from labkit.teaching.class_folder import Learner, Reading
 from labkit.teaching.command import main
 from labkit.teaching.counting import count, remarks
-from labkit.teaching.export import gradebook, table
+from labkit.teaching.tables import gradebook, table
 from labkit.views.class_board import FailRow, text_form
 
 NOW = datetime(2026, 5, 4, 10, 0, tzinfo=timezone.utc)

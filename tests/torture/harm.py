@@ -67,7 +67,7 @@ while True:
 """
 READ = """
 import labkit as lab
-from labkit.exercises.progress_store import progress_store
+from labkit.exercises.record.progress_store import progress_store
 data, note = progress_store.store.read()
 print('progress:', len(data['lessons']), note)
 print('in the bag:', sum(topic.count for topic in lab.bag('day').topics))

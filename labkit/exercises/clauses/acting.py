@@ -8,15 +8,15 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from labkit.exercises import words
+from labkit.exercises import common_mistakes
 from labkit.exercises.clauses.base import Evidence, GraphClause
-from labkit.exercises.life import LIFE_SEC, live
+from labkit.exercises.observation import LIFE_SEC, live
 from labkit.exercises.verdict import Fail
 
 if TYPE_CHECKING:
+    from labkit.exercises.messages_heard import Sample, Watch
     from labkit.exercises.probe import Probe
-    from labkit.exercises.virtual_time import VirtualTime
-    from labkit.exercises.watch import Sample, Watch
+    from labkit.exercises.time.virtual_time import VirtualTime
 
 __all__ = ['Goal', 'Pursues', 'Pursuit']
 
@@ -204,12 +204,12 @@ class Pursues(GraphClause):
 
     def _refuse_silence(self, probe: Probe, asking: _Asking, seconds: float) -> NoReturn:
         servers = {server.node for server in probe.all_servers()}
-        ended = words.SERVER_ENDED.of(service=self.action)
+        ended = common_mistakes.SERVER_ENDED.of(service=self.action)
         fields = asking.pursuits[-1].goal.fields
         raise Fail(
             f'a goal with {show_fields(fields)} on {self.action} {asking.waits_for}',
             f'nothing in {seconds:.0f} s',
-            words.ACTION_SILENT if servers else ended,
+            common_mistakes.ACTION_SILENT if servers else ended,
         )
 
 

@@ -19,14 +19,14 @@ from labkit.exercises.draws import draw_for, filled
 from labkit.exercises.expect.spinning import hanging, spun
 from labkit.exercises.expect.values import show, text_trouble
 from labkit.exercises.history import Note
-from labkit.exercises.life import SAME_SEC
+from labkit.exercises.messages_heard import Lived, Sample
 from labkit.exercises.mistakes import Mistake, anything, recognise
-from labkit.exercises.scope import PUBLISHER, SUBSCRIPTION, Role
+from labkit.exercises.observation import SAME_SEC
 from labkit.exercises.verdict import Fail
-from labkit.exercises.watch import Lived, Sample
+from labkit.exercises.what_is_asked import PUBLISHER, SUBSCRIPTION, Role
 
 if TYPE_CHECKING:
-    from labkit.exercises.life import Life
+    from labkit.exercises.observation import Life
     from labkit.exercises.probe import Probe
     from labkit.rosgraph.endpoints import Endpoint
 

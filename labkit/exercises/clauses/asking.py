@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from labkit.exercises import expect
-from labkit.exercises.callbacks import find_node
+from labkit.exercises.callback_count import find_node
 from labkit.exercises.clauses.base import Evidence, GraphClause
 from labkit.exercises.mistakes import Mistake, recognise
 from labkit.exercises.verdict import Fail

@@ -11,10 +11,11 @@ from itertools import pairwise
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from labkit.exercises import expect, words
+from labkit.exercises import common_mistakes, expect
 from labkit.exercises.history import Note, history, made_at
 from labkit.exercises.judging import Clause, Stage, find, naming
-from labkit.exercises.life import (
+from labkit.exercises.messages_heard import Sample, Watch
+from labkit.exercises.observation import (
     ANSWERS_SOON_SEC,
     LIFE_SEC,
     STEP_SEC,
@@ -24,7 +25,6 @@ from labkit.exercises.life import (
     live,
 )
 from labkit.exercises.verdict import Fail, NotAttempted
-from labkit.exercises.watch import Sample, Watch
 
 if TYPE_CHECKING:
     from labkit.exercises.probe import Probe
@@ -248,7 +248,7 @@ class Evidence:
                 'callbacks that come to an end',
                 f'so many callbacks within one moment that the check stopped counting, after '
                 f'{self.life.seconds:.1f} s of time',
-                words.FLOOD,
+                common_mistakes.FLOOD,
             )
 
     def refuse_old_errors(self) -> None:

@@ -6,18 +6,18 @@ from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from typing import NoReturn
 
-from labkit.exercises import words
+from labkit.exercises import common_mistakes
 from labkit.exercises.clauses.answering import WITHIN_SEC, said_upon, value_of
 from labkit.exercises.clauses.base import Evidence, GraphClause, Test
 from labkit.exercises.draws import draw_texts
 from labkit.exercises.expect.spinning import hanging, spun
 from labkit.exercises.expect.values import show
 from labkit.exercises.history import Note, history
-from labkit.exercises.life import SAME_SEC, STEP_SEC
+from labkit.exercises.messages_heard import Lived, Sample
 from labkit.exercises.mistakes import Mistake, anything, recognise
-from labkit.exercises.scope import SUBSCRIPTION, Role
+from labkit.exercises.observation import SAME_SEC, STEP_SEC
 from labkit.exercises.verdict import Fail
-from labkit.exercises.watch import Lived, Sample
+from labkit.exercises.what_is_asked import SUBSCRIPTION, Role
 
 __all__ = ['Logs']
 
@@ -139,7 +139,7 @@ class Logs(GraphClause):
             fail = Fail(
                 f'one line of {name} for each message on {self.topic}, and no other',
                 f'{len(lines)} more lines before the check: {show(lines)}',
-                words.LOGS_UNASKED,
+                common_mistakes.LOGS_UNASKED,
             )
             fail.clause = self.named(None)
             raise fail
@@ -160,10 +160,10 @@ class Logs(GraphClause):
         here = said_upon(sample.at, left)
         if not here:
             hanging()
-        mistake = words.LOGS_SOME if any(known) else words.NOT_LOGGED
+        mistake = common_mistakes.LOGS_SOME if any(known) else common_mistakes.NOT_LOGGED
         if here:
             found = recognise(self.mistakes, lambda each: _is_in(each, heard, here[0]))
-            mistake = found or words.LOGS_ELSE
+            mistake = found or common_mistakes.LOGS_ELSE
         fail = Fail(
             f'{source.node} logs a line with {show([text])} when '
             f'{"that" if text == heard else show([heard])} comes on {self.topic}',
@@ -187,11 +187,11 @@ class Logs(GraphClause):
         ]
         # With longer steps, lines of a timer come with a message by chance.
         is_exact = step <= STEP_SEC
-        mistake = words.LOGS_UNASKED
+        mistake = common_mistakes.LOGS_UNASKED
         if 2 * len(again) > len(more):
-            mistake = words.LOGS_TWICE
+            mistake = common_mistakes.LOGS_TWICE
         elif 2 * len(with_one) > len(more) and (is_exact or 2 * len(more) > len(moments)):
-            mistake = words.LOGS_BESIDE
+            mistake = common_mistakes.LOGS_BESIDE
         fail = Fail(
             f'one line of {source.node} for each message on {self.topic}, and no other',
             f'{len(more)} more lines: {show([line for _, line in more])}',

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from labkit.exercises import words
+from labkit.exercises import common_mistakes
 from labkit.exercises.clauses.base import Evidence, GraphClause, Stream
 from labkit.exercises.expect.values import show, text_trouble
 from labkit.exercises.mistakes import Mistake, recognise
@@ -79,9 +79,9 @@ class Says(GraphClause):
     def _mistake(self, values: Sequence[Any], number: int) -> Mistake | None:
         """Return the reason why the values are wrong from a message on."""
         if any(value != values[number] for value in values[number:]):
-            return words.CHANGES
+            return common_mistakes.CHANGES
         if number:
-            return words.LATER_WRONG
+            return common_mistakes.LATER_WRONG
         found = recognise(self.mistakes, lambda each: bool(each.answer() == values[0]))
         return found or text_trouble(values[0], self.value)
 
@@ -116,7 +116,9 @@ class HasText(GraphClause):
                     f'a text in each message on {self.topic}',
                     f'{self.field} = {show(values[number:])}'
                     + (f', after {number} with a text' if number else ''),
-                    (words.ONLY_SPACES if values[number] else words.NOT_SET).of(field=self.field),
+                    (
+                        common_mistakes.ONLY_SPACES if values[number] else common_mistakes.NOT_SET
+                    ).of(field=self.field),
                 )
         examples = [evidence.streams[self.topic, by].values(self.field)[0] for by in self.by]
         return f'It says {show(examples)}.'

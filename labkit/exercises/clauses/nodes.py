@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from labkit.exercises import expect, words
+from labkit.exercises import common_mistakes, expect
 from labkit.exercises.clauses.base import Evidence, GraphClause
 from labkit.exercises.expect import spinning
-from labkit.exercises.scope import NODE, SUBSCRIPTION, Role
 from labkit.exercises.verdict import Fail
+from labkit.exercises.what_is_asked import NODE, SUBSCRIPTION, Role
 
 __all__ = ['Named', 'NobodyElse', 'Runs', 'Subscribes']
 
@@ -93,7 +93,7 @@ class NobodyElse(GraphClause):
             raise Fail(
                 f'publishers on {self.topic}: {", ".join(self.nodes)}, and no other',
                 f'{", ".join(others)} publishes there, too',
-                words.OTHERS_SHARE.of(other=others[0]),
+                common_mistakes.OTHERS_SHARE.of(other=others[0]),
             )
         return ''
 
@@ -122,7 +122,7 @@ class Runs(GraphClause):
             raise Fail(
                 f'{name} runs: its callbacks are called when their time has come',
                 f'{name} is there, but it is not spun',
-                (words.NOT_SPUN if here else words.PROGRAM_WAITS).of(
+                (common_mistakes.NOT_SPUN if here else common_mistakes.PROGRAM_WAITS).of(
                     spin=spinning.how_to_spin(probe, name)
                 ),
             )

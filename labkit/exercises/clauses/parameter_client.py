@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from labkit import stop_button
 from labkit.errors import LabError
-from labkit.exercises import words
+from labkit.exercises import common_mistakes
 from labkit.exercises.expect.spinning import hanging
 from labkit.exercises.verdict import Fail
 
@@ -38,7 +38,7 @@ def set_values(probe: Probe, node: str, values: Values) -> str | None:
         LearnerError: One of its callbacks has raised.
         Fail: It does not answer.
     """
-    from labkit.asking.parameters import set_parameters, set_parameters_atomically
+    from labkit.asking.parameter_calls import set_parameters, set_parameters_atomically
 
     with asked(probe, node):
         if len(values) > 1:
@@ -50,8 +50,8 @@ def set_values(probe: Probe, node: str, values: Values) -> str | None:
 
 def get_values(probe: Probe, node: str, names: list[str]) -> dict[str, Any]:
     """Return values of a node's parameters by their names; raises as `set_values` does."""
-    from labkit.asking.parameters import get_parameters
-    from labkit.rosgraph.parameters import python_value
+    from labkit.asking.parameter_calls import get_parameters
+    from labkit.rosgraph.parameter_values import python_value
 
     with asked(probe, node):
         found = get_parameters(probe.spun_node, node, names)
@@ -86,5 +86,5 @@ def asked(probe: Probe, node: str) -> Iterator[None]:
         raise Fail(
             f'{node} answers questions about its parameters',
             error.message,
-            words.PARAMETERS_SILENT,
+            common_mistakes.PARAMETERS_SILENT,
         ) from None

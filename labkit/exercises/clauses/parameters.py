@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from labkit.errors import nearest
-from labkit.exercises import expect, words
+from labkit.exercises import common_mistakes, expect
 from labkit.exercises.clauses.base import Evidence, GraphClause, Stream
 from labkit.exercises.clauses.parameter_client import Values, asked, get_values, kept, set_values
 from labkit.exercises.clauses.publishing import Publishes
 from labkit.exercises.expect import spinning
-from labkit.exercises.life import LIFE_SEC
+from labkit.exercises.observation import LIFE_SEC
 from labkit.exercises.verdict import Fail
 
 if TYPE_CHECKING:
@@ -55,8 +55,8 @@ class HasParameter(GraphClause):
 
     def find(self, evidence: Evidence) -> None:
         """Ask the node for the parameter and its descriptor."""
-        from labkit.asking.parameters import describe_parameters, parameter_names
-        from labkit.rosgraph.parameters import type_word
+        from labkit.asking.parameter_calls import describe_parameters, parameter_names
+        from labkit.rosgraph.parameter_values import type_word
 
         probe, node = evidence.probe, self.node
         if not spinning.runs(probe, node):
@@ -78,13 +78,13 @@ class HasParameter(GraphClause):
             seen='a parameter of any type: dynamic_typing is on'
             if found.dynamic_typing
             else f'it is of type {type_word(found.type)}',
-            mistake=words.PARAMETER_TYPE.of(kind=self.kind.__name__),
+            mistake=common_mistakes.PARAMETER_TYPE.of(kind=self.kind.__name__),
         )
         expect.that(
             found.description.strip(),
             expected=f'{self.name} with a description',
             seen='a descriptor without a description',
-            mistake=words.NO_DESCRIPTION,
+            mistake=common_mistakes.NO_DESCRIPTION,
         )
         if self.limits is not None:
             self._judge_limits([*found.floating_point_range, *found.integer_range])
@@ -94,7 +94,7 @@ class HasParameter(GraphClause):
         raise Fail(
             f'{self.node} has the parameter {self.name}',
             f'it has {", ".join(names)}',
-            (words.PARAMETER_NAME if near else words.PARAMETER_MISSING).of(
+            (common_mistakes.PARAMETER_NAME if near else common_mistakes.PARAMETER_MISSING).of(
                 near=near, name=self.name
             ),
         )
@@ -106,7 +106,7 @@ class HasParameter(GraphClause):
             seen == wanted,
             expected=f'{self.name} with a range from {wanted[0]} to {wanted[1]}',  # type: ignore[index]
             seen=f'a range from {seen[0]} to {seen[1]}' if seen else 'no range',
-            mistake=words.OTHER_RANGE if seen else words.NO_RANGE,
+            mistake=common_mistakes.OTHER_RANGE if seen else common_mistakes.NO_RANGE,
         )
 
 
@@ -152,12 +152,14 @@ class Follows(GraphClause):
                 raise Fail(
                     f'{self.node} takes {_show(values)}',
                     f'it refuses: {complaint}',
-                    words.NO_RESULT,
+                    common_mistakes.NO_RESULT,
                 )
             raise Fail(
                 f'{self.node} takes {_show(values)}',
                 f'it refuses: {complaint or "without a reason"}',
-                words.REFUSES_SET if len(values) > 1 else words.REFUSES_ALLOWED,
+                common_mistakes.REFUSES_SET
+                if len(values) > 1
+                else common_mistakes.REFUSES_ALLOWED,
             )
 
     def look(self, evidence: Evidence, values: Values, before: Values | None = None) -> None:
@@ -181,7 +183,7 @@ class Follows(GraphClause):
             raise Fail(
                 expected,
                 fail.seen,
-                words.READ_ONCE,
+                common_mistakes.READ_ONCE,
             ) from None
 
     def _seen(self, evidence: Evidence, values: Values, *, is_new: bool = False) -> Evidence:
@@ -212,7 +214,7 @@ class Follows(GraphClause):
                 f'with {_show(values)}: {AT_ONCE} message at most on {self.topic} in the moment '
                 'of the change',
                 f'{at_once} messages in that moment',
-                words.BURSTS,
+                common_mistakes.BURSTS,
             )
         if len(life.on(self.topic)) < FEW:
             # So much too slow that the reason shows only later, such as a rate for a period.
@@ -266,7 +268,7 @@ class Refuses(GraphClause):
                 complaint is None,
                 expected=f'{node} takes {_show(keeps)}',
                 seen=f'it refuses: {complaint or "without a reason"}',
-                mistake=words.REFUSES_ALLOWED,
+                mistake=common_mistakes.REFUSES_ALLOWED,
             )
             taken = [values for values in sets if not self._is_refused(probe, keeps, values)]
             self._judge_taken(keeps, taken, sets)
@@ -284,20 +286,20 @@ class Refuses(GraphClause):
             complaint != INVALID,
             expected=f'a reason why {self.node} refuses {tried}',
             seen=f'what rclpy says: {complaint}',
-            mistake=words.NO_RESULT,
+            mistake=common_mistakes.NO_RESULT,
         )
         expect.that(
             complaint,
             expected=f'a reason why {self.node} refuses {tried}',
             seen='no reason',
-            mistake=words.NO_REASON,
+            mistake=common_mistakes.NO_REASON,
         )
         after = get_values(probe, self.node, list(keeps))
         expect.that(
             after == keeps,
             expected=f'{self.node} still has {_show(keeps)}',
             seen=f'it has {_show(after)}',
-            mistake=words.CHANGES_ANYWAY.of(values=_show(values)),
+            mistake=common_mistakes.CHANGES_ANYWAY.of(values=_show(values)),
         )
         return True
 
@@ -307,11 +309,11 @@ class Refuses(GraphClause):
             return
         # That nan is a number of its own kind is the reason only where nothing else is taken.
         plain = [values for values in taken if not any(map(_is_nan, values.values()))]
-        mistake = words.TAKES_TOGETHER if len(keeps) > 1 else words.TAKES_SOME
+        mistake = common_mistakes.TAKES_TOGETHER if len(keeps) > 1 else common_mistakes.TAKES_SOME
         if len(taken) == len(sets):
-            mistake = words.TAKES_ALL
+            mistake = common_mistakes.TAKES_ALL
         elif not plain:
-            mistake = words.TAKES_NAN
+            mistake = common_mistakes.TAKES_NAN
         raise Fail(
             f'{self.node} refuses {_show((plain or taken)[0])}, while it has {_show(keeps)}',
             'it takes it',
@@ -327,7 +329,7 @@ class Refuses(GraphClause):
             raise Fail(
                 f'{fail.expected}, after it has refused other values',
                 fail.seen,
-                words.USES_ANYWAY,
+                common_mistakes.USES_ANYWAY,
             ) from None
 
 

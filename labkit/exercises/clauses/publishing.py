@@ -9,15 +9,15 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, NoReturn
 
-from labkit.exercises import words
+from labkit.exercises import common_mistakes
 from labkit.exercises.clauses.base import Evidence, GraphClause, Stream
 from labkit.exercises.expect import spinning, timing
 from labkit.exercises.history import history
-from labkit.exercises.life import Life, live
+from labkit.exercises.messages_heard import Lived, Sample, streams_of
 from labkit.exercises.mistakes import Mistake
-from labkit.exercises.scope import PUBLISHER, Role
+from labkit.exercises.observation import Life, live
 from labkit.exercises.verdict import Fail, NotAttempted
-from labkit.exercises.watch import Lived, Sample, streams_of
+from labkit.exercises.what_is_asked import PUBLISHER, Role
 
 if TYPE_CHECKING:
     from labkit.exercises.history import Note
@@ -175,7 +175,7 @@ class Publishes(GraphClause):
             raise Fail(
                 f'one publisher of {self.by} on {self.topic}',
                 f'{len(own)} publishers of {self.by} there, each with this rate',
-                words.SAID_BY_TWO,
+                common_mistakes.SAID_BY_TWO,
             )
         return own
 
@@ -228,7 +228,7 @@ class Publishes(GraphClause):
             self._refuse_one_of(nodes, len(right))
         if not samples and not len(watch):
             seen = f'no message in {seconds:.1f} s'
-            raise Fail(self._expected(), seen, words.NEVER_PUBLISHED)
+            raise Fail(self._expected(), seen, common_mistakes.NEVER_PUBLISHED)
         if watch.intervals and not _is_even(_gaps(samples), life.step):
             trouble = self._off(1 / max(statistics.median(watch.intervals), 1e-9))
         self._refuse(trouble)
@@ -246,7 +246,9 @@ class Publishes(GraphClause):
         for count, note in enumerate(earlier):
             seconds = note.at - earlier[0].at + (0.0 if note.in_making else earlier[0].owner_age)
             if count > (1 + TOLERANCE) * seconds * self.hz + HELD_UP:
-                self._refuse((f'{count + 1} messages in its first {seconds:.2g} s', words.BURSTS))
+                self._refuse(
+                    (f'{count + 1} messages in its first {seconds:.2g} s', common_mistakes.BURSTS)
+                )
 
     def _in_time(self, evidence: Evidence, node: str, samples: Sequence[Lived]) -> Sequence[Lived]:
         """Leave out messages that come at once at the beginning because they were due before.
@@ -304,19 +306,19 @@ class Publishes(GraphClause):
         period, count = self.period, len(samples)
         if count < 2:
             seen = f'{"one message" if count else "no message"} in {life.seconds:.0f} s'
-            return seen, words.TOO_FEW.of(period=period)
+            return seen, common_mistakes.TOO_FEW.of(period=period)
         gaps, usual = _gaps(samples), _period(samples)
         longest, shortest, late = max(gaps), min(gaps), life.seconds - samples[-1].at
         if late > (1 + GAP_TOLERANCE) * max(period, longest) + life.step and not self.ends:
             return (
                 f'{count} messages, the last one after {samples[-1].at:.1f} s, and then none '
                 f'until {life.seconds:.0f} s',
-                words.STOPS,
+                common_mistakes.STOPS,
             )
         bursts = (
             f'{count} messages in {life.seconds:.0f} s, with {shortest:.3g} s to {longest:.3g} s '
             'in between',
-            words.BURSTS,
+            common_mistakes.BURSTS,
         )
         if longest > 3 * usual and not self.at_least:
             return bursts
@@ -336,14 +338,14 @@ class Publishes(GraphClause):
     def _off(self, rate: float) -> Trouble:
         period = 1 / rate
         if not period:
-            return 'all messages at one moment', words.BURSTS
+            return 'all messages at one moment', common_mistakes.BURSTS
         factor = period * self.hz
         off = f'{factor:.3g} times too slow' if factor > 1 else f'{1 / factor:.3g} times too fast'
-        mistake = words.OTHER_RATE
+        mistake = common_mistakes.OTHER_RATE
         if abs(period / self.hz - 1.0) < 0.02 and abs(self.hz - self.period) > 0.3 * self.hz:
-            mistake = words.RATE_FOR_PERIOD
+            mistake = common_mistakes.RATE_FOR_PERIOD
         elif abs(factor - 0.5) < 0.02:
-            mistake = words.TWICE_AS_MANY
+            mistake = common_mistakes.TWICE_AS_MANY
         seen = f'a message every {period:.3g} s ({rate:.3g} Hz): {off}'
         return seen, mistake.of(period=self.period)
 
@@ -359,7 +361,7 @@ class Publishes(GraphClause):
         raise Fail(
             f'{self._expected()} of {self.by}',
             f'{count} of {len(nodes)} publishers with this rate',
-            words.ONE_OF_THESE.of(nodes=', '.join(nodes)),
+            common_mistakes.ONE_OF_THESE.of(nodes=', '.join(nodes)),
         )
 
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from labkit.exercises import expect, words
-from labkit.exercises.callbacks import is_given
+from labkit.exercises import common_mistakes, expect
+from labkit.exercises.callback_count import is_given
 from labkit.exercises.clauses.base import Evidence, GraphClause
 from labkit.exercises.expect.values import show
 from labkit.exercises.verdict import Fail, NotAttempted
@@ -83,7 +83,7 @@ class Matches(GraphClause):
                 raise Fail(
                     f'{self.node} as the lesson has made it',
                     f'a node {self.node} {what}, {probe.place(end)}',
-                    words.GIVEN_IS_GONE.of(start=self.start),
+                    common_mistakes.GIVEN_IS_GONE.of(start=self.start),
                 )
         return ends
 
@@ -95,7 +95,7 @@ class Matches(GraphClause):
             raise Fail(
                 f'{subscription.node} hears {publisher.node} on {self.topic}',
                 f'the two do not match: {reason[:1].lower()}{reason[1:]}',
-                words.OFFER_AND_REQUEST.of(
+                common_mistakes.OFFER_AND_REQUEST.of(
                     todo=f'Look at both profiles with %ros2 topic info --verbose {self.topic}, '
                     f'and change that of {mine.node}.'
                 ),
@@ -128,7 +128,7 @@ class Latched(GraphClause):
             kept >= FOR_EVER_SEC,
             expected=f'{self.topic} without a lifespan',
             seen=f'{source.node} offers a lifespan of {kept:g} s',
-            mistake=words.KEPT_FOR_A_WHILE.of(seconds=kept),
+            mistake=common_mistakes.KEPT_FOR_A_WHILE.of(seconds=kept),
         )
 
     def judge(self, evidence: Evidence) -> str:
@@ -149,10 +149,10 @@ class Latched(GraphClause):
             raise Fail(
                 f'{self.field} = {show([last])} for a subscription that comes late',
                 'nothing',
-                words.NOT_KEPT,
+                common_mistakes.NOT_KEPT,
             )
         raise Fail(
             f'the newest message only, {self.field} = {show([last])}',
             f'{len(came)} messages: {self.field} = {show(came)}',
-            words.KEPT_TOO_MANY,
+            common_mistakes.KEPT_TOO_MANY,
         )

@@ -7,11 +7,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from labkit.exercises import expect, words
+from labkit.exercises import common_mistakes, expect
 from labkit.exercises.clauses.base import Evidence, GraphClause
-from labkit.exercises.life import LIFE_SEC
-from labkit.exercises.scope import SERVICE, Role
+from labkit.exercises.observation import LIFE_SEC
 from labkit.exercises.verdict import Fail
+from labkit.exercises.what_is_asked import SERVICE, Role
 
 if TYPE_CHECKING:
     from labkit.exercises.probe import Probe
@@ -57,7 +57,7 @@ class Serves(GraphClause):
             self.by in ('', found.node),
             expected=f'{self.by} serves {self.service}',
             seen=f'{found.node} serves it',
-            mistake=words.OTHER_SERVER.of(service=self.service, node=self.by),
+            mistake=common_mistakes.OTHER_SERVER.of(service=self.service, node=self.by),
         )
 
 
@@ -149,9 +149,9 @@ class Responds(GraphClause):
     ) -> NoReturn:
         expect.hanging()
         names = {server.node for server in probe.all_servers() if server.service == self.service}
-        mistake = words.SOME_UNANSWERED if count else words.SERVICE_SILENT
+        mistake = common_mistakes.SOME_UNANSWERED if count else common_mistakes.SERVICE_SILENT
         if not names:
-            mistake = words.SERVER_ENDED.of(service=self.service)
+            mistake = common_mistakes.SERVER_ENDED.of(service=self.service)
         raise Fail(
             f'a response of {self.service} to each of {len(group)} requests',
             f'{count} responses in {seconds:.0f} s',

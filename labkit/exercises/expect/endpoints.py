@@ -11,11 +11,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NoReturn
 
 from labkit.errors import nearest
-from labkit.exercises import words
+from labkit.exercises import common_mistakes
 from labkit.exercises.mistakes import Mistake
 from labkit.exercises.probe import Probe
-from labkit.exercises.scope import PUBLISHER, SUBSCRIPTION
 from labkit.exercises.verdict import Fail, NotAttempted
+from labkit.exercises.what_is_asked import PUBLISHER, SUBSCRIPTION
 
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
@@ -87,14 +87,14 @@ def node(probe: Probe, name: str) -> str:
         raise Fail(
             f'a node called {name}',
             f'{_list(names) or "no node"}',
-            _named(name_trouble(name, other) if other else None, words.NODE_NAME, name),
+            _named(name_trouble(name, other) if other else None, common_mistakes.NODE_NAME, name),
         )
     copies = probe.node_names().count(name)
     if copies > 1:
         raise Fail(
             f'one node called {name}',
             f'{copies} nodes of that name',
-            words.TWO_NODES,
+            common_mistakes.TWO_NODES,
         )
     return name
 
@@ -117,8 +117,12 @@ def alone(probe: Probe, topic: str) -> None:
     expected = f'one publisher on {topic}'
     _explain_echo(probe, expected, found)
     if len(nodes) == 1 and len(set(places)) == 1 and probe.node_names().count(found[0].node) == 1:
-        raise Fail(expected, seen, words.MADE_AGAIN.of(node=found[0].node))
-    raise Fail(expected, seen, words.TWO_COPIES if len(nodes) == 1 else words.SECOND_PUBLISHER)
+        raise Fail(expected, seen, common_mistakes.MADE_AGAIN.of(node=found[0].node))
+    raise Fail(
+        expected,
+        seen,
+        common_mistakes.TWO_COPIES if len(nodes) == 1 else common_mistakes.SECOND_PUBLISHER,
+    )
 
 
 def qos(endpoint: Endpoint, *, reliability: str = '', durability: str = '') -> None:
@@ -136,7 +140,7 @@ def qos(endpoint: Endpoint, *, reliability: str = '', durability: str = '') -> N
         seen = getattr(endpoint.qos, policy).name.lower()
         if wanted and seen != wanted:
             default = seen in ('reliable', 'volatile')
-            mistake = words.DEFAULT_QOS if default else words.OTHER_QOS
+            mistake = common_mistakes.DEFAULT_QOS if default else common_mistakes.OTHER_QOS
             raise Fail(
                 f'{endpoint.topic} with {policy} {wanted}',
                 f'{endpoint.node} uses {policy} {seen}',
@@ -173,7 +177,7 @@ def _refuse_type(endpoint: Endpoint, kind: str, msg_type: str) -> NoReturn:
     fail = Fail(
         f'{endpoint.topic} with messages of type {msg_type}',
         f'{endpoint.node} {_KINDS[kind][1]} {endpoint.msg_type} there',
-        words.OTHER_TYPE.of(package=msg_type.split('/')[0], msg_type=_bare(msg_type)),
+        common_mistakes.OTHER_TYPE.of(package=msg_type.split('/')[0], msg_type=_bare(msg_type)),
     )
     # Whether a callback that has the wrong type to fill has raised by now is luck.
     fail.made_so = True
@@ -201,14 +205,16 @@ def _refuse_qos(subscription: Endpoint, deadline_sec: float) -> None:
             f'a subscription to {subscription.topic} that matches what is published there',
             f'the QoS profile of {subscription.node} asks for more: '
             f'{reason[:1].lower()}{reason[1:]}',
-            words.OFFER_AND_REQUEST.of(todo='Ask for less in the profile of the subscription.'),
+            common_mistakes.OFFER_AND_REQUEST.of(
+                todo='Ask for less in the profile of the subscription.'
+            ),
         )
     if reason:
         raise Fail(
             f'a subscription to {subscription.topic} that hears a usual publisher',
             f'the QoS profile of {subscription.node} does not match that of a usual publisher: '
             f'{reason}',
-            words.UNUSUAL_QOS,
+            common_mistakes.UNUSUAL_QOS,
         )
 
 
@@ -221,7 +227,7 @@ def _refuse_best_effort(publisher: Endpoint) -> None:
             f'a publisher on {publisher.topic} that a usual subscription hears, as the robot has '
             'one',
             f'{publisher.node} offers best effort, and the subscription there asks for reliable',
-            words.OFFER_AND_REQUEST.of(
+            common_mistakes.OFFER_AND_REQUEST.of(
                 todo='Offer reliable delivery. A number alone, the depth, offers it.'
             ),
         )
@@ -253,7 +259,7 @@ def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str
         raise Fail(
             expected,
             f'{strange[0].node} {_KINDS[kind][1]} on {strange[0].topic}',
-            words.STRANGE_TOPIC.of(topic=topic),
+            common_mistakes.STRANGE_TOPIC.of(topic=topic),
         )
     seen = _list([f'{other.node} {_KINDS[kind][1]} {other.topic}' for other in mine])
     names = probe.node_names()
@@ -262,12 +268,12 @@ def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str
         raise Fail(
             expected,
             seen or f'{_list(names)}, and no node called {by}',
-            _named(name_trouble(by, near) if near else None, words.NO_NODE, by),
+            _named(name_trouble(by, near) if near else None, common_mistakes.NO_NODE, by),
         )
     raise Fail(
         expected,
         seen or f'{_list(sorted(nodes))} without any {kind}',
-        words.NOT_MADE.of(kind=kind, msg_type=_bare(msg_type), topic=topic),
+        common_mistakes.NOT_MADE.of(kind=kind, msg_type=_bare(msg_type), topic=topic),
     )
 
 
@@ -280,20 +286,20 @@ def _explain_echo(probe: Probe, expected: str, publishers: Sequence[Endpoint]) -
             raise Fail(
                 expected,
                 f'{other.node} publishes on {other.topic}, the topic that it subscribes to',
-                words.HEARS_ITSELF,
+                common_mistakes.HEARS_ITSELF,
             )
 
 
 def name_trouble(wanted: str, seen: str) -> Mistake:
     """Return how a name differs from the one that is asked for."""
     if wanted.lower() == seen.lower():
-        found = words.CAPITALS
+        found = common_mistakes.CAPITALS
     elif wanted.rsplit('/', 1)[-1] == seen.rsplit('/', 1)[-1]:
-        found = words.NAMESPACE
+        found = common_mistakes.NAMESPACE
     elif wanted.lower().replace('_', '') == seen.lower().replace('_', ''):
-        found = words.UNDERSCORE
+        found = common_mistakes.UNDERSCORE
     else:
-        found = words.OTHER_NAME
+        found = common_mistakes.OTHER_NAME
     return found.of(seen=seen, wanted=wanted)
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NoReturn
 
 from labkit.errors import nearest
-from labkit.exercises import words
+from labkit.exercises import common_mistakes
 from labkit.exercises.expect.endpoints import name_trouble
 from labkit.exercises.expect.spinning import hanging, how_to_spin, runs
 from labkit.exercises.probe import Probe
-from labkit.exercises.scope import SERVICE
 from labkit.exercises.verdict import Fail, NotAttempted
+from labkit.exercises.what_is_asked import SERVICE
 
 if TYPE_CHECKING:
     from labkit.rosgraph.servers import Server
@@ -53,7 +53,7 @@ def server(probe: Probe, service: str) -> Server:
         raise Fail(
             f'{service} with the type {srv_type}',
             f'{found.node} offers it with the type {found.srv_type}',
-            words.SERVICE_TYPE.of(maker=_maker(srv_type), **_parts(srv_type)),
+            common_mistakes.SERVICE_TYPE.of(maker=_maker(srv_type), **_parts(srv_type)),
         )
     counted = f'{service}/_action/send_goal' if found.is_action else service
     if not probe.wait(lambda: probe.node.count_services(counted) < 2, GONE_SEC):
@@ -61,14 +61,14 @@ def server(probe: Probe, service: str) -> Server:
         raise Fail(
             f'one server of {service}',
             f'{probe.node.count_services(counted)} servers: {", ".join(names)}',
-            words.TWO_SERVERS,
+            common_mistakes.TWO_SERVERS,
         )
     hanging()
     if not runs(probe, found.node):
         raise Fail(
             f'{found.node} answers requests',
             f'{found.node} is there, but it is not spun',
-            words.NOT_ANSWERED.of(spin=how_to_spin(probe, found.node)),
+            common_mistakes.NOT_ANSWERED.of(spin=how_to_spin(probe, found.node)),
         )
     return found
 
@@ -86,7 +86,7 @@ def only_given(probe: Probe, service: str, given: str) -> None:
         raise Fail(
             f'one server of {service}: {given}',
             f'{", ".join(found)} serves {service} as well',
-            words.TWO_SERVERS,
+            common_mistakes.TWO_SERVERS,
         )
 
 
@@ -126,7 +126,7 @@ def _explain_missing(probe: Probe, service: str, srv_type: str) -> NoReturn:
     raise Fail(
         expected,
         f'{", ".join(sorted(nodes))} without a service of this name',
-        words.NO_SERVER.of(maker=_maker(srv_type), service=service, **_parts(srv_type)),
+        common_mistakes.NO_SERVER.of(maker=_maker(srv_type), service=service, **_parts(srv_type)),
     )
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NoReturn
 
-from labkit.exercises import words
-from labkit.exercises.hanging import Hanging, find_hanging
+from labkit.exercises import common_mistakes
 from labkit.exercises.mistakes import Mistake
 from labkit.exercises.probe import Probe
+from labkit.exercises.time.hanging import Hanging, find_hanging
 from labkit.exercises.verdict import Fail
 
 if TYPE_CHECKING:
@@ -30,12 +30,12 @@ def hanging(found: Hanging | None = None) -> None:
         raise Fail(
             'callbacks of this notebook that run',
             f'none of them has run for a while, though some were ready{where}',
-            words.NOTHING_RUNS,
+            common_mistakes.NOTHING_RUNS,
         )
     raise Fail(
         'callbacks that return at once',
         f'the callback {found.callback} of {found.node} is still running{where}',
-        words.BLOCKS,
+        common_mistakes.BLOCKS,
     )
 
 
@@ -46,7 +46,7 @@ def overloaded(found: Hanging) -> NoReturn:
     raise Fail(
         'callbacks and threads that need less time than passes',
         f'{who} is at work for longer than passes{where}',
-        outlasts(found) or words.OVERLOADED,
+        outlasts(found) or common_mistakes.OVERLOADED,
     )
 
 
@@ -54,7 +54,9 @@ def outlasts(found: Hanging | None) -> Mistake | None:
     """Return what is wrong with a callback that takes longer than the period of its timer."""
     if found is None or not 0 < found.period < found.took:
         return None
-    return words.OUTLASTS.of(callback=found.callback, took=found.took, period=found.period)
+    return common_mistakes.OUTLASTS.of(
+        callback=found.callback, took=found.took, period=found.period
+    )
 
 
 def spun(probe: Probe, endpoint: Endpoint) -> None:
@@ -63,7 +65,7 @@ def spun(probe: Probe, endpoint: Endpoint) -> None:
         raise Fail(
             f'{endpoint.node} takes its messages and calls its callbacks',
             f'{endpoint.node} is there, but it is not spun',
-            words.NOT_TAKEN.of(spin=how_to_spin(probe, endpoint.node)),
+            common_mistakes.NOT_TAKEN.of(spin=how_to_spin(probe, endpoint.node)),
         )
 
 

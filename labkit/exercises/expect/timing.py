@@ -12,12 +12,12 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from labkit.exercises import words
+from labkit.exercises import common_mistakes
 from labkit.exercises.expect.spinning import hanging
+from labkit.exercises.messages_heard import Sample, Watch
 from labkit.exercises.mistakes import Mistake
 from labkit.exercises.probe import Probe
 from labkit.exercises.verdict import Fail, NotAttempted
-from labkit.exercises.watch import Sample, Watch
 
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
@@ -118,7 +118,7 @@ def ends_with_node(probe: Probe, source: Endpoint) -> Watch:
         raise Fail(
             f'no publisher on {source.topic} once {source.node} has ended',
             f'{source.node} still publishes there',
-            words.KEPT_ALIVE,
+            common_mistakes.KEPT_ALIVE,
         )
     return watch
 
@@ -134,20 +134,28 @@ def silence(probe: Probe, source: Endpoint, count: int, seconds: float) -> Mista
     """
     node = probe.node_object(source.node)
     if node is None:
-        return words.NEVER_PUBLISHED
+        return common_mistakes.NEVER_PUBLISHED
     if node.executor is None:
-        return words.NEVER_RUN
+        return common_mistakes.NEVER_RUN
     if node.get_clock().ros_time_is_active and not probe.node.count_publishers('/clock'):
-        return words.NO_CLOCK
+        return common_mistakes.NO_CLOCK
     timers = [timer for timer in node.timers if not timer.is_canceled()]
     if timers:
         period = min(timer.timer_period_ns for timer in timers) * 1e-9
         # As often as it was due at least, it has published.
         is_rare = seconds < (count + 1) * period
         never = all(probe.callbacks.count(node, timer) == 0 for timer in timers)
-        return words.NOT_CALLED.of(period=period) if is_rare or never else words.NOT_PUBLISHED
+        return (
+            common_mistakes.NOT_CALLED.of(period=period)
+            if is_rare or never
+            else common_mistakes.NOT_PUBLISHED
+        )
     heard = [s for s in node.subscriptions if not s.topic_name.startswith('/parameter_events')]
-    return words.ONLY_ANSWERS.of(topic=heard[0].topic_name) if heard else words.NO_TIMER
+    return (
+        common_mistakes.ONLY_ANSWERS.of(topic=heard[0].topic_name)
+        if heard
+        else common_mistakes.NO_TIMER
+    )
 
 
 def _intervals(stream: Sequence[Sample]) -> list[float]:

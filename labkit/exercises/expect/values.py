@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from labkit.exercises import words
+from labkit.exercises import common_mistakes
 from labkit.exercises.mistakes import Mistake
 
 __all__ = ['apart', 'digits', 'show', 'text_trouble']
@@ -63,17 +63,17 @@ def text_trouble(seen: Any, wanted: Any) -> Mistake | None:
     """Return how a text differs from the one that was wanted, None if there is no simple way."""
     if not isinstance(seen, str) or not isinstance(wanted, str):
         same = type(seen) is type(wanted)
-        return None if same else words.VALUE_TYPE.of(kind=type(seen).__name__)
+        return None if same else common_mistakes.VALUE_TYPE.of(kind=type(seen).__name__)
     if seen.strip() == wanted.strip():
         where = 'end' if seen.lstrip() == seen and wanted.lstrip() == wanted else 'start'
         what = 'is missing' if len(seen) < len(wanted) else 'is too much'
-        return words.SPACE_AT.of(what=what, where=where)
+        return common_mistakes.SPACE_AT.of(what=what, where=where)
     if ''.join(seen.split()) == ''.join(wanted.split()):
-        return words.SPACES
+        return common_mistakes.SPACES
     if seen.lower() == wanted.lower():
-        return words.LETTERS
+        return common_mistakes.LETTERS
     if seen.startswith(wanted):
-        return words.TOO_LONG.of(more=seen[len(wanted) :])
+        return common_mistakes.TOO_LONG.of(more=seen[len(wanted) :])
     if wanted.startswith(seen):
-        return words.TOO_SHORT.of(less=wanted[len(seen) :])
+        return common_mistakes.TOO_SHORT.of(less=wanted[len(seen) :])
     return None

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
-from labkit.lessons.bags.distance import distance
-from labkit.lessons.bags.half_speed import half_speed
-from labkit.lessons.bags.one_topic import one_topic
+from labkit.lessons.bags import distance, half_speed, one_topic
 from labkit.lessons.bags.quiz import QUIZ, WARM_UP
 
 __all__ = ['LESSON']

@@ -11,7 +11,7 @@ from typing import Any
 from labkit.exercises import Exercise, Mistake, Solution, anything
 from labkit.exercises.clauses import Answers, Subscribes
 
-__all__ = ['distance']
+__all__ = ['exercise']
 
 ODOMETRY, FLOAT64 = 'nav_msgs/msg/Odometry', 'std_msgs/msg/Float64'
 JUMP = 0.5
@@ -186,7 +186,7 @@ def _drive(middle: float) -> list[Place]:
     return [*places[:-1], (x, y), (x + random.choice((-JUMP, JUMP)), y)]
 
 
-distance = Exercise(
+exercise = Exercise(
     name='distance',
     task='Tell how far a robot has driven, from its odometry or from a bag of it.',
     clauses=(

@@ -16,7 +16,7 @@ from labkit.lessons.bags.content import Found, InABag, IsThere, OnlyTopic
 if TYPE_CHECKING:
     from labkit.bags.reader import BagMessage
 
-__all__ = ['half_speed']
+__all__ = ['exercise']
 
 SOURCE, PATH = 'bags/commands', 'bags/slow'
 INNER, OUTER, TWIST = '/cmd_vel', '/slow/cmd_vel', 'geometry_msgs/msg/Twist'
@@ -151,7 +151,7 @@ def _recognised(
     return recognise(VALUES, fits)
 
 
-half_speed = Exercise(
+exercise = Exercise(
     name='half_speed',
     task='Make a bag with the commands of bags/commands at half the speed.',
     clauses=(

@@ -8,7 +8,7 @@ from labkit.exercises import Exercise, Fail, Mistake, Solution
 from labkit.exercises.clauses import Asked
 from labkit.lessons.bags.content import Found, InABag, IsThere, OnlyTopic
 
-__all__ = ['one_topic']
+__all__ = ['exercise']
 
 PATH, TOPIC, FLOAT64 = 'bags/temperature', '/temperature', 'std_msgs/msg/Float64'
 LEAST = 20
@@ -62,7 +62,7 @@ def _storage(found: Found) -> None:
         raise Fail('a bag that is stored as sqlite3', f'a bag that is stored as {storage}', MCAP)
 
 
-one_topic = Exercise(
+exercise = Exercise(
     name='one_topic',
     task='Record the topic /temperature, and nothing else.',
     clauses=(

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
-from labkit.lessons.chat.greeter import greeter
-from labkit.lessons.chat.hearer import hearer
-from labkit.lessons.chat.polite import polite
+from labkit.lessons.chat import greeter, hearer, polite, typed_text
 from labkit.lessons.chat.quiz import QUIZ, WARM_UP
-from labkit.lessons.chat.typed_text import typed_text
 
 __all__ = ['LESSON']
 

@@ -7,9 +7,9 @@ import random
 from labkit.exercises import Exercise, Fail, Mistake, Solution
 from labkit.exercises.clauses import WITHIN, Answers, Asked, Evidence, Words
 from labkit.exercises.draws import draw_names, in_a_row
-from labkit.exercises.life import live
+from labkit.exercises.observation import live
 
-__all__ = ['greeter']
+__all__ = ['exercise']
 
 TOPIC, STRING = '/lobby', 'std_msgs/msg/String'
 ME = 'Ada'
@@ -116,7 +116,7 @@ def _used_once(evidence: Evidence) -> None:
         )
 
 
-greeter = Exercise(
+exercise = Exercise(
     name='greeter',
     task='Reply to Hello on /lobby, each time with a publisher that is made for it.',
     shared=[TOPIC],

@@ -8,7 +8,7 @@ from labkit.exercises import Exercise, Mistake, Solution, anything
 from labkit.exercises.clauses import WITHIN, Logs, Subscribes, Words
 from labkit.exercises.draws import draw_names, draw_texts, in_a_row
 
-__all__ = ['hearer']
+__all__ = ['exercise']
 
 TOPIC, STRING = '/hall', 'std_msgs/msg/String'
 NAMELESS = Words('for a message without a name, such as `Hello`, log `somebody says Hello`')
@@ -82,7 +82,7 @@ MISTAKES = (
     ),
 )
 
-hearer = Exercise(
+exercise = Exercise(
     name='hearer',
     task='Log each message of /hall with who has said it.',
     clauses=(

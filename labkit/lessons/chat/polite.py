@@ -8,7 +8,7 @@ from labkit.exercises import Exercise, Mistake, Solution
 from labkit.exercises.clauses import WITHIN, Answers, Words
 from labkit.exercises.draws import draw_names
 
-__all__ = ['polite']
+__all__ = ['exercise']
 
 TOPIC, STRING = '/lounge', 'std_msgs/msg/String'
 ME = 'Ada'
@@ -96,7 +96,7 @@ def _silent(message: str, came: Sequence[str]) -> Mistake | None:
     return None if came else NOT_YET.of(who=message.partition(': ')[0])
 
 
-polite = Exercise(
+exercise = Exercise(
     name='polite',
     task='Greet each person on /lounge once, at the first Hello.',
     shared=[TOPIC],

@@ -14,10 +14,10 @@ from labkit.exercises.clauses import Evidence, GraphClause, Words
 from labkit.exercises.draws import draw_texts
 from labkit.exercises.expect.values import text_trouble
 from labkit.exercises.mistakes import recognise
-from labkit.exercises.scope import PUBLISHER, Role
 from labkit.exercises.verdict import LearnerError
+from labkit.exercises.what_is_asked import PUBLISHER, Role
 
-__all__ = ['typed_text']
+__all__ = ['exercise']
 
 TOPIC, STRING, WHO = '/hall', 'std_msgs/msg/String', 'Ada'
 # How long a line may take to arrive, s of real time, as the task says; then the nodes live for a
@@ -238,7 +238,7 @@ def _typing(line: str) -> Iterator[list[object]]:
         builtins.input = real
 
 
-typed_text = Exercise(
+exercise = Exercise(
     name='typed_text',
     task=f'A function ask() asks for a line with input(), and a node publishes it on {TOPIC}.',
     clauses=(_Typed(), _Says(), NOTHING),

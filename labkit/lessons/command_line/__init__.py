@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
-from labkit.lessons.command_line.drive import drive
+from labkit.lessons.command_line import drive, odds
 from labkit.lessons.command_line.harbour import NODES, TOPICS
 from labkit.lessons.command_line.look_around import HARBOUR
-from labkit.lessons.command_line.odds import odds
 from labkit.lessons.command_line.quiz import QUIZ, WARM_UP
 
 __all__ = ['LESSON']

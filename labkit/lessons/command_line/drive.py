@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, Solution
 from labkit.exercises.clauses import Asked, in_words
-from labkit.exercises.watch import Sample
+from labkit.exercises.messages_heard import Sample
 from labkit.lessons.command_line.last_command import commanded_rate
 from labkit.lessons.command_line.sent import (
     TOLERANCE,
@@ -20,7 +20,7 @@ from labkit.lessons.command_line.sent import (
     period,
 )
 
-__all__ = ['drive']
+__all__ = ['exercise']
 
 WHERE = OnTopic('/cmd_vel', 'geometry_msgs/msg/Twist')
 WANTED = {'linear.x': 0.2, 'angular.z': 0.5}
@@ -164,7 +164,7 @@ def _expect_rate(sent: Sent) -> None:
         )
 
 
-drive = Exercise(
+exercise = Exercise(
     name='drive',
     task='Let a robot drive, from the command line.',
     clauses=(

@@ -10,7 +10,7 @@ import difflib
 import re
 from collections.abc import Collection, Sequence
 
-from labkit.exercises import Fail, Mistake, words
+from labkit.exercises import Fail, Mistake, common_mistakes
 from labkit.rosgraph.refusals import Refusal
 
 __all__ = ['commanded_rate', 'explain_last_command', 'forget_commands', 'other_topic']
@@ -78,7 +78,9 @@ def explain_last_command(topic: str, expected: str) -> None:
         return
     last = tried[-1]
     if last.topic != topic and last.reason not in _REFUSED:
-        mistake = words.CAPITALS if last.topic.lower() == topic else words.OTHER_NAME
+        mistake = (
+            common_mistakes.CAPITALS if last.topic.lower() == topic else common_mistakes.OTHER_NAME
+        )
         raise Fail(
             expected,
             f'a command that publishes on {last.topic}',

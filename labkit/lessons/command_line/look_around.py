@@ -9,7 +9,8 @@ from statistics import median
 from typing import TYPE_CHECKING
 
 from labkit.errors import LabError
-from labkit.exercises import Number, Probe, Quiz, Word, spelling
+from labkit.exercises import Number, Probe, Quiz, Word
+from labkit.exercises.quiz import spelling
 from labkit.lessons.command_line.harbour import (
     BOATS,
     FOGHORN,

@@ -8,10 +8,10 @@ from itertools import pairwise
 from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, Solution
 from labkit.exercises.clauses import Asked
 from labkit.exercises.expect import show
-from labkit.exercises.watch import Sample
+from labkit.exercises.messages_heard import Sample
 from labkit.lessons.command_line.sent import Commands, OnTopic, Sent
 
-__all__ = ['odds']
+__all__ = ['exercise']
 
 INT16 = 'std_msgs/msg/Int16'
 TOPIC = '/odds'
@@ -120,7 +120,7 @@ def _next_step(sent: Sent) -> str:
 
 _WHERE = OnTopic(TOPIC, INT16)
 
-odds = Exercise(
+exercise = Exercise(
     name='odds',
     task='Publish three odd numbers from the command line.',
     clauses=(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Choice, Quiz, Several, Word, right, spelling, wrong
+from labkit.exercises import Choice, Quiz, Several, Word, right, wrong
+from labkit.exercises.quiz import spelling
 
 __all__ = ['QUIZ', 'WARM_UP']
 

@@ -13,11 +13,11 @@ from itertools import combinations, pairwise
 from statistics import mean, median
 from typing import TYPE_CHECKING, NoReturn
 
-from labkit.exercises import Clause, Fail, Mistake, NotAttempted, Probe, Stage, words
+from labkit.exercises import Clause, Fail, Mistake, NotAttempted, Probe, Stage, common_mistakes
 from labkit.exercises.judging import naming
-from labkit.exercises.recorder import Recording
-from labkit.exercises.scope import PUBLISHER, Role
-from labkit.exercises.watch import Sample
+from labkit.exercises.messages_heard import Sample
+from labkit.exercises.sent_once import Recording
+from labkit.exercises.what_is_asked import PUBLISHER, Role
 from labkit.lessons.command_line.last_command import (
     explain_last_command,
     forget_commands,
@@ -237,7 +237,7 @@ class Commands(Stage[Sent]):
             raise Fail(
                 self.expected,
                 f'{end.node} publishes on {end.topic}',
-                words.OTHER_NAME.of(seen=end.topic, wanted=topic).then(
+                common_mistakes.OTHER_NAME.of(seen=end.topic, wanted=topic).then(
                     f'Write the topic as {topic}.'
                 ),
             )

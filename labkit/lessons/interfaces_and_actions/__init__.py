@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
-from labkit.lessons.interfaces_and_actions.asker import asker
-from labkit.lessons.interfaces_and_actions.countdown import countdown
-from labkit.lessons.interfaces_and_actions.leg import leg
+from labkit.lessons.interfaces_and_actions import asker, countdown, leg, stairs
 from labkit.lessons.interfaces_and_actions.quiz import QUIZ, WARM_UP
-from labkit.lessons.interfaces_and_actions.stairs import stairs
 
 __all__ = ['LESSON']
 

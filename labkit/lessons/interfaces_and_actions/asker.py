@@ -6,12 +6,12 @@ import random
 from typing import Any
 
 from labkit.exercises import Exercise, Mistake, Solution, anything
-from labkit.exercises.callbacks import find_node
+from labkit.exercises.callback_count import find_node
 from labkit.exercises.clauses import WITHIN, Answers, AsksForEach, Named
 from labkit.exercises.draws import MANY
 from labkit.lessons.interfaces_and_actions.goals import ACTION
 
-__all__ = ['asker']
+__all__ = ['exercise']
 
 WISH, SUM, NAME = '/wish', '/sum', '/add_up'
 INT16, INT32 = 'std_msgs/msg/Int16', 'std_msgs/msg/Int32'
@@ -42,7 +42,7 @@ def _change(calculator: Any) -> None:
     calculator.factor = random.choice((-1, 1)) * random.randint(2, 9)
 
 
-asker = Exercise(
+exercise = Exercise(
     name='asker',
     task='Send a goal to /add_up for each Int16 on /wish, and publish the last number of each '
     'result on /sum.',

@@ -14,13 +14,13 @@ from labkit.lessons.interfaces_and_actions.goals import (
     expect_ending,
     expect_result,
     feedbacks,
-    goals,
+    fibonacci_goals,
     numbers,
     order_of,
     results,
 )
 
-__all__ = ['countdown']
+__all__ = ['exercise']
 
 NAME = '/countdown'
 # How long the pause before a number may be, s. A shorter one than the second is none.
@@ -99,11 +99,15 @@ def _feeds_back(pursuits: Sequence[Pursuit]) -> None:
 
 def _draw() -> list[Goal]:
     """Return goals: some short ones, the shortest, and one that is longer."""
-    return goals(random.randint(4, 6), random.randint(2, 3), 0, 1, random.randint(8, 12))
+    return fibonacci_goals(random.randint(4, 6), random.randint(2, 3), 0, 1, random.randint(8, 12))
 
 
 def _draw_canceled() -> list[Goal]:
-    return [_to_be_canceled(after=random.randint(3, 5)), *goals(2), _to_be_canceled(after=1)]
+    return [
+        _to_be_canceled(after=random.randint(3, 5)),
+        *fibonacci_goals(2),
+        _to_be_canceled(after=1),
+    ]
 
 
 def _to_be_canceled(after: int) -> Goal:
@@ -141,7 +145,7 @@ def _is_canceled(pursuit: Pursuit) -> None:
     )
 
 
-countdown = Exercise(
+exercise = Exercise(
     name='countdown',
     task='Serve the action /countdown, whose goals can be canceled.',
     clauses=(

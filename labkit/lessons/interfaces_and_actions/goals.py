@@ -13,7 +13,7 @@ __all__ = [
     'expect_ending',
     'expect_result',
     'feedbacks',
-    'goals',
+    'fibonacci_goals',
     'numbers',
     'order_of',
     'results',
@@ -77,7 +77,7 @@ OTHERS = Mistake(
 )
 
 
-def goals(*orders: int) -> list[Goal]:
+def fibonacci_goals(*orders: int) -> list[Goal]:
     """Return goals with these orders."""
     return [Goal({'order': order}, is_long=order > LONG) for order in orders]
 

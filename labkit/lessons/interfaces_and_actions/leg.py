@@ -10,7 +10,7 @@ from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, Solution, an
 from labkit.exercises.clauses import WITHIN, Answers, Evidence, GraphClause, Named
 from labkit.exercises.draws import MANY, draw_float, in_a_row
 
-__all__ = ['fields_of', 'leg']
+__all__ = ['exercise', 'fields_of']
 
 NODE, TOPIC, COMMANDS = '/walker', '/leg', '/cmd_vel'
 PACKAGE, TYPE, TWIST = 'legs_lab', 'legs_lab/msg/Leg', 'geometry_msgs/msg/Twist'
@@ -97,7 +97,7 @@ def _draw() -> Sequence[float]:
     return in_a_row(plain, [0.0], [draw_float(-0.2, 0.2) for _ in range(MANY)])
 
 
-leg = Exercise(
+exercise = Exercise(
     name='leg',
     task=f'Make the type {TYPE}, and a node that drives the robot by such messages on {TOPIC}.',
     clauses=(

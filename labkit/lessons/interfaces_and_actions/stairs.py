@@ -10,12 +10,12 @@ from labkit.exercises.clauses import Goal, Pursues, Pursuit, Serves
 from labkit.lessons.interfaces_and_actions.goals import (
     ACTION,
     expect_ending,
-    goals,
+    fibonacci_goals,
     order_of,
     results,
 )
 
-__all__ = ['stairs']
+__all__ = ['exercise']
 
 NAME = '/stairs'
 LEAST, MOST = 1, 20
@@ -48,7 +48,7 @@ def _draw() -> list[Goal]:
     orders = [LEAST, MOST, inside, LEAST - 1, MOST + 1, -outside, -1, outside]
     random.shuffle(orders)
     orders.insert(orders.index(inside), inside)
-    return goals(*orders)
+    return fibonacci_goals(*orders)
 
 
 def _accepts(pursuits: Sequence[Pursuit]) -> None:
@@ -69,7 +69,7 @@ def _accepts(pursuits: Sequence[Pursuit]) -> None:
             )
 
 
-stairs = Exercise(
+exercise = Exercise(
     name='stairs',
     task='Serve the action /stairs, which rejects some goals.',
     clauses=(
@@ -84,7 +84,7 @@ stairs = Exercise(
         Pursues(
             NAME,
             f'an accepted goal succeeds, and its result is the numbers from {LEAST} to `order`',
-            lambda: goals(random.randint(5, 9), random.randint(2, 4), LEAST, MOST),
+            lambda: fibonacci_goals(random.randint(5, 9), random.randint(2, 4), LEAST, MOST),
             results(lambda order: list(range(LEAST, order + 1))),
         ),
     ),

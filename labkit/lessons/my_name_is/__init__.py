@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
-from labkit.lessons.my_name_is.own_process import own_process
+from labkit.lessons.my_name_is import own_process, third_stage, two_stages, welcome
 from labkit.lessons.my_name_is.quiz import QUIZ, WARM_UP
-from labkit.lessons.my_name_is.third_stage import third_stage
-from labkit.lessons.my_name_is.two_stages import two_stages
-from labkit.lessons.my_name_is.welcome import welcome
 
 __all__ = ['LESSON']
 

@@ -7,7 +7,7 @@ from labkit.exercises.clauses import Evidence, GraphClause, Publishes
 from labkit.lessons.my_name_is.programs import ended_program
 from labkit.lessons.my_name_is.stages import INNER, STRING, says_opening
 
-__all__ = ['own_process']
+__all__ = ['exercise']
 
 IN_THE_NOTEBOOK = Mistake(
     'own-process/in-the-notebook',
@@ -59,7 +59,7 @@ class _InAnotherProcess(GraphClause):
         return f'{one.node} runs {evidence.probe.place(one)}.'
 
 
-own_process = Exercise(
+exercise = Exercise(
     name='own_process',
     task="Publish 'My name is ' on /incomplete, twice a second, from a process of its own.",
     clauses=(_InAnotherProcess(), Publishes(INNER, 2.0, STRING), says_opening()),

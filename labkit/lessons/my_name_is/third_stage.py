@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from labkit.exercises import Exercise, Fail, Mistake, Probe, Solution, expect
 from labkit.exercises.clauses import WITHIN, Answers, Evidence
-from labkit.exercises.life import Stimulus, live
+from labkit.exercises.observation import Stimulus, live
 from labkit.exercises.variants import varied
 from labkit.lessons.my_name_is.stages import INNER, NOT_IN_IT, NOTHING_ADDED, STRING
 
-__all__ = ['third_stage']
+__all__ = ['exercise']
 
 HEARS, SAYS = '/complete', '/greeting'
 ENDING = '. Nice to meet you.'
@@ -103,4 +103,4 @@ _CITIES = (
 )
 _ENDINGS = [f'. {greeting} in {city}.' for greeting in _GREETINGS for city in _CITIES.split()]
 
-third_stage = varied(_variant(), _variant, _guess, ending=_ENDINGS)
+exercise = varied(_variant(), _variant, _guess, ending=_ENDINGS)

@@ -16,7 +16,7 @@ from labkit.lessons.my_name_is.stages import (
     says_opening,
 )
 
-__all__ = ['two_stages']
+__all__ = ['exercise']
 
 OUTER = '/complete'
 ONE_NODE = Mistake(
@@ -58,7 +58,7 @@ class _TwoNodes(GraphClause):
             )
 
 
-two_stages = Exercise(
+exercise = Exercise(
     name='two_stages',
     task=f'Node one publishes {OPENING!r} on {INNER}, twice a second. Node two appends your first '
     f'name and publishes the whole on {OUTER}.',

@@ -26,7 +26,7 @@ from labkit.lessons.my_name_is.stages import (
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
 
-__all__ = ['welcome']
+__all__ = ['exercise']
 
 OUTER, ENDING = '/welcome', '. Welcome!'
 # An odd number of texts shows whether the host waits for another one.
@@ -259,7 +259,7 @@ def _welcomes(topic: str, host: str) -> Answers:
     )
 
 
-welcome = Exercise(
+exercise = Exercise(
     name='welcome',
     task=f'Two guests complete each text of {INNER} with a first name, and a host welcomes both '
     f'on {OUTER}.',

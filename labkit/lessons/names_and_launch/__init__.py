@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 from labkit.exercises import Lesson
-from labkit.lessons.names_and_launch.arguments import arguments
-from labkit.lessons.names_and_launch.ending import ending
-from labkit.lessons.names_and_launch.faults import faults
-from labkit.lessons.names_and_launch.hearing import hearing
+from labkit.lessons.names_and_launch import arguments, ending, faults, hearing, system
 from labkit.lessons.names_and_launch.quiz import QUIZ, WARM_UP
-from labkit.lessons.names_and_launch.system import system
 
 __all__ = ['LESSON']
 

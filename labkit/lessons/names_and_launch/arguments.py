@@ -7,11 +7,16 @@ from collections.abc import Mapping, Sequence
 
 from labkit.exercises import Exercise, Fail, Mistake, Solution
 from labkit.exercises.clauses import Asked
-from labkit.lessons.names_and_launch.clauses import HasParameters, Launches, OnlyNodes, RunsNode
-from labkit.lessons.names_and_launch.launched import Launched, System
+from labkit.lessons.names_and_launch.launch_clauses import (
+    HasParameters,
+    Launches,
+    OnlyNodes,
+    RunsNode,
+)
+from labkit.lessons.names_and_launch.learner_launch import Launched, System
 from labkit.lessons.names_and_launch.system import DECLARED
 
-__all__ = ['arguments']
+__all__ = ['exercise']
 
 DEFAULTS = {'robot': 'robot1', 'speed': '0.1', 'talk': 'false'}
 _NAMES = ('amy', 'bo', 'rover7', 'tina')
@@ -55,7 +60,7 @@ class _NothingElse(OnlyNodes):
         return OnlyNodes(wanted, self.words).judge(system)
 
 
-arguments = Exercise(
+exercise = Exercise(
     name='arguments',
     task='Write a launch file with the arguments robot, speed and talk.',
     clauses=(

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from labkit.exercises import Exercise, Fail, Mistake, Solution
 from labkit.exercises.clauses import Asked
-from labkit.lessons.names_and_launch.clauses import Launches, OnlyNodes
-from labkit.lessons.names_and_launch.launched import Launched, System
+from labkit.lessons.names_and_launch.launch_clauses import Launches, OnlyNodes
+from labkit.lessons.names_and_launch.learner_launch import Launched, System
 
-__all__ = ['ending']
+__all__ = ['exercise']
 
 DRIVER, TALKER, LISTENER = '/robot1/driver', '/robot1/talker', '/robot1/listener'
 
@@ -84,7 +84,7 @@ def _driver_ends_all(system: System) -> None:
     system.wait(lambda: not system.launch.running)
 
 
-ending = Exercise(
+exercise = Exercise(
     name='ending',
     task='Write a launch file that says what happens when a program ends.',
     clauses=(

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from labkit.exercises import Exercise, Solution
-from labkit.lessons.names_and_launch.clauses import HasParameters, Launches, OnlyNodes, Publishes
-from labkit.lessons.names_and_launch.launched import Launched
+from labkit.lessons.names_and_launch.launch_clauses import (
+    HasParameters,
+    Launches,
+    OnlyNodes,
+    Publishes,
+)
+from labkit.lessons.names_and_launch.learner_launch import Launched
 from labkit.lessons.names_and_launch.system import DECLARED
 
-__all__ = ['faults']
+__all__ = ['exercise']
 
 FAULTS = (
     ('$(var robot)', '$(var name)'),
@@ -18,7 +23,7 @@ FAULTS = (
 _SAYS = ('A robot with a driver and a talker', 'A robot with a driver, a talker ... and faults')
 GIVEN = Solution(__file__, 'faults.ipy', '', (*FAULTS, _SAYS)).code.partition('\n')[2]
 
-faults = Exercise(
+exercise = Exercise(
     name='faults',
     task='Mend faults.launch.xml, which has five faults.',
     clauses=(

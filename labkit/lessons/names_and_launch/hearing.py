@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from labkit.exercises import Exercise, Fail, Mistake, Solution
 from labkit.exercises.clauses import Asked
-from labkit.lessons.names_and_launch.clauses import Launches, OnlyNodes
-from labkit.lessons.names_and_launch.launched import Launched, System
+from labkit.lessons.names_and_launch.launch_clauses import Launches, OnlyNodes
+from labkit.lessons.names_and_launch.learner_launch import Launched, System
 
-__all__ = ['hearing']
+__all__ = ['exercise']
 
 # The robots, and whom each of them is to hear.
 PAIRS = {'robot1': 'robot2', 'robot2': 'robot1'}
@@ -89,7 +89,7 @@ GIVEN = Solution(
     ),
 ).code.partition('\n')[2]
 
-hearing = Exercise(
+exercise = Exercise(
     name='hearing',
     task='Mend hearing.launch.xml: each robot is to hear the other one.',
     clauses=(

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from labkit.exercises import Exercise, Solution
-from labkit.lessons.names_and_launch.clauses import (
+from labkit.lessons.names_and_launch.launch_clauses import (
     HasParameters,
     Hears,
     Launches,
     OnlyNodes,
     Publishes,
 )
-from labkit.lessons.names_and_launch.launched import Launched
+from labkit.lessons.names_and_launch.learner_launch import Launched
 
-__all__ = ['DECLARED', 'system']
+__all__ = ['DECLARED', 'exercise']
 
 # The parameters of the driver, with the values that its code declares.
 DECLARED = {'speed': 0.1, 'turn': 0.5}
 
-system = Exercise(
+exercise = Exercise(
     name='system',
     task='Write a launch file for a speaker, a listener and a driver.',
     clauses=(

@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
-from labkit.lessons.odds.count_up import count_up
-from labkit.lessons.odds.evens import evens
-from labkit.lessons.odds.find_gate import find_gate
-from labkit.lessons.odds.ones import ones
+from labkit.lessons.odds import count_up, evens, find_gate, ones, stay_within
 from labkit.lessons.odds.quiz import QUIZ, WARM_UP
 from labkit.lessons.odds.stadium import GOALS, NODES, VISITORS
-from labkit.lessons.odds.stay_within import stay_within
 
 __all__ = ['LESSON']
 

@@ -7,10 +7,10 @@ from typing import Any
 
 from labkit.exercises import Exercise, Fail, Mistake, Probe, Solution, expect
 from labkit.exercises.clauses import Messages, Publishes, Stream, often
-from labkit.exercises.life import live
+from labkit.exercises.observation import live
 from labkit.exercises.variants import varied
 
-__all__ = ['count_up']
+__all__ = ['exercise']
 
 TOPIC, INT16 = '/odds', 'std_msgs/msg/Int16'
 # The first number that does not fit into an Int16.
@@ -137,6 +137,6 @@ def _guess(probe: Probe) -> dict[str, Any] | None:
 
 
 # None is another one plus or minus a few steps.
-count_up = varied(
+exercise = varied(
     _variant(), _variant, _guess, first=range(15, 2000, 14), step=(4, 6), hz=(1.0, 2.0)
 )

@@ -6,7 +6,7 @@ from labkit.exercises import Exercise, Mistake, Solution, anything
 from labkit.exercises.clauses import WITHIN, Answers
 from labkit.exercises.draws import draw_int16s
 
-__all__ = ['evens']
+__all__ = ['exercise']
 
 INT16 = 'std_msgs/msg/Int16'
 MORE = 1
@@ -51,7 +51,7 @@ MISTAKES = (
     ),
 )
 
-evens = Exercise(
+exercise = Exercise(
     name='evens',
     task='Subscribe to /odds, add 1 to each number and publish the result on /evens (`Int16`).',
     clauses=(

@@ -7,7 +7,7 @@ from labkit.exercises.clauses import Evidence, GraphClause, Publishes
 from labkit.exercises.expect import show
 from labkit.lessons.odds.stadium import GATES, VISITORS, wrong_gates
 
-__all__ = ['find_gate']
+__all__ = ['exercise']
 
 TOPIC, STRING = '/wrong_gate', 'std_msgs/msg/String'
 
@@ -102,7 +102,7 @@ def _mistake(evidence: Evidence, name: str, *, some: bool) -> Mistake:
     return NO_GATE.of(name=name) if name else EMPTY
 
 
-find_gate = Exercise(
+exercise = Exercise(
     name='find_gate',
     task=f'One gate publishes another type on {VISITORS}. Find it, and publish its name as a '
     f'`String` on {TOPIC}, at least once a second.',

@@ -5,7 +5,7 @@ from __future__ import annotations
 from labkit.exercises import Exercise, Mistake, Solution, anything
 from labkit.exercises.clauses import Publishes, Says
 
-__all__ = ['ones']
+__all__ = ['exercise']
 
 INT16 = 'std_msgs/msg/Int16'
 
@@ -27,7 +27,7 @@ MISTAKES = (
     ),
 )
 
-ones = Exercise(
+exercise = Exercise(
     name='ones',
     task='Publish the `Int16` 1 on /ones ten times a second, without end.',
     clauses=(

@@ -17,9 +17,9 @@ from labkit.exercises.clauses import (
     Stream,
 )
 from labkit.exercises.expect.timing import TOLERANCE
-from labkit.exercises.watch import Lived, Sample
+from labkit.exercises.messages_heard import Lived, Sample
 
-__all__ = ['stay_within']
+__all__ = ['exercise']
 
 TOPIC, INT16 = '/late_odds', 'std_msgs/msg/Int16'
 FIRST, LARGEST = 32751, 32767
@@ -260,7 +260,7 @@ def _deviation(run: Sequence[Sample]) -> Fail:
     )
 
 
-stay_within = Exercise(
+exercise = Exercise(
     name='stay_within',
     task=f'Publish odd numbers on {TOPIC}, ten a second, from {FIRST} on. After {LARGEST} stop, '
     'or start over with 1.',

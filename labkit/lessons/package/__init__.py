@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 from labkit.exercises import Lesson
-from labkit.lessons.package.beacon import beacon
-from labkit.lessons.package.counter import counter
-from labkit.lessons.package.listener import listener
+from labkit.lessons.package import beacon, counter, listener, repair
 from labkit.lessons.package.quiz import QUIZ, WARM_UP
-from labkit.lessons.package.repair import repair
 
 __all__ = ['LESSON']
 

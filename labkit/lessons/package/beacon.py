@@ -7,7 +7,7 @@ from labkit.exercises.clauses import Asked
 from labkit.lessons.package.content import TESTED, Built, InAWorkspace, Work
 from labkit.lessons.package.running import Running
 
-__all__ = ['beacon']
+__all__ = ['exercise']
 
 PACKAGE, TOPIC, BOOL = 'beacon_lab', '/lit', 'std_msgs/msg/Bool'
 
@@ -45,7 +45,7 @@ def _is_heard_late(work: Work) -> None:
         raise Fail('True', repr(watch[-1].data), FALSE)
 
 
-beacon = Exercise(
+exercise = Exercise(
     name='beacon',
     task='Make the package beacon_lab, whose node says once that it is lit, and test it.',
     clauses=(

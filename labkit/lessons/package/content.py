@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, NoReturn
 
 from labkit import stop_button
 from labkit.errors import nearest
-from labkit.exercises import Clause, Fail, Mistake, NotAttempted, Probe, Stage, words
+from labkit.exercises import Clause, Fail, Mistake, NotAttempted, Probe, Stage, common_mistakes
 from labkit.exercises.clauses import Asked
 from labkit.exercises.expect.timing import FOUND_SEC
-from labkit.exercises.life import Life, live
-from labkit.exercises.watch import Lived
-from labkit.lessons.package.workspace import workspace
+from labkit.exercises.messages_heard import Lived
+from labkit.exercises.observation import Life, live
+from labkit.lessons.package.learner_workspace import workspace
 
 if TYPE_CHECKING:
     from labkit.programs.child_processes import Process
@@ -269,13 +269,13 @@ class Work:
             raise Fail(
                 f'a {kind} of {node} on {topic}',
                 f'it {does}: {", ".join(sorted(own)) or "no topic"}',
-                (words.STRANGE_TOPIC if near else words.NOT_MADE).of(**told),
+                (common_mistakes.STRANGE_TOPIC if near else common_mistakes.NOT_MADE).of(**told),
             )
         if own[topic].msg_type != msg_type:
             raise Fail(
                 f'messages of type {msg_type} on {topic}',
                 f'messages of type {own[topic].msg_type}',
-                words.OTHER_TYPE.of(**told),
+                common_mistakes.OTHER_TYPE.of(**told),
             )
         return own[topic]
 

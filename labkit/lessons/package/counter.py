@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution, words
+from labkit.exercises import Exercise, Fail, Mistake, Solution, common_mistakes
 from labkit.exercises.clauses import Asked
-from labkit.exercises.life import Life
-from labkit.exercises.watch import Lived
+from labkit.exercises.messages_heard import Lived
+from labkit.exercises.observation import Life
 from labkit.lessons.package.content import Built, InAWorkspace, Runs, Work
 
-__all__ = ['counter']
+__all__ = ['exercise']
 
 PACKAGE = 'counter_lab'
 TYPES = {'/count': 'std_msgs/msg/Int16', '/half': 'std_msgs/msg/Float64'}
@@ -62,7 +62,7 @@ def _counts(work: Work) -> None:
         raise Fail(
             'numbers on /count without an end',
             f'{len(samples)} numbers, and none after {samples[-1].at:.1f} s',
-            words.STOPS,
+            common_mistakes.STOPS,
         )
     if rate > (1 + OFF) * MOST:
         raise Fail(f'at most {MOST} numbers a second on /count', f'{rate:.0f} a second', TOO_OFTEN)
@@ -117,7 +117,7 @@ def _seen(work: Work) -> tuple[Life, list[Lived]]:
     return life, samples
 
 
-counter = Exercise(
+exercise = Exercise(
     name='counter',
     task='Make the package counter_lab, whose node counts, and publishes on two topics.',
     clauses=(

@@ -7,7 +7,7 @@ from labkit.exercises.clauses import Asked, Evidence, Logs
 from labkit.lessons.package.content import Built, InAWorkspace, Work, dependencies
 from labkit.lessons.package.running import Running
 
-__all__ = ['listener']
+__all__ = ['exercise']
 
 PACKAGE, TOPIC, STRING = 'ears_lab', '/chatter', 'std_msgs/msg/String'
 
@@ -46,7 +46,7 @@ def _logs(work: Work) -> None:
     LOGS.judge(evidence)
 
 
-listener = Exercise(
+exercise = Exercise(
     name='listener',
     task='Make the package ears_lab with a listener, build it, and run it in a terminal.',
     clauses=(

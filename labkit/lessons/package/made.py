@@ -6,7 +6,7 @@ import os
 import shutil
 from pathlib import Path
 
-from labkit.lessons.package.workspace import NAME, workspace
+from labkit.lessons.package.learner_workspace import NAME, workspace
 
 __all__ = ['BROKEN', 'make_broken']
 

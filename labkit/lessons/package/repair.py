@@ -7,7 +7,7 @@ from labkit.lessons.package.content import Built, InAWorkspace, Work
 from labkit.lessons.package.made import BROKEN
 from labkit.lessons.package.running import Running
 
-__all__ = ['repair']
+__all__ = ['exercise']
 
 
 def _is_untouched(work: Work) -> bool:
@@ -18,7 +18,7 @@ def _is_untouched(work: Work) -> bool:
     return "teller:main'\n" in text and 'hearer:mian' in text
 
 
-repair = Exercise(
+exercise = Exercise(
     name='repair',
     task='Repair the package broken_lab, build it, and run both of its programs in terminals.',
     clauses=(

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from labkit.exercises import Lesson
-from labkit.lessons.quality_of_service.door import door
+from labkit.lessons.quality_of_service import door, silent_mast, site, watchdog
 from labkit.lessons.quality_of_service.lock import NODE as LOCK
 from labkit.lessons.quality_of_service.masts import NODES
 from labkit.lessons.quality_of_service.quiz import QUIZ, WARM_UP
 from labkit.lessons.quality_of_service.rover import NODE as ROVER
 from labkit.lessons.quality_of_service.rover import TOPICS
-from labkit.lessons.quality_of_service.silent_mast import silent_mast
-from labkit.lessons.quality_of_service.site import site
-from labkit.lessons.quality_of_service.watchdog import watchdog
 
 __all__ = ['LESSON']
 

@@ -6,12 +6,12 @@ from labkit.exercises import Exercise, Solution
 from labkit.exercises.clauses import Matches, Publishes, Says
 from labkit.lessons.quality_of_service.lock import NODE, TOPIC, is_untouched
 
-__all__ = ['door']
+__all__ = ['exercise']
 
 INT16 = 'std_msgs/msg/Int16'
 
 
-door = Exercise(
+exercise = Exercise(
     name='door',
     task='Publish 1 on /door, five times a second, so that /lock hears it.',
     clauses=(

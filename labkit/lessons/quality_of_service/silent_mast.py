@@ -7,10 +7,18 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, Solution, expect, words
+from labkit.exercises import (
+    Exercise,
+    Fail,
+    Mistake,
+    NotAttempted,
+    Solution,
+    common_mistakes,
+    expect,
+)
 from labkit.exercises.clauses import Asked, Evidence, GraphClause
-from labkit.exercises.scope import PUBLISHER, SUBSCRIPTION, Role
-from labkit.exercises.watch import Watch
+from labkit.exercises.messages_heard import Watch
+from labkit.exercises.what_is_asked import PUBLISHER, SUBSCRIPTION, Role
 from labkit.lessons.quality_of_service.masts import (
     INT16,
     NODES,
@@ -22,7 +30,7 @@ from labkit.lessons.quality_of_service.masts import (
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
 
-__all__ = ['silent_mast']
+__all__ = ['exercise']
 
 LEVEL, *SAID = TOPICS
 # On these a node of the learner's may take the place of a mast, and these it may hear.
@@ -114,7 +122,9 @@ class _Carries(GraphClause):
                 if end.node in {other.node for other in probe.subscriptions(topic)}:
                     seen = f'{end.node} publishes on {topic}, and subscribes to it'
                     raise Fail(
-                        f'a node that hears the topic before {topic}', seen, words.HEARS_ITSELF
+                        f'a node that hears the topic before {topic}',
+                        seen,
+                        common_mistakes.HEARS_ITSELF,
                     )
 
     def judge(self, evidence: Evidence) -> str:
@@ -195,7 +205,7 @@ def _silent(evidence: Evidence, before: str, topic: str) -> Fail:
         return Fail(
             f'{sink.node} hears {source.node} on {before}',
             f'the two do not match: {reason[:1].lower()}{reason[1:]}',
-            words.OFFER_AND_REQUEST.of(
+            common_mistakes.OFFER_AND_REQUEST.of(
                 todo=f'Look at both profiles with %ros2 topic info --verbose {before}, and change '
                 f'that of {mine.node}.'
             ),
@@ -225,7 +235,7 @@ def _apart(evidence: Evidence, topic: str) -> Iterator[tuple[Endpoint, Endpoint,
                 yield source, sink, reason
 
 
-silent_mast = Exercise(
+exercise = Exercise(
     name='silent_mast',
     task='One mast of the chain hears nothing. Find it, and let a node of yours stand in for it.',
     clauses=(_Carries(), Asked('on each of these topics, it comes once', _once)),

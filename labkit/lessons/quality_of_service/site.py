@@ -5,7 +5,7 @@ from __future__ import annotations
 from labkit.exercises import Exercise, Mistake, Solution, anything
 from labkit.exercises.clauses import WITHIN, Answers, Latched
 
-__all__ = ['site']
+__all__ = ['exercise']
 
 STRING = 'std_msgs/msg/String'
 
@@ -18,7 +18,7 @@ MORE = Mistake(
     change=[('publish(msg)', "publish(String(data=f'site {msg.data}'))")],
 )
 
-site = Exercise(
+exercise = Exercise(
     name='site',
     task='Publish each name that comes on /move on /site, and keep the newest one for who '
     'subscribes later.',

@@ -15,16 +15,16 @@ from labkit.exercises import (
     Probe,
     Solution,
     Stage,
+    common_mistakes,
     expect,
-    words,
 )
 from labkit.exercises.clauses import Subscribes, Words
 from labkit.exercises.judging import naming
 
 if TYPE_CHECKING:
-    from labkit.exercises.watch import Watch
+    from labkit.exercises.messages_heard import Watch
 
-__all__ = ['watchdog']
+__all__ = ['exercise']
 
 EMPTY, STRING = 'std_msgs/msg/Empty', 'std_msgs/msg/String'
 HEART, ALARM = '/heartbeat', '/alarm'
@@ -102,7 +102,7 @@ class _Heart:
         from rclpy.duration import Duration
         from rclpy.qos import QoSProfile
 
-        from labkit.exercises.watch import build
+        from labkit.exercises.messages_heard import build
 
         self._probe, self._alarms = probe, alarms
         self._beat = build(EMPTY, {})
@@ -224,7 +224,7 @@ def _refuse_empty(alarms: Watch) -> None:
         raise Fail(
             f'a text in each message on {ALARM}',
             f'data = {expect.show(alarms.values("data"))}',
-            words.NOT_SET.of(field='data'),
+            common_mistakes.NOT_SET.of(field='data'),
         )
 
 
@@ -252,7 +252,7 @@ def _refuse_silence(number: int) -> NoReturn:
     )
 
 
-watchdog = Exercise(
+exercise = Exercise(
     name='watchdog',
     task='Listen to /heartbeat, and publish a text on /alarm when it is silent.',
     publishes={ALARM: STRING},

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
-from labkit.lessons.services_and_parameters.lamp import lamp
-from labkit.lessons.services_and_parameters.metronome import metronome
-from labkit.lessons.services_and_parameters.pilot import pilot
-from labkit.lessons.services_and_parameters.porter import porter
+from labkit.lessons.services_and_parameters import lamp, metronome, pilot, porter
 from labkit.lessons.services_and_parameters.quiz import QUIZ, WARM_UP
 
 __all__ = ['LESSON']

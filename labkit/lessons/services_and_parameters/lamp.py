@@ -12,7 +12,7 @@ from labkit.exercises.clauses import Call, Named, Responds, Serves, Words
 from labkit.exercises.draws import MANY
 from labkit.exercises.judging import naming
 
-__all__ = ['lamp']
+__all__ = ['exercise']
 
 NODE, SERVICE = '/lamp', '/switch_lamp'
 SET_BOOL = 'std_srvs/srv/SetBool'
@@ -121,7 +121,7 @@ def _success_trouble(calls: Sequence[Call]) -> Mistake:
     return REVERSED if seen[1:] == same else PARTLY
 
 
-lamp = Exercise(
+exercise = Exercise(
     name='lamp',
     task='Serve /switch_lamp (SetBool), and tell whether the lamp has changed, and how it is now.',
     clauses=(

@@ -12,7 +12,7 @@ from labkit.exercises.clauses.parameter_client import Values
 from labkit.exercises.draws import draw_float
 from labkit.exercises.variants import varied
 
-__all__ = ['metronome']
+__all__ = ['exercise']
 
 TOPIC, EMPTY = '/tick', 'std_msgs/msg/Empty'
 NODE = '/metronome'
@@ -96,7 +96,7 @@ def _variant(*, low: float = LIMITS[0], high: float = LIMITS[1]) -> Exercise:
 
 
 def _guess(probe: Probe) -> dict[str, float] | None:
-    from labkit.asking.parameters import describe_parameters, parameter_names
+    from labkit.asking.parameter_calls import describe_parameters, parameter_names
 
     if NODE not in probe.node_names() or 'rate' not in parameter_names(probe.spun_node, NODE):
         return None
@@ -104,7 +104,7 @@ def _guess(probe: Probe) -> dict[str, float] | None:
     return {'low': found[0].from_value, 'high': found[0].to_value} if found else None
 
 
-metronome = varied(
+exercise = varied(
     _variant(),
     _variant,
     _guess,

@@ -19,7 +19,7 @@ from labkit.exercises.clauses import (
 from labkit.exercises.clauses.parameter_client import Values
 from labkit.exercises.draws import draw_float
 
-__all__ = ['pilot']
+__all__ = ['exercise']
 
 TOPIC, TWIST = '/cmd_vel', 'geometry_msgs/msg/Twist'
 NODE = '/pilot'
@@ -94,7 +94,7 @@ _FOLLOWS = Follows(
     rule=_says_speed,
 )
 
-pilot = Exercise(
+exercise = Exercise(
     name='pilot',
     task='Drive at a speed that is a parameter, and refuse what is above the limit, which is '
     'another one.',

@@ -6,11 +6,11 @@ import random
 from typing import Any
 
 from labkit.exercises import Exercise, Mistake, Solution, anything
-from labkit.exercises.callbacks import find_node
+from labkit.exercises.callback_count import find_node
 from labkit.exercises.clauses import WITHIN, Answers, AsksForEach, Named
 from labkit.exercises.draws import MANY
 
-__all__ = ['porter']
+__all__ = ['exercise']
 
 WISH, NEWS, SERVICE = '/wish', '/news', '/move_door'
 BOOL, STRING = 'std_msgs/msg/Bool', 'std_msgs/msg/String'
@@ -61,7 +61,7 @@ def _change(door: Any) -> None:
     door.keeper = random.choice([name for name in KEEPERS if name != door.keeper])
 
 
-porter = Exercise(
+exercise = Exercise(
     name='porter',
     task=f'Call {SERVICE} for each Bool on {WISH}, and publish the message of each response on '
     f'{NEWS}.',

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
-from labkit.lessons.talker_listener.ears import ears
-from labkit.lessons.talker_listener.mouth import mouth
-from labkit.lessons.talker_listener.one_message import say_once
-from labkit.lessons.talker_listener.publisher import every_two_seconds
+from labkit.lessons.talker_listener import ears, every_two_seconds, hear_chatter, mouth, say_once
 from labkit.lessons.talker_listener.quiz import QUIZ, WARM_UP
-from labkit.lessons.talker_listener.subscriber import hear_chatter
 
 __all__ = ['LESSON']
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from labkit.exercises import Exercise, Solution
 from labkit.exercises.clauses import HasText, NobodyElse, Publishes
 
-__all__ = ['ears']
+__all__ = ['exercise']
 
 STRING = 'std_msgs/msg/String'
 EARS = ('/left_ear', '/right_ear')
 
 
-ears = Exercise(
+exercise = Exercise(
     name='ears',
     task='Two nodes, left_ear and right_ear, publish text on /sound five times a second each.',
     shared=['/sound'],

@@ -5,7 +5,7 @@ from __future__ import annotations
 from labkit.exercises import Exercise, Mistake, Solution, anything
 from labkit.exercises.clauses import WITHIN, Answers, Named
 
-__all__ = ['mouth']
+__all__ = ['exercise']
 
 STRING = 'std_msgs/msg/String'
 
@@ -55,7 +55,7 @@ MISTAKES = (
     ),
 )
 
-mouth = Exercise(
+exercise = Exercise(
     name='mouth',
     task='A node mouth repeats each text of /thought on /speech, in capital letters.',
     clauses=(

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
-from labkit.lessons.turtlebot.bot import bot
-from labkit.lessons.turtlebot.go_to import go_to
+from labkit.lessons.turtlebot import bot, go_to, square, stop, wall
 from labkit.lessons.turtlebot.quiz import QUIZ, WARM_UP
-from labkit.lessons.turtlebot.square import square
-from labkit.lessons.turtlebot.stop import stop
-from labkit.lessons.turtlebot.wall import wall
 
 __all__ = ['LESSON']
 

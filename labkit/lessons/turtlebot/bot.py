@@ -9,7 +9,8 @@ from collections.abc import Sequence
 from labkit.exercises import Exercise, Fail, Mistake, Solution
 from labkit.exercises.clauses import Asked
 from labkit.exercises.expect import digits
-from labkit.lessons.turtlebot.clauses import (
+from labkit.lessons.turtlebot.drive import EMPTY, ODOMETRY, SAME, STEP_SEC, Drive, Trial
+from labkit.lessons.turtlebot.drive_clauses import (
     MANY,
     NAN,
     PER_SECOND,
@@ -18,10 +19,9 @@ from labkit.lessons.turtlebot.clauses import (
     Hears,
     look_at_rate,
 )
-from labkit.lessons.turtlebot.drive import EMPTY, ODOMETRY, SAME, STEP_SEC, Drive, Trial
 from labkit.lessons.turtlebot.stage import Drives
 
-__all__ = ['bot']
+__all__ = ['exercise']
 
 SIGN = ('/go_home', EMPTY)
 STEPS = 20
@@ -127,7 +127,7 @@ def _tell(drives: Sequence[Drive]) -> str:
     return f'{steps}, then stop. Each of {len(drives)} times.'
 
 
-bot = Exercise(
+exercise = Exercise(
     name='bot',
     task=f'On /go_home a node drives v = -x for {STEPS} steps at 10 Hz, by its odometry, and '
     'stops.',

@@ -12,8 +12,8 @@ from typing import Any
 
 from labkit.exercises.clauses import Evidence
 from labkit.exercises.history import Note
-from labkit.exercises.life import Life
-from labkit.exercises.watch import Sample, Watch
+from labkit.exercises.messages_heard import Sample, Watch
+from labkit.exercises.observation import Life
 from labkit.sim.kinematics import Pose, wrap_angle, yaw_from_quaternion
 
 __all__ = [

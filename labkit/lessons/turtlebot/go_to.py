@@ -11,7 +11,8 @@ from itertools import pairwise
 
 from labkit.exercises import Exercise, Fail, Mistake, Solution
 from labkit.exercises.clauses import Asked
-from labkit.lessons.turtlebot.clauses import (
+from labkit.lessons.turtlebot.drive import ODOMETRY, STEP_SEC, Command, Drive, Point, Trial
+from labkit.lessons.turtlebot.drive_clauses import (
     RATE,
     SENSIBLE,
     Begins,
@@ -20,11 +21,10 @@ from labkit.lessons.turtlebot.clauses import (
     look_at_rate,
     look_at_time,
 )
-from labkit.lessons.turtlebot.drive import ODOMETRY, STEP_SEC, Command, Drive, Point, Trial
 from labkit.lessons.turtlebot.stage import Drives
 from labkit.sim.kinematics import wrap_angle
 
-__all__ = ['go_to']
+__all__ = ['exercise']
 
 SIGN = ('/goal', 'geometry_msgs/msg/Pose2D')
 # How near it has to come, and how much further off it may stand after braking, m.
@@ -211,7 +211,7 @@ def _tell(drives: Sequence[Drive]) -> str:
     return f'It came to {", ".join(f"{d:.2f} m" for d in away)} from its goals, and stands.'
 
 
-go_to = Exercise(
+exercise = Exercise(
     name='go_to',
     task='For each Pose2D on /goal a node drives the robot to that x and y, and stops there.',
     shared=['/cmd_vel'],

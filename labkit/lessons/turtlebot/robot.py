@@ -16,7 +16,7 @@ from labkit.sim.kinematics import BURGER, Pose
 from labkit.sim.world import Post, Wall, World, playground
 
 if TYPE_CHECKING:
-    from labkit.exercises.watch import Sample
+    from labkit.exercises.messages_heard import Sample
     from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = [

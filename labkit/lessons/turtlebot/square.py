@@ -13,7 +13,8 @@ from typing import Any
 from labkit.exercises import Clause, Exercise, Fail, Mistake, Probe, Solution
 from labkit.exercises.clauses import Asked, Evidence
 from labkit.exercises.variants import varied
-from labkit.lessons.turtlebot.clauses import (
+from labkit.lessons.turtlebot.drive import EMPTY, STEP_SEC, Drive, Point, Trial
+from labkit.lessons.turtlebot.drive_clauses import (
     RATE,
     REST_SEC,
     RESTS,
@@ -22,12 +23,11 @@ from labkit.lessons.turtlebot.clauses import (
     look_at_rate,
     look_at_time,
 )
-from labkit.lessons.turtlebot.drive import EMPTY, STEP_SEC, Drive, Point, Trial
 from labkit.lessons.turtlebot.stage import Drives, Trials
 from labkit.sim.kinematics import wrap_angle
 from labkit.views.arena_picture import two
 
-__all__ = ['square']
+__all__ = ['exercise']
 
 SIGN = ('/go_square', EMPTY)
 # Sides of variants, m. The corner opposite to the start is in none near that of another.
@@ -251,7 +251,7 @@ def _guess(probe: Probe) -> dict[str, Any] | None:
     return {'outline': (side, 'left' if far > 0 else 'right')}
 
 
-square = varied(
+exercise = varied(
     _USUAL,
     _variant,
     _guess,

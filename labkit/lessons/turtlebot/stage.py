@@ -1,9 +1,9 @@
 """Where the driving tasks take place: a robot, which the learner's node drives at a sign.
 
-The robot and the node step together, in virtual time (`labkit.exercises.life`), so a drive takes a
-fraction of its time and is the same on a busy machine. A node of another process is told the time
-in steps, and its commands are known to such a step. One that keeps a time of its own, as a process
-that sleeps by itself does, fails, and is told to use a timer.
+The robot and the node step together, in virtual time (`labkit.exercises.observation`), so a drive
+takes a fraction of its time and is the same on a busy machine. A node of another process is told
+the time in steps, and its commands are known to such a step. One that keeps a time of its own, as
+a process that sleeps by itself does, fails, and is told to use a timer.
 """
 
 from __future__ import annotations
@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING
 from labkit.exercises import Clause, Fail, Mistake, Probe, Stage, expect
 from labkit.exercises.clauses import Evidence
 from labkit.exercises.judging import find, naming
-from labkit.exercises.life import Life, Stimulus, live
-from labkit.lessons.turtlebot.clauses import AT_ONCE, UNASKED, Begins
+from labkit.exercises.observation import Life, Stimulus, live
 from labkit.lessons.turtlebot.drawing import observed
 from labkit.lessons.turtlebot.drive import (
     ODOMETRY,
@@ -31,6 +30,7 @@ from labkit.lessons.turtlebot.drive import (
     Trial,
     command_of,
 )
+from labkit.lessons.turtlebot.drive_clauses import AT_ONCE, UNASKED, Begins
 from labkit.lessons.turtlebot.robot import (
     find_robot,
     in_room,
@@ -42,8 +42,8 @@ from labkit.lessons.turtlebot.robot import (
 )
 
 if TYPE_CHECKING:
-    from labkit.exercises.virtual_time import VirtualTime
-    from labkit.exercises.watch import Lived, Watch
+    from labkit.exercises.messages_heard import Lived, Watch
+    from labkit.exercises.time.virtual_time import VirtualTime
 
 __all__ = ['Drives', 'Trials']
 

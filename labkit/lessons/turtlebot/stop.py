@@ -18,11 +18,11 @@ from labkit.exercises.clauses import (
     Stream,
     often,
 )
-from labkit.exercises.life import live
+from labkit.exercises.observation import live
 from labkit.exercises.variants import varied
 from labkit.lessons.turtlebot.drive import SAME, TWIST, command_of
 
-__all__ = ['stop']
+__all__ = ['exercise']
 
 NODE = '/cruiser'
 SPEED, HZ = 0.1, 10.0
@@ -200,7 +200,7 @@ def _guess(probe: Probe) -> dict[str, float] | None:
     return {'speed': round(samples[-1].message.linear.x, 6), 'hz': round(hz, 3)}
 
 
-stop = varied(
+exercise = varied(
     _USUAL,
     _variant,
     _guess,

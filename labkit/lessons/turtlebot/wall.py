@@ -8,12 +8,12 @@ from collections.abc import Sequence
 
 from labkit.exercises import Exercise, Fail, Mistake, Solution
 from labkit.exercises.clauses import Asked
-from labkit.lessons.turtlebot.clauses import STOPS, Begins, Hears
 from labkit.lessons.turtlebot.drive import EMPTY, SAME, SCAN, STEP_SEC, Drive, Trial
+from labkit.lessons.turtlebot.drive_clauses import STOPS, Begins, Hears
 from labkit.lessons.turtlebot.stage import Drives
 from labkit.sim.kinematics import BURGER
 
-__all__ = ['wall']
+__all__ = ['exercise']
 
 SIGN = ('/go_wall', EMPTY)
 # The walls of the robot's room stand so far from the origin, m.
@@ -229,7 +229,7 @@ def _tell(drives: Sequence[Drive]) -> str:
     return f'It stopped {", ".join(f"{gap:.2f} m" for gap in gaps)} in front of the walls.'
 
 
-wall = Exercise(
+exercise = Exercise(
     name='wall',
     task=f'On /go_wall a node drives ahead and stops when the scan sees a wall nearer than {NEAR} '
     'm.',

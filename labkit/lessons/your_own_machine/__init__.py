@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from labkit.exercises import Lesson
-from labkit.lessons.your_own_machine.manifest import manifest
+from labkit.lessons.your_own_machine import manifest, release
 from labkit.lessons.your_own_machine.quiz import QUIZ, WARM_UP
-from labkit.lessons.your_own_machine.release import release
 
 __all__ = ['LESSON']
 

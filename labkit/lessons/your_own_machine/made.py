@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from labkit.lessons.package.workspace import make_workspace
+from labkit.lessons.package.learner_workspace import make_workspace
 
 __all__ = ['COURIER', 'make_courier']
 

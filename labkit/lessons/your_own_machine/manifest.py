@@ -9,7 +9,7 @@ from labkit.exercises.clauses import Asked
 from labkit.lessons.package.content import Built, InAWorkspace, Runs, Work, dependencies
 from labkit.lessons.your_own_machine.made import COURIER
 
-__all__ = ['manifest']
+__all__ = ['exercise']
 
 IMPORTED = ('rclpy', 'std_msgs', 'geometry_msgs')
 
@@ -47,7 +47,7 @@ def _is_untouched(work: Work) -> bool:
     return path.is_file() and not work.build.is_dir() and path.read_text().count('<depend>') == 1
 
 
-manifest = Exercise(
+exercise = Exercise(
     name='manifest',
     task='Let package.xml of courier_lab name what its code imports, and build it.',
     clauses=(

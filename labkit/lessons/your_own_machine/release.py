@@ -13,7 +13,7 @@ from labkit.exercises.clauses import Asked
 from labkit.lessons.package.content import InAWorkspace, Work
 from labkit.lessons.your_own_machine.made import COURIER
 
-__all__ = ['release']
+__all__ = ['exercise']
 
 VERSION, ARCHIVE, MADE = '1.0.0', 'courier.tar.gz', ('build', 'install', 'log')
 _COMMIT = 'git add, git commit, then git tag -f ' + VERSION
@@ -146,7 +146,7 @@ class InARepository(InAWorkspace):
         return f'The tag {VERSION} and {ARCHIVE} hold {len(_tagged(seen[0]))} files.'
 
 
-release = Exercise(
+exercise = Exercise(
     name='release',
     task='Give courier_lab a version, a commit, a tag and an archive.',
     clauses=(

@@ -1,4 +1,4 @@
-"""Types and QoS, see `labkit.silent.ends`."""
+"""Types and QoS, see `labkit.silent.matching_faults`."""
 
 
 def _types(mine: str, theirs: str) -> str:

@@ -1,4 +1,4 @@
-"""Life of nodes and calls, see `labkit.silent.life`."""
+"""Life of nodes and calls, see `labkit.silent.spinning_faults`."""
 
 _SERVER = "node('server').create_service(Trigger, 'work', lambda request, response: response)\n"
 _UNSPUN = (

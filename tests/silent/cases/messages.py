@@ -1,4 +1,4 @@
-"""Content of messages, see `labkit.silent.messages`."""
+"""Content of messages, see `labkit.silent.message_faults`."""
 
 
 def _fields(kind: str, wrong: str, right: str, make: str = 'stamped({kind})') -> tuple[str, str]:

@@ -1,4 +1,4 @@
-"""Names, see `labkit.silent.names`."""
+"""Names, see `labkit.silent.name_faults`."""
 
 CASES = {
     'names.namespace': (

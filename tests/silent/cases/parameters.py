@@ -1,4 +1,4 @@
-"""Parameters and remapping, see `labkit.silent.parameters`."""
+"""Parameters and remapping, see `labkit.silent.parameter_faults`."""
 
 
 def _file(text: str, args: str = "cli_args=['--ros-args', '--params-file', 'p.yaml']") -> str:

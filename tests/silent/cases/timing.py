@@ -1,4 +1,4 @@
-"""Time, see `labkit.silent.timing`."""
+"""Time, see `labkit.silent.timing_faults`."""
 
 _SIM = "parameter_overrides=[Parameter('use_sim_time', value=True)]"
 _CLOCK = (

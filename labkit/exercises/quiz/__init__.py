@@ -1,0 +1,1 @@
+"""Quizzes: questions, their answers, and how an answer may be spelled."""

@@ -1,0 +1,1 @@
+"""The time of a check: virtual time, other processes, and what can keep it from passing."""

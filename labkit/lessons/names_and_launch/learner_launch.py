@@ -1,0 +1,240 @@
+"""A launch file of the learner's, launched by the check, for each set of arguments once."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+from collections import Counter
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from labkit import stop_button
+from labkit.errors import LabError
+from labkit.exercises import Clause, Fail, Mistake, NotAttempted, Probe, Stage
+from labkit.exercises.exercise import NOTHING_YET
+from labkit.lessons.package.learner_workspace import workspace
+
+if TYPE_CHECKING:
+    from labkit.launching.launched import Launch, Program
+
+__all__ = ['EMPTY', 'Launched', 'System']
+
+EMPTY = '<launch>\n  <!-- ... -->\n</launch>'
+_FORMS = ('xml', 'yaml', 'py')
+
+RUNS_ALREADY = Mistake(
+    'launch/runs-already',
+    '',
+    'End it: lab.processes().stop(), and lab.remove for a node of a cell.',
+)
+DIED = Mistake(
+    'launch/died',
+    'The program has ended by itself. Its last line says why.',
+    'Correct the launch file, and check again.',
+)
+HANGS = Mistake(
+    'launch/hangs',
+    'It is in the graph, and does not answer: nothing spins it.',
+    'A program of a package spins its node in main(). Name one that does.',
+)
+
+
+@dataclass
+class System:
+    """What a launch file has started.
+
+    Attributes:
+        probe: The probe of the check.
+        path: The launch file.
+        values: Its arguments, given or by default, for the names and values in clauses.
+        launch: The launch.
+        fault: The reason for which nothing was started.
+        publishes: The topics on which each node publishes, by its full name.
+        hears: The topics to which each node subscribes, likewise.
+        programs: The program of each node, where its topics tell.
+    """
+
+    probe: Probe
+    path: Path
+    values: Mapping[str, str]
+    launch: Launch
+    fault: LabError | None = None
+    publishes: dict[str, set[str]] = field(default_factory=dict)
+    hears: dict[str, set[str]] = field(default_factory=dict)
+    programs: dict[str, Program] = field(default_factory=dict)
+
+    @property
+    def nodes(self) -> list[str]:
+        """Return the full names of its nodes."""
+        return self.launch.nodes
+
+    def wait(self, condition: Callable[[], object]) -> bool:
+        """Wait until something is true that programs do, however busy the machine is."""
+        with self.probe.uncounted():
+            return self.probe.wait(condition)
+
+    def parameters(self, node: str) -> dict[str, Any]:
+        """Return the parameters of a node."""
+        from labkit.asking.parameter_calls import get_parameters, parameter_names
+        from labkit.rosgraph.parameter_values import python_value
+
+        names = parameter_names(self.probe.spun_node, node)
+        values = get_parameters(self.probe.spun_node, node, names)
+        return {name: python_value(value) for name, value in values.items()}
+
+    def remaps(self, node: str) -> list[tuple[str, str]]:
+        """Return the remaps that the program of a node was given: a name, and what it is to be."""
+        import psutil  # type: ignore[import-untyped]
+
+        try:
+            words = psutil.Process(self.programs[node].pid).cmdline()
+        except (KeyError, psutil.NoSuchProcess):
+            return []
+        rules = [word.partition(':=') for before, word in pairwise(words) if before == '-r']
+        return [(old, new) for old, _, new in rules if not old.startswith('__')]
+
+    def kill(self, node: str) -> Program:
+        """Let the program of a node die, and return it when the launch knows."""
+        program = self.programs[node]
+        before = program.starts
+        if program.exit_code is None:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(program.pid, signal.SIGKILL)
+        self.wait(lambda: program.exit_code is not None or program.starts > before)
+        return program
+
+    def look(self, before: Mapping[str, int]) -> None:
+        """Read off the graph what its nodes do.
+
+        Args:
+            before: How often each name of a node was there before.
+
+        Raises:
+            Fail: A node was there before; a program has died, or hangs.
+        """
+        from labkit.asking.service_calls import wait_until_spun
+        from labkit.rosgraph.whose import process_id
+
+        helper = self.probe.spun_node
+        for node in self.nodes:
+            if before.get(node):
+                raise Fail(
+                    f'no node of the name {node} before the check starts one',
+                    f'{node} is running already',
+                    RUNS_ALREADY,
+                )
+        with self.probe.uncounted():
+            left = self.probe.time_left
+            hanging = next((n for n in self.nodes if not wait_until_spun(helper, n, left)), '')
+        if hanging:
+            # One that does not answer may be about to end.
+            self.wait(lambda: any(one.exit_code is not None for one in self.launch.processes))
+        self._refuse_dead()
+        if hanging:
+            raise Fail(f'{hanging} answers', f'{hanging} does not answer', HANGS)
+        for ends, found in (
+            (self.probe.all_publishers(), self.publishes),
+            (self.probe.all_subscriptions(), self.hears),
+        ):
+            for end in ends:
+                found.setdefault(end.node, set()).add(end.topic)
+                for program in self.launch.processes:
+                    if program.pid & 0xFFFF == process_id(end.gid):
+                        self.programs[end.node] = program
+
+    def _refuse_dead(self) -> None:
+        for program in self.launch.processes:
+            if program.exit_code is not None or program.starts > 1:
+                last = self._last_words(program.name)
+                raise Fail(f'{program.name} runs', f'it has ended, and said at last: {last}', DIED)
+
+    def _last_words(self, program: str) -> str:
+        ended, start = f'[{program}]: process has ', f'[{program}] '
+        self.wait(lambda: any(ended in line for line in self.launch.output))
+        said = [line for line in self.launch.output if line.startswith(start)]
+        return said[-1].removeprefix(start) if said else 'nothing'
+
+
+@dataclass(frozen=True)
+class Launched(Stage[System]):
+    """A launch file in the learner's workspace, in XML, YAML or Python.
+
+    Attributes:
+        name: Its name, without the ending.
+        given: Its content as the lesson gives it, which shows no attempt.
+        arguments: Draws the arguments of each launch.
+        defaults: The values that its arguments have to have by default.
+    """
+
+    name: str
+    given: str = EMPTY
+    arguments: Callable[[], Sequence[Mapping[str, str]]] = lambda: [{}]
+    defaults: Mapping[str, str] = field(default_factory=dict)
+
+    @contextmanager
+    def scenes(
+        self, probe: Probe, clauses: Sequence[Clause[System]]
+    ) -> Iterator[Iterator[System]]:
+        """Launch it with each set of arguments, and end it after each."""
+        path = self._path()
+        played = self._play(probe, path)
+        try:
+            yield played
+        finally:
+            with stop_button.undoing():
+                played.close()
+
+    def tell(self, seen: Sequence[System]) -> str:
+        """Say what was started."""
+        nodes = dict.fromkeys(node for system in seen for node in system.nodes)
+        return f'{seen[0].path.name} has started {", ".join(nodes)}.'
+
+    def _path(self) -> Path:
+        folder = workspace()
+        if folder is None:
+            raise NotAttempted(NOTHING_YET)
+        found = [folder / f'{self.name}.launch.{form}' for form in _FORMS]
+        found = sorted((path for path in found if path.is_file()), key=os.path.getmtime)
+        texts = [path.read_text(encoding='utf-8', errors='replace').strip() for path in found]
+        if not found or texts[-1] == self.given.strip():
+            raise NotAttempted(NOTHING_YET)
+        return found[-1]
+
+    def _play(self, probe: Probe, path: Path) -> Generator[System, None, None]:
+        for arguments in self.arguments():
+            with _launched(probe, path, arguments) as system:
+                system.values = {**self.defaults, **arguments}
+                yield system
+
+
+@contextmanager
+def _launched(probe: Probe, path: Path, arguments: Mapping[str, str]) -> Iterator[System]:
+    """Launch a file, after the end of earlier launches of it, and end it."""
+    from labkit.background.runtime import runtime
+    from labkit.launching.launched import Launch
+    from labkit.programs.child_processes import keep, processes
+    from labkit.rosgraph.snapshot import node_names
+
+    for earlier in processes():
+        if isinstance(earlier, Launch) and earlier.path == str(path) and earlier.running:
+            earlier.stop()
+    before = Counter(node_names(probe.spun_node))
+    cell = runtime.console.current_cell()
+    launch = keep(Launch(f'launch of {path.name}', str(path), arguments, cell))
+    system = System(probe, path, arguments, launch)
+    try:
+        with probe.uncounted():
+            try:
+                launch.wait_until_begun(probe.spun_node, list(before.elements()))
+            except LabError as fault:
+                system.fault = fault
+            else:
+                system.look(before)
+        yield system
+    finally:
+        launch.stop()

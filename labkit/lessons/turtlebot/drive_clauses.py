@@ -1,0 +1,329 @@
+"""The clauses that the driving tasks of this lesson share."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Collection
+from dataclasses import dataclass
+from functools import partial
+
+from labkit.exercises import Clause, Fail, Mistake
+from labkit.exercises.clauses import Asked, in_words
+from labkit.exercises.clauses.publishing import OFF, TOLERANCE
+from labkit.exercises.what_is_asked import PUBLISHER, SUBSCRIPTION, Role
+from labkit.lessons.turtlebot.drive import STEP_SEC, TWIST, Drive
+
+__all__ = [
+    'AT_ONCE',
+    'MANY',
+    'NAN',
+    'PER_SECOND',
+    'RATE',
+    'RESTS',
+    'REST_SEC',
+    'SENSIBLE',
+    'STOPS',
+    'UNASKED',
+    'Begins',
+    'Hears',
+    'look_at_end',
+    'look_at_rate',
+    'look_at_time',
+    'short',
+]
+
+# How soon after the sign the first command has to come, s.
+BEGIN_SEC = 0.5
+# How far one gap between two commands may be off, as a part of it.
+GAP_TOLERANCE = 0.5
+# How long the robot may rest, s.
+REST_SEC = 1.0
+# What no robot of this kind can do, m/s and rad/s; degrees for radians are beyond it.
+TOO_FAST, TOO_ROUND = 1.0, 10.0
+# Commands a second, in words of a task.
+MANY = in_words(1 / STEP_SEC)
+PER_SECOND = f'a second ({OFF})'
+RATE = f'publish on `/cmd_vel` (`Twist`) {MANY} times {PER_SECOND}'
+
+_START = 'Let the callback set what the timer looks at, and publish in the timer.'
+USED_UP = Mistake(
+    'turtlebot/used-up',
+    'Something is used up by the first drive: a counter, a plan, a flag that is never set back.',
+    'Set in the callback of the message all that a drive needs.',
+)
+NOT_STARTED = Mistake(
+    'turtlebot/not-started',
+    'The callback of the sign does not start anything, or the timer does not publish.',
+    _START,
+)
+UNASKED = Mistake(
+    'turtlebot/unasked',
+    'It publishes without being asked to.',
+    'Begin when a message comes, and return in the timer as long as there is nothing to do.',
+)
+LATE = Mistake(
+    'turtlebot/late', 'Something waits before the drive begins, or the period is too long.', _START
+)
+_ONE = f'One command each time that the timer of {STEP_SEC} s calls.'
+AT_ONCE = Mistake(
+    'turtlebot/at-once',
+    'A loop publishes them without a pause. The robot obeys the last one.',
+    _ONE,
+)
+BY_SENSOR = Mistake(
+    'turtlebot/by-sensor',
+    'The odometry comes 30 times a second, and its callback sends a command each time. So the '
+    'sensor sets the rate of the control.',
+    f'Let the callback only keep the newest value, and publish in a timer of {STEP_SEC} s.',
+)
+_TIMER = f'create_timer({STEP_SEC}, self.on_timer)'
+TWICE = Mistake(
+    'turtlebot/twice',
+    'Twice as many: is publish() called twice, or the period half as long?',
+    _TIMER,
+)
+PERIOD = Mistake(
+    'turtlebot/period', 'The rate is set by the period of the timer, in seconds.', _TIMER
+)
+STOP_AT_ONCE = Mistake(
+    'turtlebot/stop-at-once',
+    'The last step ends before it has begun: the robot obeys the newest command.',
+    'Let the stop command be one more step of the timer.',
+)
+ELSE = Mistake('turtlebot/something-else', 'Something other than the timer publishes, too.', _ONE)
+PAUSES = Mistake(
+    'turtlebot/pauses',
+    'A robot obeys a command for one second only, and turns and drives on in a pause.',
+    'Let the timer go on publishing, also while the robot rests.',
+)
+
+WHEELS = Mistake(
+    'turtlebot/wheels', 'The robot has two wheels: it obeys linear.x and angular.z alone.'
+)
+IMPOSSIBLE = Mistake(
+    'turtlebot/impossible',
+    'No robot can drive like that. This one ignores the command and stops, or drives as fast as '
+    'it can.',
+)
+DEGREES = Mistake(
+    'turtlebot/degrees',
+    'Its angles are degrees. ROS measures angles in radians, and turning rates in radians a '
+    'second. This robot can turn at 2.84 rad/s at most.',
+    'math.pi / 2 is a right angle. math.atan2() gives radians as well.',
+)
+NAN = Mistake('turtlebot/nan', 'A nan is no number: a division or a root had no result.')
+
+ENDLESS = Mistake(
+    'turtlebot/endless',
+    'It does not end: it goes on to send commands that move the robot.',
+    'When it is there: publish an empty Twist() once, and then nothing more.',
+)
+NO_STOP = Mistake(
+    'turtlebot/no-stop',
+    'A robot obeys the last command that it heard. A node that ends without a stop command '
+    'leaves it driving.',
+    'At the end publish an empty Twist(): all of its fields are 0.0.',
+)
+ON_ITS_WAY = Mistake(
+    'turtlebot/on-its-way',
+    'It stops on its way.',
+    'Say stop when the drive is over, and only then.',
+)
+STILL_TALKS = Mistake(
+    'turtlebot/still-talks',
+    'It stands, and still publishes. So nobody else can drive the robot, such as a person with '
+    'the keys.',
+    'Forget the drive when it is over, and return in the timer until the next message comes.',
+)
+SLOW = Mistake(
+    'turtlebot/slow',
+    'It drives or turns too slowly, or goes on and on.',
+    'Let it drive at 0.2 m/s, and turn at about 1.5 rad/s.',
+)
+
+
+def short(msg_type: str) -> str:
+    """Return the name of a type as it is imported, such as `'Twist'`."""
+    return msg_type.rpartition('/')[2]
+
+
+@dataclass(frozen=True)
+class Begins(Clause[Drive]):
+    """The node begins each time that a message comes, and only then.
+
+    Attributes:
+        topic: The topic of the sign to start.
+        msg_type: Name of its type.
+    """
+
+    topic: str
+    msg_type: str
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return (
+            f'begin within {BEGIN_SEC} s of each message (`{short(self.msg_type)}`) on '
+            f'`{self.topic}`, and only then'
+        )
+
+    @property
+    def roles(self) -> dict[Role, str]:
+        """The node hears the sign, and publishes commands."""
+        return {(SUBSCRIPTION, self.topic): self.msg_type, (PUBLISHER, '/cmd_vel'): TWIST}
+
+    @property
+    def listens(self) -> Collection[str]:
+        """Where the node commands."""
+        return ('/cmd_vel',)
+
+    def find(self, seen: Drive) -> None:
+        """Look for such a node."""
+        seen.evidence.publisher('/cmd_vel', seen.evidence.subscription(self.topic).node)
+
+    def judge(self, drive: Drive) -> str:
+        """Look at the first command."""
+        expected = f'a command on /cmd_vel within {BEGIN_SEC} s after a message on {self.topic}'
+        if not drive.commands and drive.number:
+            raise Fail(
+                'a drive each time that a message comes',
+                f'drives after {drive.number} of them, and nothing after the next one',
+                USED_UP,
+            )
+        if not drive.commands:
+            raise Fail(expected, 'nothing, though the sign to start was given', NOT_STARTED)
+        first = drive.commands[0]
+        if first.at < drive.sign:
+            raise Fail(
+                'no command before the sign to start',
+                f'{first}, {drive.sign - first.at:.2f} s before it',
+                UNASKED,
+            )
+        if first.at - drive.sign > BEGIN_SEC + drive.margin:
+            seconds = first.at - drive.sign
+            raise Fail(expected, f'the first one comes after {seconds:.2f} s', LATE)
+        return ''
+
+
+@dataclass(frozen=True)
+class Hears(Clause[Drive]):
+    """The node that drives subscribes to a sensor of the robot as well.
+
+    Attributes:
+        topic: The topic of the sensor.
+        msg_type: Name of its type.
+        sign: The topic of the sign to start, which tells the node.
+    """
+
+    topic: str
+    msg_type: str
+    sign: str
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return f'subscribe to `{self.topic}` (`{short(self.msg_type)}`)'
+
+    @property
+    def roles(self) -> dict[Role, str]:
+        """The node subscribes to the topic."""
+        return {(SUBSCRIPTION, self.topic): self.msg_type}
+
+    def find(self, seen: Drive) -> None:
+        """Look for the subscription."""
+        seen.evidence.subscription(self.topic, seen.evidence.subscription(self.sign).node)
+
+
+def look_at_rate(drive: Drive, pause: float = 0.0, pauses: int = 0) -> None:
+    """Raise Fail if commands don't come ten times a second, until the one that says stop.
+
+    Args:
+        drive: The drive.
+        pause: How long a pause between two of them may be, s; 0 if there may be none.
+        pauses: How many pauses there may be.
+    """
+    gaps, margin = drive.gaps, drive.margin
+    if not gaps:
+        return
+    fail = partial(Fail, f'a command every {STEP_SEC} s (10 Hz), until the drive is over')
+    if max(gaps) <= 1e-3:
+        raise fail(f'{len(drive.commands)} commands at once', AT_ONCE)
+    usual = [gap for gap in gaps if gap <= (1 + GAP_TOLERANCE) * STEP_SEC + margin]
+    # Without pauses, as between the sides of a square.
+    longest = 1.5 * statistics.median(gaps)
+    period = statistics.mean(gap for gap in gaps if gap <= longest)
+    # A time that is known to a step tells a rate less exactly when a drive is short.
+    seconds = sum(usual)
+    tolerance = TOLERANCE + (2 * margin / seconds if seconds else 0.0)
+    if abs(period / STEP_SEC - 1) > tolerance:
+        seen = f'a command every {period:.3g} s ({1 / period:.3g} Hz)'
+        by_sensor, twice = abs(period - 1 / 30) < 0.002, abs(period - STEP_SEC / 2) < 0.002
+        raise fail(seen, BY_SENSOR if by_sensor else TWICE if twice else PERIOD)
+    soonest = (1 - GAP_TOLERANCE) * STEP_SEC - margin
+    few = [gap for gap in gaps if gap < soonest]
+    if drive.ending and gaps[-1] < soonest:
+        raise fail(f'the stop command comes {gaps[-1]:.3g} s after the last step', STOP_AT_ONCE)
+    if few:
+        raise fail(f'{min(few):.2g} s from one command to the next, once at least', ELSE)
+    rests = [gap for gap in gaps if gap not in usual]
+    if len(rests) > pauses or any(gap > pause + margin for gap in rests):
+        many = f'{len(rests)} pauses, the longest one of {max(rests):.2g} s'
+        raise fail(many if len(rests) > 1 else f'a pause of {rests[0]:.2g} s', PAUSES)
+
+
+def look_at_numbers(drive: Drive) -> None:
+    """Raise Fail if a command asks for what a robot can't do."""
+    for command in drive.commands:
+        fast, round_ = abs(command.v) <= TOO_FAST, abs(command.w) <= TOO_ROUND
+        if fast and round_ and not command.others:
+            continue
+        turning = WHEELS if round_ else NAN if command.w != command.w else DEGREES
+        raise Fail(
+            f'at most {TOO_FAST:g} m/s in linear.x and {TOO_ROUND:g} rad/s in angular.z, and 0.0 '
+            'in the other numbers',
+            f'a command with {command}',
+            turning if fast else IMPOSSIBLE,
+        )
+
+
+def look_at_end(drive: Drive, *, may_rest: bool = False, may_pause: bool = False) -> None:
+    """Raise Fail if the last command does not say stop, or more follows.
+
+    Args:
+        drive: The drive.
+        may_rest: Whether the robot may rest on its way, and for a moment at the end.
+        may_pause: Whether it may rest on its way only.
+    """
+    ending, moving = drive.ending, drive.moving
+    if not moving:
+        return
+    expected = 'a last command with all numbers 0.0, and then none'
+    if not ending and drive.cut:
+        seen = f'the command {moving[-1]}, and more of them, {drive.duration:.0f} s after the sign'
+        raise Fail(expected, seen, ENDLESS)
+    if not ending:
+        raise Fail(expected, f'the last command says {moving[-1]}', NO_STOP)
+    rest = next((n for n, command in enumerate(moving, start=1) if command.stops), 0)
+    if rest and not (may_rest or may_pause):
+        seen = f'command {rest} of {len(moving)} says stop, and then it drives on'
+        raise Fail('one command that says stop, at the end', seen, ON_ITS_WAY)
+    seconds = ending[-1].at - ending[0].at
+    if seconds > REST_SEC + drive.margin if may_rest else len(ending) > 1:
+        seen = f'{len(ending)} commands that say stop, over {seconds:.1f} s'
+        raise Fail(expected, seen, STILL_TALKS)
+
+
+def look_at_time(drive: Drive, seconds: float) -> None:
+    """Raise Fail if a drive takes longer than so many seconds."""
+    taken = drive.moving[-1].at - drive.sign if drive.moving else 0.0
+    if taken > seconds + drive.margin:
+        expected = f'an end of the drive {seconds:g} s after the message'
+        raise Fail(expected, f'it still moves after {taken:.1f} s', SLOW)
+
+
+SENSIBLE = Asked(f'ask for no more than {TOO_FAST:g} m/s and {TOO_ROUND:g} rad/s', look_at_numbers)
+STOPS = Asked('end with one stop command (all 0.0), then nothing more', look_at_end)
+RESTS = Asked(
+    f'end with stop commands (all 0.0) for up to {REST_SEC:g} s, then nothing more',
+    partial(look_at_end, may_rest=True),
+)
