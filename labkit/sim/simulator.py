@@ -9,17 +9,16 @@ import numpy as np
 from labkit.errors import LabError
 from labkit.sim.command_timeout import COMMAND_TIMEOUT, as_limit
 from labkit.sim.kinematics import (
-    BURGER,
     STANDING,
     Motion,
     Pose,
-    Robot,
     Twist2,
     believed,
     ramp,
     wheel_speeds,
     wrap_angle,
 )
+from labkit.sim.robots import BURGER, Robot
 from labkit.sim.world import Contact, Post, World, playground
 
 __all__ = ['Simulator']

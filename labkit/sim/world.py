@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from labkit.errors import LabError
-from labkit.sim.kinematics import BURGER, Motion, Pose, Robot, Twist2
+from labkit.sim.kinematics import Motion, Pose, Twist2
 from labkit.sim.rays import TOUCH, Convex, see_posts, see_walls
+from labkit.sim.robots import BURGER, Robot
 
 __all__ = ['Contact', 'Post', 'Wall', 'World', 'open_field', 'pillars', 'playground', 'room']
 

@@ -12,7 +12,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from labkit.sim.kinematics import BURGER, Pose, Twist2, wrap_angle
+from labkit.sim.kinematics import Pose, Twist2, wrap_angle
+from labkit.sim.robots import BURGER
 
 __all__ = ['Scene', 'bounds', 'joined', 'row', 'to_svg', 'two']
 

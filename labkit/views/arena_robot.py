@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from labkit.sim.kinematics import BURGER, Pose, Twist2, wrap_angle
+from labkit.sim.kinematics import Pose, Twist2, wrap_angle
+from labkit.sim.robots import BURGER
 from labkit.views.arena_picture import Scene
 from labkit.views.live_page import Update
 from labkit.views.robot_messages import beam_ends, motion_of, nearest_of, scanner_place

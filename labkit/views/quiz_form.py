@@ -30,7 +30,7 @@ class QuizForm(PageWidget):
         fresh: Whether no page has shown it yet. The first one takes the keyboard.
     """
 
-    _esm, _css = page_files('quiz')
+    _esm, _css = page_files('quiz_form')
     questions: traitlets.List[dict[str, Any]] = traitlets.List().tag(sync=True)
     answers: traitlets.Dict[str, dict[str, Any]] = traitlets.Dict().tag(sync=True)
     fresh = traitlets.Bool(True).tag(sync=True)

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from labkit.sim.kinematics import BURGER, Pose, Twist2, wrap_angle, yaw_from_quaternion
+from labkit.sim.kinematics import Pose, Twist2, wrap_angle, yaw_from_quaternion
+from labkit.sim.robots import BURGER
 
 if TYPE_CHECKING:
     from nav_msgs.msg import Odometry

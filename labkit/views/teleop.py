@@ -17,7 +17,7 @@ from labkit.errors import LabError, first_few, quoted
 from labkit.rosgraph.endpoints import subscriptions
 from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.names import full_node_name
-from labkit.sim.kinematics import BURGER
+from labkit.sim.robots import BURGER
 from labkit.views.arena_picture import two
 from labkit.views.live import live_views
 from labkit.views.live_page import LivePage, Update

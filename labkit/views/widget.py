@@ -14,7 +14,7 @@ from labkit.background.compat import hear_while_cells_run
 __all__ = ['PageWidget', 'page_files', 'widget_class']
 
 # Files that several views share, loaded before the view's own.
-_SHARED = {'arena': ('map', 'occupancy_grid'), 'bag': ('map', 'lines'), 'plot': ('lines',)}
+_SHARED = {'arena': ('map', 'occupancy_grid'), 'bag': ('map', 'chart'), 'plot': ('chart',)}
 
 
 def page_files(name: str) -> tuple[str, str]:
@@ -26,8 +26,12 @@ def page_files(name: str) -> tuple[str, str]:
     folder = Path(__file__).parent
     parts = ('live', *_SHARED.get(name, ()), name)
     script, style = (
-        '\n'.join(path.read_text(encoding='utf-8') for path in paths if path.is_file())
-        for paths in ([folder / f'{part}.{ending}' for part in parts] for ending in ('js', 'css'))
+        '\n'.join(
+            path.read_text(encoding='utf-8')
+            for path in (folder / f'{part}{ending}' for part in parts)
+            if ending == '.js' or path.is_file()  # a view may do without a style of its own
+        )
+        for ending in ('.js', '.css')
     )
     return script, style
 

@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from labkit.sim.kinematics import (
-    BURGER,
     Motion,
     Pose,
     Twist2,
@@ -20,6 +19,7 @@ from labkit.sim.kinematics import (
     yaw_from_quaternion,
     yaw_to_quaternion,
 )
+from labkit.sim.robots import BURGER
 
 LIMITS = BURGER.limits
 angles = st.floats(-1e3, 1e3)
@@ -165,16 +165,16 @@ def test_commands_are_cut_to_the_published_limits(v: float, w: float) -> None:
 
 
 def test_wheels_turn_alike_ahead_and_against_each_other_on_the_spot() -> None:
-    assert wheel_speeds(Twist2(0.33, 0.0)) == pytest.approx((10.0, 10.0))
-    assert wheel_speeds(Twist2(0.0, 1.0)) == pytest.approx((-0.08 / 0.033, 0.08 / 0.033))
+    assert wheel_speeds(Twist2(0.33, 0.0), BURGER) == pytest.approx((10.0, 10.0))
+    assert wheel_speeds(Twist2(0.0, 1.0), BURGER) == pytest.approx((-0.08 / 0.033, 0.08 / 0.033))
 
 
 @given(twists, st.floats(-0.1, 0.1))
 def test_odometry_believes_what_unequal_wheels_tell_it(twist: Twist2, mismatch: float) -> None:
-    left, right = wheel_speeds(twist)
+    left, right = wheel_speeds(twist, BURGER)
     left, right = left * (1 + mismatch / 2), right * (1 - mismatch / 2)
-    seen = believed(twist, mismatch)
+    seen = believed(twist, mismatch, BURGER)
     assert seen.v == pytest.approx((left + right) / 2 * BURGER.wheel_radius)
     turn = (right - left) * BURGER.wheel_radius / BURGER.wheel_separation
     assert seen.w == pytest.approx(turn, abs=1e-12)
-    assert believed(twist, 0.0) == twist
+    assert believed(twist, 0.0, BURGER) == twist

@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from labkit.errors import LabError
-from labkit.sim.kinematics import BURGER, Pose, Twist2, wrap_angle
+from labkit.sim.kinematics import Pose, Twist2, wrap_angle
+from labkit.sim.robots import BURGER
 from labkit.sim.simulator import Simulator
 from labkit.sim.world import Post, Wall, World, open_field, pillars, playground, room
 

@@ -15,7 +15,8 @@ from sensor_msgs.msg import BatteryState, Imu, LaserScan
 from std_msgs.msg import Float64
 
 from labkit.errors import LabError
-from labkit.sim.kinematics import BURGER, Pose, yaw_from_quaternion
+from labkit.sim.kinematics import Pose, yaw_from_quaternion
+from labkit.sim.robots import BURGER
 from labkit.sim.turtlebot import Turtlebot
 from labkit.sim.world import Post, Wall, World, open_field, playground
 from tests.stage import Stage, twist, yaw_of

@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from labkit.errors import LabError
-from labkit.sim.kinematics import BURGER, Motion, Pose, Twist2
+from labkit.sim.kinematics import Motion, Pose, Twist2
+from labkit.sim.robots import BURGER
 from labkit.sim.world import Post, Wall, World, open_field, pillars, playground, room
 
 R = BURGER.radius

@@ -13,7 +13,8 @@ import pytest
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 
-from labkit.sim.kinematics import BURGER, Pose, Twist2
+from labkit.sim.kinematics import Pose, Twist2
+from labkit.sim.robots import BURGER
 from labkit.views.arena_picture import Scene, bounds, joined, row, to_svg
 from labkit.views.arena_robot import MappedRobot
 

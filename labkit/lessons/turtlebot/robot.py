@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 from labkit.errors import LabError
 from labkit.exercises import Fail, Mistake, Probe
 from labkit.lessons.turtlebot.drive import Point, Trial
-from labkit.sim.kinematics import BURGER, Pose
+from labkit.sim.kinematics import Pose
+from labkit.sim.robots import BURGER
 from labkit.sim.world import Post, Wall, World, playground
 
 if TYPE_CHECKING:

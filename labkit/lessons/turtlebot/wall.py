@@ -11,7 +11,7 @@ from labkit.exercises.clauses import Asked
 from labkit.lessons.turtlebot.drive import EMPTY, SAME, SCAN, STEP_SEC, Drive, Trial
 from labkit.lessons.turtlebot.drive_clauses import STOPS, Begins, Hears
 from labkit.lessons.turtlebot.stage import Drives
-from labkit.sim.kinematics import BURGER
+from labkit.sim.robots import BURGER
 
 __all__ = ['exercise']
 
