@@ -19,7 +19,7 @@ from labkit.exercises.record.progress_store import ProgressStore
 WRITER = """
 import sys
 from pathlib import Path
-from labkit.exercises import progress_file
+from labkit.exercises.record import progress_file
 from labkit.exercises.record.progress_store import ProgressStore
 from labkit.exercises.record.progress_file import Store
 # The lock is never held for long, but a disk of a busy machine may take seconds for one write.

@@ -351,13 +351,9 @@ def test_a_node_gets_its_time_back_when_the_examiner_is_killed(far: Any, script:
         """
 import os, signal
 import labkit
-from labkit.exercises import Exercise, Lesson, Outcome, Probe, Solution, expect, words
-from labkit.exercises.clauses import Publishes
-from labkit.exercises.expect import timing
+from labkit.exercises import Probe
 from labkit.exercises.time.remote_time import RemoteTime
 from labkit.exercises.what_is_asked import Scope
-from labkit.exercises.verdict import Verdict
-from labkit.exercises.time.virtual_time import VirtualTime
 
 labkit.start()
 with Probe('test', Scope(publishes={'/odds': 'std_msgs/msg/Int16'})) as probe:
