@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from labkit.bags.player import play
     from labkit.bags.recorder import record
     from labkit.checkup.report import doctor
-    from labkit.exercises.lesson import lesson
     from labkit.exercises.record.membership import join_class, leave_class
     from labkit.exercises.record.progress import progress
+    from labkit.exercises.setup_cell import lesson
     from labkit.launching.launched import launch
     from labkit.packages.export import export
     from labkit.packages.workspace import build, source
@@ -102,7 +102,7 @@ _HOMES = {
     'join_class': 'labkit.exercises.record.membership',
     'launch': 'labkit.launching.launched',
     'leave_class': 'labkit.exercises.record.membership',
-    'lesson': 'labkit.exercises.lesson',
+    'lesson': 'labkit.exercises.setup_cell',
     'listen': 'labkit.asking.waiting',
     'monitor': 'labkit.views.monitor',
     'play': 'labkit.bags.player',

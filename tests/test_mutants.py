@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from labkit.exercises import Exercise, Lesson, Outcome
-from labkit.exercises.lesson import all_lessons
+from labkit.exercises.found_lessons import all_lessons
 
 sys.path.insert(0, str(Path(__file__).with_name('lessons')))
 

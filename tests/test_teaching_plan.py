@@ -9,7 +9,7 @@ from pathlib import Path
 import nbformat
 import pytest
 
-from labkit.exercises.lesson import lesson_names, load
+from labkit.exercises.found_lessons import lesson_names, load
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = (ROOT / 'docs' / 'teaching.md').read_text()

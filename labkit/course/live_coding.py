@@ -14,7 +14,7 @@ from typing import Any
 
 from labkit.course.learner_folder import fresh_lesson, put
 from labkit.exercises import Exercise, Lesson
-from labkit.exercises.lesson import load
+from labkit.exercises.found_lessons import load
 
 __all__ = ['blank', 'notes', 'solved', 'write_blank', 'write_solved']
 

@@ -121,7 +121,7 @@ def write_tasks(notebook: NotebookNode, name: str) -> None:
         notebook: The notebook.
         name: Its file name.
     """
-    from labkit.exercises.lesson import all_lessons
+    from labkit.exercises.found_lessons import all_lessons
 
     lesson = next((each for each in all_lessons() if each.notebook == name), None)
     tasks = {exercise.task_id: exercise for exercise in lesson.exercises} if lesson else {}

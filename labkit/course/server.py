@@ -36,7 +36,7 @@ _PAGE = re.compile(r'.*/lab/tree/(.+\.ipynb)')
 _WORKSPACE = 'default'
 _KERNEL = 'python3'
 # ROS, exercises and views, which every lesson needs. The code defines no names.
-_PRELOADED = ('labkit.background.runtime', 'labkit.exercises.lesson', 'labkit.views.live_page')
+_PRELOADED = ('labkit.background.runtime', 'labkit.exercises.setup_cell', 'labkit.views.live_page')
 _PRELOAD = f'if all(map(__import__, {_PRELOADED})): pass'
 _PRELOAD_SEC = 60.0
 _LOGGERS = (

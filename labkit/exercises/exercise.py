@@ -17,7 +17,6 @@ from labkit.exercises.expect.endpoints import alone
 from labkit.exercises.history import history
 from labkit.exercises.judging import Clause, Stage, judge
 from labkit.exercises.learner_errors import explain_error, last_cell
-from labkit.exercises.lesson_progress import next_steps
 from labkit.exercises.messages_heard import Watch
 from labkit.exercises.pending import Pending, learner_task_runs
 from labkit.exercises.probe import Probe
@@ -221,7 +220,7 @@ class Exercise:
             mistake=verdict.mistake.id if verdict.mistake is not None else '',
         )
         if verdict.passed and self.belongs_to is not None:
-            verdict = replace(verdict, standing=next_steps(self, progress_store.store.read()[0]))
+            verdict = replace(verdict, standing=self.belongs_to.standing(self))
         return verdict if not note else verdict.with_note(note)
 
     def hint(self, number: int | None = None) -> Card:

@@ -1,28 +1,22 @@
-"""The exercises and quizzes of one notebook: `lesson = lab.lesson('odds')`."""
+"""The exercises and quizzes of one notebook, each found by its name."""
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType, ModuleType
 
-from labkit import settings
 from labkit.errors import LabError, did_you_mean
 from labkit.exercises.exercise import Exercise
-from labkit.exercises.learner_errors import last_cell
+from labkit.exercises.found_lessons import all_lessons
+from labkit.exercises.lesson_progress import next_steps
 from labkit.exercises.quiz.quiz import Quiz
-from labkit.exercises.time import learner_time
-from labkit.exercises.variants import variants_card
+from labkit.exercises.record.progress_store import progress_store
 from labkit.exercises.what_is_asked import Role
 from labkit.views.card import Card
+from labkit.views.progress_picture import Row
 
-__all__ = ['Lesson', 'NoSuchNameError', 'all_lessons', 'lesson', 'lesson_names']
-
-# Lessons are found by name, so that a new one needs no registration.
-PACKAGE = 'labkit.lessons'
+__all__ = ['Lesson', 'NoSuchNameError']
 
 
 class NoSuchNameError(LabError, AttributeError):
@@ -107,22 +101,10 @@ class Lesson:
                     todo='Give it another name.',
                 )
 
-    def begin(self) -> Lesson:
-        """Prepare all exercises, for the setup cell."""
-        from labkit.exercises.record.membership import follow_class
-        from labkit.exercises.record.progress_page import follow_progress
-
-        last_cell.follow()
-        for exercise in self.exercises:
-            exercise.begin()
-        follow_progress()
-        follow_class(self.name)
-        card = variants_card(self.exercises)
-        if card is not None:
-            from IPython.display import display
-
-            display(card)  # type: ignore[no-untyped-call]
-        return self
+    def standing(self, solved: Exercise) -> tuple[Row, list[tuple[str, str]]]:
+        """Return this lesson's row of the progress picture, and what comes after an exercise."""
+        data = progress_store.store.read()[0]
+        return next_steps(self, solved.name, data, all_lessons())
 
     @property
     def heading(self) -> str:
@@ -191,47 +173,3 @@ class Lesson:
 
     def _repr_html_(self) -> str:
         return self._card()._repr_html_()
-
-
-def lesson(name: str) -> Lesson:
-    """Return the exercises and quizzes of a lesson. Called in the setup cell of its notebook.
-
-    Args:
-        name: Name of the lesson, such as `'odds'` or `'04_odds'`.
-
-    Raises:
-        LabError: There is no such lesson.
-    """
-    found = load(name)
-    if settings.in_kernel():
-        learner_time.install()
-    return found.begin()
-
-
-def load(name: str) -> Lesson:
-    """Return a lesson without preparing its exercises.
-
-    Raises:
-        LabError: There is no such lesson.
-    """
-    names = lesson_names()
-    bare = re.sub(r'^\d+_|\.ipynb$', '', name) if isinstance(name, str) else name
-    if bare not in names:
-        raise LabError(
-            f'There is no lesson {name!r}.',
-            todo=did_you_mean(str(bare), names) or f'The lessons: {", ".join(names)}.',
-        )
-    found: Lesson = importlib.import_module(f'{PACKAGE}.{bare}').LESSON
-    return found
-
-
-def lesson_names() -> list[str]:
-    """Return the names of all lessons. A module whose name starts with `_` is none."""
-    package = importlib.import_module(PACKAGE)
-    names = (module.name for module in pkgutil.iter_modules(package.__path__))
-    return sorted(name for name in names if not name.startswith('_'))
-
-
-def all_lessons() -> list[Lesson]:
-    """Return all lessons, in the order of their notebooks."""
-    return sorted(map(load, lesson_names()), key=lambda found: found.notebook)

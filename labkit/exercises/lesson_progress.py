@@ -12,7 +12,6 @@ from labkit.exercises.record.progress_store import number_of, text_of
 from labkit.views.progress_picture import Item, Row
 
 if TYPE_CHECKING:
-    from labkit.exercises.exercise import Exercise
     from labkit.exercises.lesson import Lesson
 
 __all__ = ['days', 'days_in_a_row', 'entries', 'next_steps', 'onward', 'row_of']
@@ -54,32 +53,29 @@ def row_of(lesson: Lesson, data: Data, notebook: str = '') -> Row:
     return Row(lesson.heading, items, file, lesson.teaches, lesson.minutes)
 
 
-def next_steps(exercise: Exercise, data: Data) -> tuple[Row, list[tuple[str, str]]]:
-    """Return the lesson of a solved exercise, and what comes next.
+def next_steps(
+    lesson: Lesson, solved: str, data: Data, lessons: list[Lesson]
+) -> tuple[Row, list[tuple[str, str]]]:
+    """Return the row of a lesson one exercise of which is solved, and what comes next.
 
     Returns:
         The lesson's row, and pairs of a text and a link: to the next exercise that is not done; if
         all are, to the quiz unless it is done, and to the next lesson.
     """
-    lesson = exercise.belongs_to
-    assert lesson is not None
     row = row_of(lesson, data, _own_file())
     exercises = row.of_kind('exercise')
-    position = [item.name for item in exercises].index(exercise.name)
+    position = [item.name for item in exercises].index(solved)
     for item in exercises[position + 1 :] + exercises[:position]:
         if item.state != 'done':
             return row, [(f'Next: {item.name}', item.href)]
     questions = [item for item in row.of_kind('question') if item.state != 'done']
     # Not to the warm-up, which stands before the exercises.
     quiz = [('Next: the quiz', item.href) for item in questions[-1:]]
-    return row, quiz + _next_lesson(lesson)
+    return row, quiz + _next_lesson(lesson, lessons)
 
 
-def onward(data: Data) -> list[tuple[str, str]]:
+def onward(data: Data, lessons: list[Lesson]) -> list[tuple[str, str]]:
     """Return where to continue: the first open exercise from the lesson of the last attempt on."""
-    from labkit.exercises.lesson import all_lessons
-
-    lessons = all_lessons()
     times = [
         max((max(e['passed_at'], e['first_try']) for e in entries(lesson, data)), default='')
         for lesson in lessons
@@ -124,10 +120,8 @@ def _local_day(time: str) -> date | None:
         return None  # not a time: somebody has changed the file
 
 
-def _next_lesson(lesson: Lesson) -> list[tuple[str, str]]:
-    from labkit.exercises.lesson import all_lessons
-
-    later = [other for other in all_lessons() if other.notebook > lesson.notebook]
+def _next_lesson(lesson: Lesson, lessons: list[Lesson]) -> list[tuple[str, str]]:
+    later = [other for other in lessons if other.notebook > lesson.notebook]
     return [(f'Next lesson: {other.heading}', other.notebook) for other in later[:1]]
 
 

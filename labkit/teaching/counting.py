@@ -6,7 +6,8 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from datetime import datetime, timedelta
 
-from labkit.exercises.lesson import Lesson, all_lessons
+from labkit.exercises.found_lessons import all_lessons
+from labkit.exercises.lesson import Lesson
 from labkit.exercises.record.class_sheet import Entry, Sheet
 from labkit.teaching.class_folder import Learner, Reading
 from labkit.views.class_board import Board, FailRow, LearnerRow, LessonRow

@@ -7,7 +7,7 @@ import io
 from collections.abc import Iterable, Sequence
 from datetime import datetime
 
-from labkit.exercises.lesson import all_lessons
+from labkit.exercises.found_lessons import all_lessons
 from labkit.exercises.record.class_sheet import Entry, catalogue
 from labkit.teaching.class_folder import Learner
 from labkit.teaching.counting import remarks

@@ -13,7 +13,7 @@ from playwright.sync_api import expect
 
 from labkit.course.jupyterlab import HOME
 from labkit.course.learner_folder import FIRST
-from labkit.exercises.lesson import all_lessons
+from labkit.exercises.found_lessons import all_lessons
 from tests.browser.jupyter import JupyterLab
 from tests.browser.page import Notebook, open_notebook
 
@@ -40,7 +40,7 @@ def test_a_kernel_gets_ready_while_its_page_is_loaded(jupyter, browser):
     code = """
 import sys
 left = [name for name in globals() if 'lab' in name]
-loaded = ('labkit.background.runtime', 'labkit.exercises.lesson', 'labkit.views.live_page')
+loaded = ('labkit.background.runtime', 'labkit.exercises.setup_cell', 'labkit.views.live_page')
 print(all(name in sys.modules for name in loaded), left)
 """
     for name in ('other', 'usual'):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import expect
 
-from labkit.exercises.lesson import all_lessons
+from labkit.exercises.found_lessons import all_lessons
 from tests.browser.samples import SETUP, TALKER
 
 pytestmark = pytest.mark.slow('a page in the browser')

@@ -9,7 +9,7 @@ import pytest
 
 from labkit.course import learner_folder, live_coding
 from labkit.errors import LabError
-from labkit.exercises.lesson import load
+from labkit.exercises.found_lessons import load
 
 ODDS = Path(__file__).resolve().parents[2] / 'notebooks' / '04_odds.ipynb'
 

@@ -9,6 +9,7 @@ import time
 import labkit as lab
 from labkit.exercises import Exercise, Lesson, Solution, expect
 from labkit.exercises.clauses import Goal, Pursues, Serves
+from labkit.exercises.setup_cell import begin
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.node import Node
 from rclpy.task import Future
@@ -26,7 +27,7 @@ exercise = Exercise(
         ], seen.extend),
     ],
     hints=['.'], answer=Solution('', '', ''))
-Lesson('odds', '04_odds.ipynb', exercises=[exercise]).begin()
+begin(Lesson('odds', '04_odds.ipynb', exercises=[exercise]))
 lab.start()
 
 

@@ -24,7 +24,7 @@ from labkit.exercises.draws import (
     draw_texts,
     filled,
 )
-from labkit.exercises.lesson import all_lessons
+from labkit.exercises.found_lessons import all_lessons
 from labkit.exercises.messages_heard import Lived, build
 from labkit.exercises.observation import Life, Sent
 from labkit.exercises.what_is_asked import Scope

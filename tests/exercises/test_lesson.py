@@ -8,7 +8,8 @@ from by_hand import ByHand
 
 from labkit.errors import LabError
 from labkit.exercises.exercise import Exercise, Solution
-from labkit.exercises.lesson import Lesson, NoSuchNameError, load
+from labkit.exercises.found_lessons import load
+from labkit.exercises.lesson import Lesson, NoSuchNameError
 from labkit.exercises.quiz.quiz import Quiz
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -61,7 +62,7 @@ def test_quiz_is_found_by_name(lesson: Lesson) -> None:
         lesson.quiz()
 
 
-@pytest.mark.parametrize('name', ['title', 'quiz', 'notebook', 'heading', 'begin', '_hidden'])
+@pytest.mark.parametrize('name', ['title', 'quiz', 'notebook', 'heading', 'standing', '_hidden'])
 def test_an_exercise_that_could_not_be_reached_is_refused(name: str) -> None:
     with pytest.raises(LabError, match=f"An exercise of lesson 'odds' can not be called '{name}'"):
         Lesson('odds', '04_odds.ipynb', exercises=[exercise(name)])

@@ -12,8 +12,8 @@ from rclpy.node import Node
 
 from labkit.exercises import lesson as lesson_module
 from labkit.exercises.exercise import Exercise, Solution
-from labkit.exercises.lesson import Lesson, all_lessons
-from labkit.exercises.lesson_progress import next_steps
+from labkit.exercises.found_lessons import all_lessons
+from labkit.exercises.lesson import Lesson
 from labkit.exercises.quiz.questions import Choice, right, wrong
 from labkit.exercises.quiz.quiz import Quiz
 from labkit.exercises.record.progress import progress
@@ -56,7 +56,8 @@ def course(monkeypatch: pytest.MonkeyPatch) -> list[Lesson]:
 
 def next_after(solved: Exercise) -> list[tuple[str, str]]:
     progress_store.note_check(solved.lesson, solved.name, 'PASS')
-    return next_steps(solved, progress_store.store.read()[0])[1]
+    assert solved.belongs_to is not None
+    return solved.belongs_to.standing(solved)[1]
 
 
 def test_next_is_the_exercise_that_is_not_done(course: list[Lesson]) -> None:

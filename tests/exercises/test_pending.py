@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from labkit.exercises.lesson import load
+from labkit.exercises.found_lessons import load
 
 SETUP = """
 import asyncio

@@ -19,11 +19,12 @@ from by_hand import ByHand
 from counter_node import Counter
 from labkit.exercises import Exercise, Lesson, Solution
 from labkit.exercises import expect
+from labkit.exercises.setup_cell import begin
 def judge(probe):
     expect.publisher(probe, '/odds')
 exercise = Exercise(name='ones', task='', publishes={{'/odds': 'std_msgs/msg/Int16'}},
                     stage=ByHand(judge), hints=['.'], answer=Solution('', '', ''))
-Lesson('odds', '04_odds.ipynb', exercises=[exercise]).begin()
+begin(Lesson('odds', '04_odds.ipynb', exercises=[exercise]))
 lab.start()
 """
 SEES = """

@@ -19,6 +19,7 @@ import labkit as lab
 import rclpy
 from labkit.exercises import Exercise, Lesson, Solution, expect
 from labkit.exercises.clauses import Call, Responds, Serves
+from labkit.exercises.setup_cell import begin
 from labkit.rosgraph.snapshot import node_names
 from labkit.background.runtime import runtime
 from rclpy.node import Node
@@ -39,7 +40,7 @@ exercise = Exercise(
     hints=['.'], answer=Solution('', '', ''))
 later = Exercise(name='later', task='Serve /other.', serves={'/other': 'std_srvs/srv/Trigger'},
     clauses=[Serves('/other', 'std_srvs/srv/Trigger')], hints=['.'], answer=Solution('', '', ''))
-Lesson('odds', '04_odds.ipynb', exercises=[exercise, later]).begin()
+begin(Lesson('odds', '04_odds.ipynb', exercises=[exercise, later]))
 
 def echo(request, response):
     response.message = str(request.data)

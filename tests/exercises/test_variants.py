@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from labkit import settings
-from labkit.exercises.lesson import all_lessons
+from labkit.exercises.found_lessons import all_lessons
 from labkit.exercises.variants import variants_card
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -19,7 +19,7 @@ VARIED = [
 ]
 TASKS = (
     'import json\n'
-    'from labkit.exercises.lesson import all_lessons\n'
+    'from labkit.exercises.found_lessons import all_lessons\n'
     'print(json.dumps([e.task for l in all_lessons() for e in l.exercises if e.variants]))'
 )
 

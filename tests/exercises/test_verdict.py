@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from labkit.exercises import Outcome
-from labkit.exercises.lesson import load
+from labkit.exercises.found_lessons import load
 from labkit.exercises.verdict import Verdict
 from labkit.views.card import Card
 

@@ -14,7 +14,7 @@ import pytest
 from hub.machine import Hub, Machine
 from hub.person import Notebook, Person, at_once
 
-from labkit.exercises.lesson import load
+from labkit.exercises.found_lessons import load
 
 pytestmark = pytest.mark.slow('a hub, with servers and kernels')
 

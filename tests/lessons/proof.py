@@ -19,7 +19,7 @@ from nbformat.v4 import new_code_cell
 
 from labkit.course.lesson_run import LessonError, LessonRun
 from labkit.exercises import Exercise, Lesson, Outcome
-from labkit.exercises.lesson import lesson_names, load
+from labkit.exercises.found_lessons import lesson_names, load
 
 HERE = Path(__file__).resolve().parent
 NOTEBOOKS = HERE.parent.parent / 'notebooks'

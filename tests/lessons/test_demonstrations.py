@@ -9,7 +9,7 @@ from proof import copied, press
 
 from labkit.course.lesson_run import LessonRun
 from labkit.exercises import Outcome
-from labkit.exercises.lesson import load
+from labkit.exercises.found_lessons import load
 
 pytestmark = pytest.mark.slow('each demonstration, in kernels')
 

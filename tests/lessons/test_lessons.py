@@ -16,7 +16,7 @@ from cases.generic import KINDS
 from proof import lessons, notebook_of
 
 from labkit.exercises import Choice, Exercise, Lesson, Number, Outcome, Several, Word
-from labkit.exercises.lesson import lesson_names, load
+from labkit.exercises.found_lessons import lesson_names, load
 from labkit.exercises.quiz.questions import Question
 
 # How many answers of each kind an exercise has, beside the shown solution.
@@ -123,7 +123,7 @@ def test_every_answer_of_a_question_is_explained(question: Question) -> None:
 def test_lessons_load_without_ros() -> None:
     code = (
         'import json, sys\n'
-        'from labkit.exercises.lesson import all_lessons\n'
+        'from labkit.exercises.found_lessons import all_lessons\n'
         'names = [lesson.name for lesson in all_lessons()]\n'
         "loaded = {name.partition('.')[0] for name in sys.modules}\n"
         "print(json.dumps([names, sorted(loaded & {'rclpy', 'std_msgs', 'ipywidgets'})]))"

@@ -16,7 +16,7 @@ from nbformat.v4 import new_code_cell, new_markdown_cell
 
 import labkit.lessons
 from labkit.course.record import write_tasks
-from labkit.exercises.lesson import load
+from labkit.exercises.found_lessons import load
 
 pytestmark = pytest.mark.slow('all proofs of an exercise')
 

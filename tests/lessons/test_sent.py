@@ -18,7 +18,7 @@ import labkit
 from labkit import settings
 from labkit.background import domains
 from labkit.exercises import Exercise
-from labkit.exercises.lesson import load
+from labkit.exercises.found_lessons import load
 from labkit.exercises.messages_heard import Sample
 from labkit.lessons.command_line.sent import is_every, messages_at_once, newest_run, period
 

@@ -11,7 +11,7 @@ import pytest
 from proof import MARK, copied, insert
 
 from labkit.course.lesson_run import LessonError, LessonRun
-from labkit.exercises.lesson import load
+from labkit.exercises.found_lessons import load
 
 # By lesson: one kernel has those of a lesson.
 EXERCISES = {

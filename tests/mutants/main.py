@@ -16,7 +16,7 @@ from mutants.report import as_data, false_passes, report
 from mutants.run import Result, run_mutants
 
 from labkit.exercises import Exercise, Lesson
-from labkit.exercises.lesson import all_lessons
+from labkit.exercises.found_lessons import all_lessons
 
 __all__ = ['main']
 

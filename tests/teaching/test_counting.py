@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from labkit.exercises.lesson import all_lessons
+from labkit.exercises.found_lessons import all_lessons
 from labkit.exercises.record.class_sheet import FILE_NAME, Entry, Sheet
 from labkit.teaching.class_folder import Learner, Reading
 from labkit.teaching.command import main

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from labkit import settings
 from labkit.background.runtime import runtime
-from labkit.exercises.lesson import all_lessons
+from labkit.exercises.found_lessons import all_lessons
 from labkit.exercises.lesson_progress import days, days_in_a_row, entries, onward, row_of
 from labkit.exercises.record.progress_store import progress_store
 from labkit.views.course_map import earned, linked_map
@@ -91,7 +91,7 @@ def progress() -> ProgressView:
     if aside and not note:
         note = f'Damaged progress files that were kept aside: {", ".join(p.name for p in aside)}'
     rows = [row_of(lesson, data) for lesson in all_lessons()]
-    return ProgressView(rows, note, onward(data), days(data))
+    return ProgressView(rows, note, onward(data, all_lessons()), days(data))
 
 
 def main(argv: Sequence[str] | None = None) -> int:

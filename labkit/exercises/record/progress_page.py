@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path
 
-from labkit.exercises.lesson import all_lessons
+from labkit.exercises.found_lessons import all_lessons
 from labkit.exercises.lesson_progress import onward, row_of
 from labkit.exercises.record.progress_store import progress_store
 from labkit.files import read_limited, write_atomically
@@ -60,7 +60,7 @@ def write_home(path: Path) -> None:
         return
     data, _ = progress_store.store.read()
     rows = [row_of(lesson, data) for lesson in all_lessons()]
-    write_atomically(path, page(rows, onward(data), datetime.now()).encode())
+    write_atomically(path, page(rows, onward(data, all_lessons()), datetime.now()).encode())
 
 
 def page(rows: Sequence[Row], places: Sequence[tuple[str, str]], now: datetime) -> str:

@@ -7,7 +7,7 @@ import pytest
 
 from labkit.errors import LabError
 from labkit.exercises import Choice, Number, Quiz, Several, Word, right, wrong
-from labkit.exercises.lesson import all_lessons, load
+from labkit.exercises.found_lessons import all_lessons, load
 from labkit.exercises.quiz import spelling
 from labkit.exercises.quiz.questions import Feedback, Question
 from labkit.exercises.record.progress_store import progress_store

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from labkit.exercises.common_mistakes import TWO_COPIES
-from labkit.exercises.lesson import all_lessons
+from labkit.exercises.found_lessons import all_lessons
 from labkit.exercises.mistakes import known_mistakes
 from labkit.exercises.record.class_sheet import (
     MOST_BYTES,

@@ -10,7 +10,8 @@ from by_hand import ByHand
 
 from labkit.exercises import lesson as lesson_module
 from labkit.exercises.exercise import Exercise
-from labkit.exercises.lesson import Lesson, load
+from labkit.exercises.found_lessons import load
+from labkit.exercises.lesson import Lesson
 from labkit.exercises.lesson_progress import days, days_in_a_row
 from labkit.exercises.quiz.questions import Choice, right, wrong
 from labkit.exercises.quiz.quiz import Quiz

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from labkit.exercises.lesson import all_lessons
+from labkit.exercises.found_lessons import all_lessons
 from labkit.exercises.record import progress_page as module
 from labkit.exercises.record.progress_page import (
     MARK,
