@@ -48,10 +48,13 @@ class LabError(Exception):
     def _render_traceback_(self) -> list[str]:
         """Return the lines that IPython shows instead of a traceback."""
         place = _learner_line(self)
-        # The public name: subclasses are for internal use.
-        name = next(c.__name__ for c in type(self).__mro__ if c.__module__ == __name__)
-        text = f'{name}: {self}' + f'\n{self.end}' * bool(self.end)
+        text = f'{self.shown_name}: {self}' + f'\n{self.end}' * bool(self.end)
         return [place] * bool(place) + _wrapped(text)
+
+    @property
+    def shown_name(self) -> str:
+        """The name under which a notebook shows it: subclasses are for internal use."""
+        return next(c.__name__ for c in type(self).__mro__ if c.__module__ == __name__)
 
 
 def _wrapped(text: str) -> list[str]:

@@ -108,7 +108,7 @@ def _find_own_commands() -> None:
 
 
 def _find_stand_ins() -> None:
-    """Let this process and those that it starts find the types that labkit builds, last of all."""
+    """Let this process and those that it starts find what stands in for packages, last of all."""
     if _STAND_INS not in sys.path:
         sys.path.append(_STAND_INS)
         _added_folders.append(_STAND_INS)

@@ -29,6 +29,7 @@ FLOORS = {
     'labkit.rosgraph': 1,
     'labkit.background': 2,
     'labkit.asking': 2.1,
+    'labkit.transforms': 2.1,
     'labkit.programs': 2.2,
     'labkit.sharing': 2.3,
     'labkit.silent': 2.4,
@@ -50,7 +51,7 @@ FLOORS = {
 # Rooms, and one module, in which all that is loaded may need rclpy.
 WITH_ROS = (
     *('labkit.rosgraph', 'labkit.background', 'labkit.asking', 'labkit.programs'),
-    *('labkit.sharing', 'labkit.bags', 'labkit.sim.turtlebot'),
+    *('labkit.sharing', 'labkit.bags', 'labkit.transforms', 'labkit.sim.turtlebot'),
     *('labkit.silent.reading', 'labkit.silent.watch'),
 )
 WITHOUT_ROS = (

@@ -19,7 +19,7 @@ import sys
 import sysconfig
 import tempfile
 import threading
-from importlib.machinery import ModuleSpec, PathFinder
+from importlib.machinery import ModuleSpec
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import FrameType, ModuleType
@@ -28,6 +28,7 @@ from typing import Any
 from labkit import settings
 from labkit.errors import LabError
 from labkit.files import locked
+from labkit.packages.stand_in import load_installed
 from labkit.packages.workspace import colcon, load_libraries
 from labkit.rosgraph import interfaces
 from labkit.setup.compiler import check_compiler
@@ -62,11 +63,7 @@ class _NotBuilt(LabError, ImportError):
 
 def stand_in(package: str) -> None:
     """Make a package that is being imported one whose types are built, unless it is installed."""
-    here = str(Path(str(sys.modules[package].__file__)).parents[1])
-    installed = PathFinder.find_spec(package, [path for path in sys.path if path != here])
-    if installed is not None and installed.loader is not None:
-        sys.modules[package] = module_from_spec(installed)
-        installed.loader.exec_module(sys.modules[package])
+    if load_installed(package):
         return
     # The functions of all types, which the generated code looks for here.
     name = _functions(package)

@@ -31,11 +31,6 @@ __all__ = ['register']
 _REAL = 'It comes with an installed ROS 2 (apt install ros-jazzy-{}), not with wheels.'
 # Package -> what it is and what to use here, where to find it.
 _UNAVAILABLE = {
-    'tf2_ros': ('the listener and broadcaster of coordinate frames', _REAL.format('tf2-ros-py')),
-    'tf2_geometry_msgs': (
-        'transforms for messages of geometry_msgs',
-        _REAL.format('tf2-geometry-msgs'),
-    ),
     'tf_transformations': (
         'quaternions and matrices. Here, `pip install transforms3d` has the same functions',
         _REAL.format('tf-transformations'),
@@ -81,7 +76,7 @@ _UNAVAILABLE = {
     ),
     **{
         name: ('a part of tf2, the frames', _REAL.format(name.replace('_', '-')))
-        for name in ('tf2_py', 'tf2_kdl', 'tf2_sensor_msgs', 'tf2_tools')
+        for name in ('tf2_kdl', 'tf2_sensor_msgs', 'tf2_tools')
     },
     **{
         name: ('MoveIt, which plans how an arm moves', _REAL.format('moveit-py'))

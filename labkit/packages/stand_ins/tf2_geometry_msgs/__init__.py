@@ -1,0 +1,6 @@
+"""Messages of geometry_msgs in another frame."""
+
+from labkit.packages.stand_in import load_installed, modules
+
+if not load_installed(__name__):
+    modules(__name__, 'tf2_geometry_msgs')
