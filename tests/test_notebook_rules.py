@@ -45,10 +45,17 @@ REAL = """## On a real machine
 The same in terminals:
 
 ```bash
-source /opt/ros/jazzy/setup.bash  # in each new terminal
-export ROS_DOMAIN_ID=7            # without it: domain 0, and the whole network (SUBNET)
-ros2 run demo_nodes_py talker     # until Ctrl-C
-ros2 topic echo /chatter          # in a second terminal
+# Terminal 1
+source /opt/ros/jazzy/setup.bash
+export ROS_DOMAIN_ID=7  # the same in every terminal
+ros2 run demo_nodes_py talker  # until Ctrl-C
+```
+
+```bash
+# Terminal 2
+source /opt/ros/jazzy/setup.bash
+export ROS_DOMAIN_ID=7
+ros2 topic echo /chatter
 ```
 
 More: [Topics](https://docs.ros.org/en/jazzy/Topics.html)"""
@@ -137,8 +144,10 @@ BAD = [
     ('last_cell', text(-1, LAST.replace('What you can do', 'Done')), 'differs from the last'),
     ('box', lambda nb: nb.cells.pop(-2), "cell 'quiz': is not the box"),
     ('box', text(-2, REAL.replace('docs.ros.org', 'example.org')), 'is not the box'),
-    ('box', text(-2, REAL.replace('export', '\n'.join('abc') + '\nexport')), 'has 7 lines'),
-    ('box', text(-2, REAL.replace('SUBNET', 'LAN')), "does not say 'SUBNET'"),
+    ('box', text(-2, REAL.replace('```bash\n# Terminal 2', '# Terminal 2')), 'is not the box'),
+    ('box', text(-2, REAL.replace('ros2 run', '\n'.join('abcde') + '\nrun')), 'of 8 lines'),
+    ('box', text(-2, REAL.replace('run', 'run' * 30)), 'a line of 132 characters'),
+    ('box', text(-2, REAL.replace('every', 'each')), "does not say 'the same in every"),
     ('box', text(-2, REAL.replace('until Ctrl-C', 'for ever')), "does not say 'Ctrl-C'"),
     ('quiz', lambda nb: nb.cells[-3].update(id='questions'), 'has no cell "quiz"'),
     ('quiz', text(-4, PROSE), "cell 'quiz-read': stands before the quiz"),
