@@ -10,7 +10,9 @@ import errno
 import json
 import os
 import secrets
+import shutil
 import stat
+import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -22,7 +24,9 @@ __all__ = [
     'locked',
     'read_json',
     'read_limited',
+    'remove',
     'rename_to_free',
+    'replaced',
     'write_atomically',
 ]
 
@@ -97,8 +101,8 @@ def locked(path: Path, timeout_sec: float) -> Iterator[None]:
         OSError: Another process holds it.
     """
     end = time.monotonic() + timeout_sec
-    with path.open('w') as file:
-        with path.with_name(f'{path.name}-queue').open('w') as queue:
+    with path.open('a') as file:
+        with path.with_name(f'{path.name}-queue').open('a') as queue:
             _lock_until(end, queue)
             _lock_until(end, file)
         yield
@@ -130,6 +134,45 @@ def rename_to_free(old: Path, new: Path) -> None:
             raise
     else:
         os.unlink(old)
+
+
+def remove(path: Path) -> None:
+    """Remove a file, a folder with all that is in it, or a link, and not what that leads to.
+
+    Raises:
+        OSError: It is not there, or can't be removed.
+    """
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    else:
+        path.unlink()
+
+
+@contextmanager
+def replaced(path: Path) -> Iterator[None]:
+    """Free the name of a folder for a new one; what had it is removed when that stands.
+
+    If something is raised meanwhile, what was there before stands there again, as it was. Of a
+    link only the link is replaced: nothing is written to, or removed, where it leads.
+
+    Args:
+        path: The name. Its folder has to exist.
+
+    Raises:
+        OSError: The name can't be freed. Then nothing has changed.
+    """
+    with tempfile.TemporaryDirectory(prefix=_PREFIX, dir=path.parent) as place:
+        old = Path(place, path.name)
+        if os.path.lexists(path):
+            path.rename(old)
+        try:
+            yield
+        except BaseException:
+            if os.path.lexists(path):
+                remove(path)
+            if os.path.lexists(old):
+                old.rename(path)
+            raise
 
 
 def read_limited(path: AnyPath, most_bytes: int = MOST_BYTES) -> bytes:

@@ -21,6 +21,7 @@ from labkit.files import (
     read_json,
     read_limited,
     rename_to_free,
+    replaced,
     write_atomically,
 )
 
@@ -425,3 +426,51 @@ def test_json_that_can_not_be_taken(tmp_path: Path, text: str) -> None:
     path.write_text(text, encoding='latin-1')
     with pytest.raises(ValueError, match=r'.'):
         read_json(path)
+
+
+# --- What is replaced ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize('kind', ['folder', 'file', 'link', 'nothing'])
+@pytest.mark.parametrize('fails', [False, True])
+def test_a_name_is_replaced_or_as_it_was(tmp_path: Path, kind: str, fails: bool) -> None:
+    target, place = tmp_path / 'target', tmp_path / 'place' / 'lab'
+    for folder in (target, place.parent):
+        folder.mkdir()
+    (target / 'kept').write_text('years of work')
+    if kind == 'folder':
+        place.mkdir()
+        (place / 'old').write_text('old')
+        (place / 'inner').symlink_to(target)
+    elif kind == 'file':
+        place.write_text('old')
+    elif kind == 'link':
+        place.symlink_to(target)
+    before = names(place) if kind in ('folder', 'link') else kind
+
+    def make() -> None:
+        with replaced(place):
+            place.mkdir()
+            (place / 'new').write_text('new')
+            if fails:
+                raise OSError(errno.ENOSPC, 'No space left on device')
+
+    if not fails:
+        make()
+        assert names(place) == ['new'] and not place.is_symlink()
+    else:
+        with pytest.raises(OSError, match='No space'):
+            make()
+        assert place.is_symlink() == (kind == 'link')
+        assert (names(place) if place.is_dir() else kind) == before
+        assert names(place.parent) == ([] if kind == 'nothing' else ['lab'])
+    assert (target / 'kept').read_text() == 'years of work' and names(target) == ['kept']
+
+
+def test_a_lock_leaves_what_is_in_its_file(tmp_path: Path) -> None:
+    own = tmp_path / 'thesis.txt'
+    own.write_text('years of work')
+    (tmp_path / 'lock').symlink_to(own)
+    with locked(tmp_path / 'lock', 0):
+        pass
+    assert own.read_text() == 'years of work'

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Protocol
@@ -11,7 +10,7 @@ from typing import Any, Protocol
 from labkit.bags.metadata import FILE_NAME, BagTopic, Metadata, profiles_from
 from labkit.bags.stored import StoredTopic
 from labkit.errors import LabError, did_you_mean, quoted
-from labkit.files import write_atomically
+from labkit.files import replaced, write_atomically
 
 __all__ = ['STORAGES', 'BagWriter', 'check_storage']
 
@@ -71,12 +70,22 @@ class BagWriter:
         self._written: list[dict[str, Any]] = []
         self._counts: dict[int, int] = {}
         self._open = True
-        _make_folder(path, overwrite=overwrite)
         try:
-            self._begin_file()
+            if os.path.lexists(path):
+                _check_replaceable(path, overwrite=overwrite)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with replaced(path):
+                path.mkdir()
+                try:
+                    self._begin_file()
+                except OSError as error:
+                    why = error.strerror or error
+                    raise LabError(f'{quoted(str(path))} can not be written: {why}.') from error
         except OSError as error:
-            shutil.rmtree(path, ignore_errors=True)  # made a moment ago
-            raise LabError(f'{quoted(str(path))} can not be written: {error}.') from error
+            raise LabError(
+                f'{quoted(str(path))} can not be made: {error.strerror or error}.',
+                todo='Choose a folder that you may write to.',
+            ) from error
 
     def add_topic(
         self,
@@ -206,35 +215,22 @@ def check_storage(storage: str) -> str:
     )
 
 
-def _make_folder(path: Path, *, overwrite: bool) -> None:
-    """Create the folder of a bag, replacing an existing one if requested.
+def _check_replaceable(path: Path, *, overwrite: bool) -> None:
+    """Refuse to replace what is no bag, or a bag without being asked to.
 
     Raises:
-        LabError: It exists, or is not a bag, or can't be created.
+        LabError: It is not to be replaced.
     """
-    try:
-        if os.path.lexists(path):
-            if not overwrite:
-                raise LabError(
-                    f"Output folder '{path}' already exists.",
-                    todo='Choose another name, or replace what is there: overwrite=True.',
-                )
-            _remove(path)
-        path.mkdir(parents=True)
-    except OSError as error:
+    if not overwrite:
         raise LabError(
-            f'{quoted(str(path))} can not be made: {error.strerror or error}.',
-            todo='Choose a folder that you may write to.',
-        ) from error
-
-
-def _remove(path: Path) -> None:
-    """Remove a bag, but nothing else."""
+            f"Output folder '{path}' already exists.",
+            todo='Choose another name, or replace what is there: overwrite=True.',
+        )
     entries = list(path.iterdir()) if path.is_dir() and not path.is_symlink() else None
     others = [
         entry.name
         for entry in entries or ()
-        if entry.name != FILE_NAME and not entry.name.endswith(_SUFFIXES)
+        if entry.is_dir() or (entry.name != FILE_NAME and not entry.name.endswith(_SUFFIXES))
     ]
     if entries is None or others:
         what = f'holds {quoted(others[0])}, too' if others else 'is no folder'
@@ -242,4 +238,3 @@ def _remove(path: Path) -> None:
             f'{quoted(str(path))} {what}, so it is not replaced.',
             todo='Choose another name, or remove it yourself.',
         )
-    shutil.rmtree(path)

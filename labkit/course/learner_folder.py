@@ -130,16 +130,22 @@ def put(name: str, fresh: bytes) -> str:
 
     Returns:
         A sentence about the result.
+
+    Raises:
+        LabError: It can't be written, or what is there can't be kept.
     """
     copy_lessons()
     path = WORK / name
     if path.is_file() and path.read_bytes() == fresh:
         return f'{path} is a fresh copy already.'
-    backup = back_up(path, name) if os.path.lexists(path) else None
-    write_atomically(path, fresh)
-    record = _read_record()
-    record[name] = _digest(fresh)
-    write_atomically(WORK / RECORD, json.dumps(record, indent=1).encode())
+    try:
+        backup = back_up(path, name) if os.path.lexists(path) else None
+        write_atomically(path, fresh)
+        record = _read_record()
+        record[name] = _digest(fresh)
+        write_atomically(WORK / RECORD, json.dumps(record, indent=1).encode())
+    except OSError as error:
+        raise LabError(f'{str(path)!r} can not be written ({error.strerror}).') from error
     return f'{path} is a fresh copy.' + (f' The old one is {backup}.' if backup else '')
 
 
@@ -189,9 +195,13 @@ def _as_file(notebook: Any) -> bytes:
 
 
 def is_untouched(name: str) -> bool:
-    """Return whether a file is in the learner's folder as the course has put it there."""
+    """Return whether a file is in the learner's folder as the course has put it there.
+
+    The course has put no link there: what one leads to is never written to.
+    """
+    path = WORK / name
     try:
-        return _digest((WORK / name).read_bytes()) == _read_record().get(name)
+        return not path.is_symlink() and _digest(path.read_bytes()) == _read_record().get(name)
     except OSError:
         return False
 
@@ -209,7 +219,7 @@ def _update(name: str, fresh: bytes, record: dict[str, str]) -> bool:
     elif not path.is_file():
         return False
     elif path.read_bytes() != fresh:
-        if _digest(path.read_bytes()) != record.get(name):
+        if path.is_symlink() or _digest(path.read_bytes()) != record.get(name):
             return False
         write_atomically(path, fresh)
     return True
@@ -234,7 +244,11 @@ def back_up(path: Path, name: str, first: int = 1) -> Path:
     for number in range(first, 10_000):
         backup = folder / f'{stem}.backup-{number}{ending}'
         try:
-            rename_to_free(path, backup)
+            if path.is_symlink():
+                backup.symlink_to(os.path.realpath(path))  # a relative one would lead elsewhere
+                path.unlink()
+            else:
+                rename_to_free(path, backup)
         except FileExistsError:
             continue
         return backup

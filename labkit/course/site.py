@@ -14,6 +14,7 @@ from pathlib import Path
 
 from labkit.course.run_tests import REQUIREMENTS
 from labkit.errors import LabError
+from labkit.files import replaced
 from labkit.setup.environment import ROOT, environment_variables, make_environment
 
 __all__ = ['build_site']
@@ -35,8 +36,13 @@ def build_site(folder: Path) -> str:
 
     Raises:
         LabError: Something is wrong in a page, such as a link that leads nowhere; or the folder
-            holds something else.
+            holds something else, or is a link.
     """
+    if folder.is_symlink():
+        raise LabError(
+            f'{folder} is a link, and what it leads to is not replaced.',
+            todo=f'Name the folder itself: {folder.resolve()}',
+        )
     if folder.is_dir() and any(folder.iterdir()) and not (folder / '.buildinfo').is_file():
         raise LabError(f'{folder} holds something else than a site.', todo='Name another folder.')
     python = make_environment(REQUIREMENTS)
@@ -62,6 +68,7 @@ def build_site(folder: Path) -> str:
         if done.returncode != 0:
             words = done.stderr.replace(f'{copy}/', '').strip()
             raise LabError(f'The site was not built:\n{words}', todo='Mend these pages.')
-        shutil.rmtree(folder, ignore_errors=True)
-        shutil.move(new, folder)
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        with replaced(folder):
+            shutil.move(new, folder)
     return f'{folder / "index.html"} is the front page of the site.'

@@ -11,6 +11,7 @@ import subprocess
 from pathlib import Path
 
 from labkit.errors import SetupError
+from labkit.files import replaced
 from labkit.setup.environment import VENV
 from labkit.setup.installer import explain
 from labkit.setup.machine import run
@@ -39,8 +40,13 @@ def install_proxy() -> None:
     if done and installed.read_bytes() == wanted.read_bytes():
         return
     print("Fetching JupyterHub's proxy with npm.", flush=True)
-    shutil.rmtree(_FOLDER, ignore_errors=True)
-    _FOLDER.mkdir(parents=True)
+    _FOLDER.parent.mkdir(parents=True, exist_ok=True)
+    with replaced(_FOLDER):
+        _fetch()
+
+
+def _fetch() -> None:
+    _FOLDER.mkdir()
     for name in ('package.json', _LOCK):
         shutil.copyfile(_WANTED / name, _FOLDER / name)
     npm = _node() / 'lib' / 'node_modules' / 'npm' / 'bin' / 'npm-cli.js'
@@ -51,7 +57,6 @@ def install_proxy() -> None:
     command = [*node, str(npm), 'ci', *options]
     answer = run(command, cwd=_FOLDER, stderr=subprocess.STDOUT)
     if answer.returncode != 0 or not _PROXY.exists():
-        shutil.rmtree(_FOLDER)
         raise explain(answer.stdout.splitlines(), _FOLDER)
 
 

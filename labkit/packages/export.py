@@ -5,14 +5,13 @@ from __future__ import annotations
 import ast
 import inspect
 import re
-import shutil
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from labkit.errors import LabError, first_few, quoted
-from labkit.files import read_limited
+from labkit.files import read_limited, replaced
 from labkit.packages.cells import Definition, Notebook
 from labkit.packages.fresh import lacking_imports
 from labkit.packages.gather import Gathered, gather
@@ -385,10 +384,10 @@ def _make(parts: Sequence[Part], target: Path, *, overwrite: bool) -> None:
                 todo='Take another name, or another folder.',
             )
     try:
-        if target.exists():
-            shutil.rmtree(target)
-        for part in parts:
-            part.write(target)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with replaced(target):
+            for part in parts:
+                part.write(target)
     except OSError as error:
         raise LabError(f'{error.filename} can not be made: {error.strerror}.') from error
 

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from labkit.errors import SetupError
-from labkit.files import read_json, write_atomically
+from labkit.files import read_json, remove, write_atomically
 from labkit.setup.installer import Progress, install
 from labkit.setup.machine import (
     VERSIONS,
@@ -285,8 +285,8 @@ def _make_anew(lacking: str, requirements: Sequence[str]) -> None:
     except BaseException:
         _put_back()
         raise
-    if ASIDE.exists():
-        shutil.rmtree(ASIDE)
+    if os.path.lexists(ASIDE):
+        remove(ASIDE)
 
 
 def _set_aside() -> None:
@@ -296,8 +296,8 @@ def _set_aside() -> None:
     if ASIDE.exists() and _read_stamp() == {}:
         _clear()  # a run that was killed has set one aside, and has not finished this one
     else:
-        if ASIDE.exists():
-            shutil.rmtree(ASIDE)
+        if os.path.lexists(ASIDE):
+            remove(ASIDE)
         VENV.rename(ASIDE)
 
 
@@ -328,10 +328,7 @@ def _check_space() -> None:
 def _clear() -> None:
     """Remove what this course has begun to make, the stamp that says so last."""
     for path in sorted(VENV.iterdir(), key=lambda path: path == STAMP):
-        if path.is_dir() and not path.is_symlink():
-            shutil.rmtree(path)
-        else:
-            path.unlink()
+        remove(path)
 
 
 def _create(python: str) -> None:

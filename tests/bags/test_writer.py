@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import sqlite3
 from collections.abc import Sequence
 from contextlib import closing
@@ -255,6 +257,33 @@ def test_only_a_bag_is_replaced(tmp_path: Path) -> None:
         with pytest.raises(LabError, match='is no folder'):
             BagWriter(tmp_path / name, overwrite=True)
     assert (tmp_path / 'work' / 'thesis.txt').read_text() == 'all of it'
+
+
+def test_folders_in_a_bag_are_not_removed_with_it(tmp_path: Path, drive: list[Stored]) -> None:
+    path = write(tmp_path / 'drive', 'mcap', drive)
+    (path / 'raw.mcap').mkdir()
+    (path / 'raw.mcap' / 'thesis.txt').write_text('all of it')
+    with pytest.raises(LabError, match=r"holds 'raw\.mcap', too"):
+        BagWriter(path, overwrite=True)
+    assert (path / 'raw.mcap' / 'thesis.txt').read_text() == 'all of it'
+
+
+def test_a_bag_is_replaced_by_one_that_can_be_made(
+    tmp_path: Path, drive: list[Stored], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = write(tmp_path / 'drive', 'mcap', drive)
+    before = (path / 'drive_0.mcap').read_bytes()
+
+    def refuse(*_: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(BagWriter, '_begin_file', refuse)
+    with pytest.raises(LabError, match='can not be written: No space left'):
+        BagWriter(path, overwrite=True)
+    assert (path / 'drive_0.mcap').read_bytes() == before
+    with pytest.raises(LabError, match='can not be written: No space left'):
+        BagWriter(tmp_path / 'other')
+    assert [folder.name for folder in tmp_path.iterdir()] == ['drive']
 
 
 def test_a_folder_that_can_not_be_made_is_told(tmp_path: Path) -> None:

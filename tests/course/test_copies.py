@@ -212,3 +212,30 @@ def test_it_works_where_the_folder_was(work: Path, save: Save, tmp_path: Path) -
     done = subprocess.run(['sh', '-c', script], env=env, capture_output=True, text=True)
     assert done.returncode == 0, done
     assert source_of(work / TALKER) == 'mine'
+
+
+def test_nothing_is_restored_through_a_link(work: Path, save: Save, tmp_path: Path) -> None:
+    save(TALKER, notebook('one'), '2026-11-26 09:00:00')
+    save(TALKER, notebook('two'), '2026-11-26 09:01:00')
+    fresh = learner_folder.fresh_lesson('02')[1]
+    target = tmp_path / 'shared.ipynb'
+    target.write_bytes(fresh)
+    (work / TALKER).unlink()
+    (work / TALKER).symlink_to(target)
+    copies.restore('02')
+    assert source_of(work / TALKER) == 'two' and not (work / TALKER).is_symlink()
+    assert target.read_bytes() == fresh
+
+
+def test_no_copy_is_deleted_through_a_link(
+    work: Path, save: Save, hook: Callable[..., None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    elsewhere = work.parent / 'elsewhere'
+    elsewhere.mkdir()
+    (elsewhere / '2026-01-01 09:00:00.gz').write_bytes(b'x' * 10_000)
+    copies.copies_folder().mkdir(parents=True)
+    (copies.copies_folder() / START).symlink_to(elsewhere)
+    monkeypatch.setitem(hook.__globals__, '_MOST_BYTES', 1)
+    for minute in range(3):
+        save(TALKER, notebook(f'number {minute}'), f'2026-11-26 09:0{minute}:00')
+    assert [path.name for path in elsewhere.iterdir()] == ['2026-01-01 09:00:00.gz']

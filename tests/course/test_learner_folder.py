@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import stat
@@ -204,3 +205,46 @@ def test_file_instead_of_the_folder(lessons: Path) -> None:
     with pytest.raises(SetupError, match='Move it away'):
         learner_folder.copy_lessons()
     assert learner_folder.WORK.read_text() == 'notes'
+
+
+@pytest.fixture
+def linked(lessons: Path, work: Path) -> Path:
+    """Give a file outside of the folder, untouched, that a relative link in it leads to."""
+    (work.parent / 'shared').mkdir()
+    target = work.parent / 'shared' / TALKER
+    (work / TALKER).rename(target)
+    (work / TALKER).symlink_to(f'../shared/{TALKER}')
+    (lessons / TALKER).write_text(notebook('newer'))
+    return target
+
+
+def test_an_update_writes_through_no_link(work: Path, linked: Path) -> None:
+    before = linked.read_bytes()
+    (said,) = learner_folder.copy_lessons()
+    assert TALKER in said and 'labkit reset 02' in said
+    assert (work / TALKER).is_symlink() and linked.read_bytes() == before
+
+
+def test_a_reset_keeps_a_link_and_what_it_leads_to(work: Path, linked: Path) -> None:
+    before = linked.read_bytes()
+    learner_folder.reset('02')
+    assert source_of(work / TALKER) == 'newer' and not (work / TALKER).is_symlink()
+    assert linked.read_bytes() == before
+    backup = work / 'backups' / '02_talker_listener.backup-1.ipynb'
+    assert backup.read_bytes() == before
+
+
+def test_backups_on_another_disk_lose_nothing(work: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The folder for them is a link to it; files can't be renamed from one disk to another."""
+
+    def refuse(*_paths: object) -> None:
+        raise OSError(errno.EXDEV, os.strerror(errno.EXDEV))
+
+    (work / TALKER).write_text(notebook('mine'))
+    monkeypatch.setattr(os, 'link', refuse)
+    monkeypatch.setattr(os, 'replace', refuse)
+    monkeypatch.setattr(learner_folder, 'copy_lessons', list)
+    with pytest.raises(LabError, match='cross-device'):
+        learner_folder.reset('02')
+    assert source_of(work / TALKER) == 'mine'
+    assert list((work / 'backups').iterdir()) == []

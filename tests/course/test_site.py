@@ -77,3 +77,14 @@ def test_a_folder_with_something_else_is_left_alone(tmp_path: Path) -> None:
     with pytest.raises(LabError, match='holds something else'):
         site.build_site(tmp_path)
     assert (tmp_path / 'thesis.txt').is_file()
+
+
+def test_a_link_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / 'built').mkdir()
+    for name in ('.buildinfo', 'thesis.txt'):
+        (tmp_path / 'built' / name).write_text('years of work')
+    (tmp_path / 'site').symlink_to('built')
+    with pytest.raises(LabError, match='is a link') as told:
+        site.build_site(tmp_path / 'site')
+    assert str(tmp_path / 'built') in told.value.todo
+    assert len(list((tmp_path / 'built').iterdir())) == 2

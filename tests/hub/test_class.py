@@ -13,8 +13,8 @@ import bcrypt
 import pytest
 
 from labkit.__main__ import main
-from labkit.errors import LabError
-from labkit.hub import command, start
+from labkit.errors import LabError, SetupError
+from labkit.hub import command, proxy, start
 from labkit.hub.class_list import Member, read_class
 from labkit.hub.passwords import FIRST_PASSWORDS, HASHES, make_passwords
 from labkit.hub.sessions import note_hub, noted_hub
@@ -154,6 +154,22 @@ def test_what_the_command_lets_pass(
         main(['hub', '--class', str(path), *options])
     passed = [option for option in options if 'image' not in option]
     assert seen[0][-len(passed) - 1 :] == ['--', *passed]
+
+
+def test_a_proxy_that_can_not_be_fetched_costs_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / 'share' / 'labkit-hub'
+    folder.mkdir(parents=True)
+    (folder / 'package-lock.json').write_text('of an older version')
+    monkeypatch.setattr(proxy, '_FOLDER', folder)
+    monkeypatch.setattr(proxy, '_node', lambda: tmp_path)
+    failed = subprocess.CompletedProcess([], 1, stdout='npm error network')
+    monkeypatch.setattr(proxy, 'run', lambda *_, **__: failed)
+    with pytest.raises(SetupError):
+        proxy.install_proxy()
+    assert (folder / 'package-lock.json').read_text() == 'of an older version'
+    assert list(folder.parent.iterdir()) == [folder]
 
 
 def test_where_the_hub_was_is_noted(tmp_path: Path) -> None:

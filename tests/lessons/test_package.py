@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import shutil
 import subprocess
 import sys
@@ -10,8 +11,10 @@ from pathlib import Path
 import built_once
 import pytest
 
+from labkit.lessons.package import learner_workspace as workspace_module
 from labkit.lessons.package.learner_workspace import workspace
-from labkit.lessons.package.made import make_broken
+from labkit.lessons.package.made import BROKEN, make_broken
+from labkit.lessons.your_own_machine.made import COURIER, make_courier
 from labkit.packages.skeleton import Part, Skeleton
 
 WORKSPACE = """
@@ -59,6 +62,52 @@ def test_the_broken_package_is_made_anew_only_when_that_is_asked_for(tmp_path, m
     setup.write_text('repaired')
     assert Path(make_broken()).read_text() == 'repaired'
     assert Path(make_broken(overwrite=True)).read_text() == broken
+
+
+@pytest.mark.parametrize('overwrite', [False, True])
+def test_no_package_is_made_through_a_link(tmp_path, monkeypatch, overwrite):
+    monkeypatch.chdir(tmp_path)
+    own = tmp_path / 'repository'
+    (own / BROKEN).mkdir(parents=True)
+    (own / 'setup.py').write_text('years of work')
+    place = tmp_path / 'ros2_ws' / 'src' / BROKEN
+    place.parent.mkdir(parents=True)
+    # Without being asked, what is there is left, and what leads nowhere is nothing.
+    place.symlink_to(own if overwrite else 'nowhere')
+    make_broken(overwrite=overwrite)
+    assert sorted(path.name for path in own.iterdir()) == [BROKEN, 'setup.py']
+    assert (own / 'setup.py').read_text() == 'years of work'
+    assert not place.is_symlink() and (place / 'package.xml').is_file()
+
+
+def test_no_courier_is_made_through_a_link(tmp_path, monkeypatch):
+    monkeypatch.setattr(workspace_module, '_made', [tmp_path / 'ros2_ws'])
+    own, place = tmp_path / 'repository', tmp_path / 'ros2_ws' / 'src' / COURIER
+    own.mkdir()
+    (own / 'package.xml').write_text('years of work')
+    place.parent.mkdir(parents=True)
+    place.symlink_to(own)
+    assert make_courier() == place and not place.is_symlink()
+    assert (own / 'package.xml').read_text() == 'years of work'
+    assert [path.name for path in own.iterdir()] == ['package.xml']
+
+
+@pytest.mark.parametrize('make', [lambda: make_broken(overwrite=True), make_courier])
+def test_a_package_that_can_not_be_made_costs_nothing(tmp_path, monkeypatch, make):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(workspace_module, '_made', [tmp_path / 'ros2_ws'])
+    (tmp_path / 'ros2_ws' / 'src').mkdir(parents=True)
+    make()
+    (place,) = (tmp_path / 'ros2_ws' / 'src').iterdir()
+    (place / 'setup.py').write_text('repaired')
+
+    def refuse(part, folder):
+        raise OSError(errno.ENOSPC, 'No space left on device', str(folder))
+
+    monkeypatch.setattr(Part, 'write', refuse)
+    with pytest.raises(OSError, match='No space'):
+        make()
+    assert (place / 'setup.py').read_text() == 'repaired'
 
 
 def test_what_is_recorded_has_a_workspace_that_is_always_called_the_same(script, tmp_path):

@@ -243,6 +243,23 @@ def test_a_folder_that_is_there(notebook, kernel):
     assert (own / 'setup.py').exists()
 
 
+def test_a_package_that_can_not_be_written_costs_nothing(notebook, kernel):
+    notebook(TALKER, EXPORT.format('Talker'))
+    own = kernel.folder / 'src/talk'
+    (own / 'notes.txt').write_text('mine')
+    full = """
+        from labkit.packages.skeleton import Part
+
+        def refuse(part, folder):
+            raise OSError(28, 'No space left on device', part.path)
+
+        Part.write, write = refuse, Part.write
+    """
+    assert 'can not be made: No space left' in notebook(full, EXPORT.format('Talker')).error
+    assert (own / 'notes.txt').read_text() == 'mine'
+    assert [path.name for path in own.parent.iterdir()] == ['talk']
+
+
 @pytest.mark.slow('exports several packages')
 def test_a_folder_of_another_name_that_has_the_package(notebook, kernel):
     notebook(TALKER, EXPORT.format('Talker'))

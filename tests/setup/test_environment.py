@@ -243,6 +243,17 @@ def test_an_environment_that_can_not_be_replaced_is_kept(course: Course) -> None
     assert not course.folder.joinpath('.venv.old').exists()
 
 
+def test_a_link_where_the_old_one_waits_goes_alone(course: Course) -> None:
+    as_if_made(course.venv, course.folder / 'before' / '.venv')
+    behind = course.folder.with_name('elsewhere')
+    behind.mkdir()
+    (behind / 'thesis.txt').write_text('years of work')
+    course.folder.joinpath('.venv.old').symlink_to(behind)
+    course.require('./missing-1.0-py3-none-any.whl')
+    assert 'missing-1.0' in sentence(course.make())
+    assert (behind / 'thesis.txt').read_text() == 'years of work'
+
+
 def test_a_full_disk_does_not_cost_the_environment(course: Course) -> None:
     as_if_made(course.venv, course.folder / 'before' / '.venv')
     # Afterwards, on that disk, what is left is printed.

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-import shutil
 from pathlib import Path
 
+from labkit.files import replaced
 from labkit.lessons.package.learner_workspace import NAME, workspace
 
 __all__ = ['BROKEN', 'make_broken']
@@ -66,7 +66,6 @@ def make_broken(*, overwrite: bool = False) -> str:
     path = folder / 'setup.py'
     if folder.exists() and not overwrite:
         return os.path.relpath(path)
-    shutil.rmtree(folder, ignore_errors=True)
     package = Skeleton(
         name=BROKEN,
         maintainer='me',
@@ -85,7 +84,9 @@ def make_broken(*, overwrite: bool = False) -> str:
         Part(f'{BROKEN}/teller.py', _TELLER),
         Part(f'{BROKEN}/hearer.py', _HEARER),
     ]
-    for part in parts:
-        part.write(folder)
-    path.write_text(path.read_text().replace("teller:main',\n", "teller:main'\n"))
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with replaced(folder):
+        for part in parts:
+            part.write(folder)
+        path.write_text(path.read_text().replace("teller:main',\n", "teller:main'\n"))
     return os.path.relpath(path)

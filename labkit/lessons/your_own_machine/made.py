@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
+from labkit.files import replaced
 from labkit.lessons.package.learner_workspace import make_workspace
 
 __all__ = ['COURIER', 'make_courier']
@@ -55,7 +55,6 @@ def make_courier() -> Path:
     from labkit.packages.skeleton import Part, Skeleton
 
     folder = make_workspace() / 'src' / COURIER
-    shutil.rmtree(folder, ignore_errors=True)
     package = Skeleton(
         name=COURIER,
         maintainer='me',
@@ -66,6 +65,7 @@ def make_courier() -> Path:
         test_dependencies=['python3-pytest'],
         scripts=[('courier', f'{COURIER}.courier:main')],
     )
-    for part in [*package.parts(), Part(f'{COURIER}/courier.py', _MODULE)]:
-        part.write(folder)
+    with replaced(folder):
+        for part in [*package.parts(), Part(f'{COURIER}/courier.py', _MODULE)]:
+            part.write(folder)
     return folder
