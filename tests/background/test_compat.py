@@ -243,6 +243,24 @@ def test_every_private_name_is_here():
         assert f'compat.{name}' in source, f'{name} has no contract test'
 
 
+def test_what_forked_processes_print_comes_by_no_port(kernel):
+    code = """
+import multiprocessing, os, psutil, sys
+own = psutil.Process().net_connections('inet')
+print([connection.laddr for connection in own])
+sys.stdout.flush()
+child = multiprocessing.get_context('fork').Process(target=print, args=('printed by a child',))
+child.start(); child.join()
+if os.fork() == 0:
+    print('and by another', flush=True)
+    os._exit(0)
+"""
+    request = kernel.start(code)
+    kernel.finish(request)
+    shown = kernel.wait_for_output(request, 'and by another')
+    assert shown.startswith('[]\n') and 'printed by a child\n' in shown
+
+
 def test_text_is_written_for_a_request(kernel):
     kernel.run('import sys\nfrom labkit.background import compat')
     write = 'compat.write_for(compat.running_request(), {}, "word\\n")'

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import socket
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,6 +11,8 @@ from pathlib import Path
 import pytest
 from hub.machine import ROOT, Hub, Machine
 from hub.person import Notebook, Person
+
+from labkit.domain_ids import PORT_BETWEEN, ports
 
 # Everybody's server has this port, at an address of its own: the attacker need not guess it.
 PORT = 18_888
@@ -73,6 +77,15 @@ try:
 except OSError as error:
     print('refused:', error)
 """
+# All that takes TCP connections or UDP datagrams: account, kind, address, port, what reads it.
+LISTEN = """
+import json, psutil
+print(json.dumps([
+    (p.username(), c.type.name, c.laddr.ip, c.laddr.port)
+    for p in psutil.process_iter() for c in p.net_connections('inet')
+    if c.status in ('LISTEN', 'NONE') and c.laddr != c.raddr
+]))
+"""
 
 
 @pytest.fixture(scope='module')
@@ -127,6 +140,44 @@ def test_each_server_has_an_address_and_answers_nobody_but_the_hub(
     assert len({address, other, '127.0.0.1', ''}) == 4
     said = hub.machine.run(*as_account(hub, 'ben', ASK, address, PORT)).stdout
     assert said.startswith('refused:'), said
+
+
+@pytest.mark.slow('a hub, with servers and kernels')
+def test_all_that_listens_is_known_and_told(hub: Hub, notebooks: dict[str, Notebook]) -> None:
+    anna = notebooks['anna']
+    shown = anna.run(
+        'import labkit as lab; from rclpy.node import Node; from std_msgs.msg import String\n'
+        'node = lab.spin(Node("of_anna")); node.create_publisher(String, "chatter", 10)\n'
+        'display(lab.monitor("/chatter"), lab.graph())\n'
+        'print("domain", node.context.get_domain_id())'
+    )
+    found: dict[tuple[str, str], set[tuple[str, int]]] = {}
+    listed = hub.machine.run(sys.executable, '-c', LISTEN).stdout
+    for account, kind, ip, port in json.loads(listed):
+        found.setdefault((account, kind), set()).add((ip, port))
+    tcp = {account: places for (account, kind), places in found.items() if kind == 'SOCK_STREAM'}
+    assert tcp == {
+        'root': {('127.0.0.1', hub.port + number) for number in range(3)},
+        **{name: {(address_of(hub, name), PORT)} for name in notebooks},
+    }
+    assert ('root', 'SOCK_DGRAM') not in found
+    udp = found['anna', 'SOCK_DGRAM']
+    usual = {*ports(int(shown.split()[-1])), *range(PORT_BETWEEN, 7400)}
+    ros = {(ip, port) for ip, port in udp if port in usual}
+    assert len(ros) >= 3 and {ip for ip, _ in ros} == {'127.0.0.1'}
+    # What Fast DDS sends from could receive, too. Nobody takes what comes.
+    for place in udp - ros:
+        with socket.socket(type=socket.SOCK_DGRAM) as sender:
+            sender.sendto(b'hello', place)
+    assert anna.run('print(6 * 7)').strip() == '42'
+    waiting = {
+        int(line.split()[1].partition(':')[2], 16): int(line.split()[4].partition(':')[2], 16)
+        for line in Path('/proc/net/udp').read_text().splitlines()[1:]
+    }
+    assert all(waiting[port] for _, port in udp - ros), (udp, waiting)
+    told = (ROOT / 'docs' / 'hub.md').read_text()
+    for words in ('pages', 'own port', 'orders', 'server', 'ROS 2 takes', 'ROS 2 sends'):
+        assert f'| {words} |' in told, words
 
 
 def test_nobody_looks_into_the_memory_of_others(hub: Hub, notebooks: dict[str, Notebook]) -> None:
