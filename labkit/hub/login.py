@@ -9,9 +9,9 @@ from typing import Any
 import bcrypt
 from firstuseauthenticator import FirstUseAuthenticator  # type: ignore[import-untyped]
 from firstuseauthenticator.firstuseauthenticator import (  # type: ignore[import-untyped]
-    CustomLoginHandler,
     ResetPasswordHandler,
 )
+from jupyterhub.handlers import LoginHandler
 from jupyterhub.orm import Role, object_session
 from traitlets import Set
 
@@ -107,5 +107,9 @@ class ClassAuthenticator(FirstUseAuthenticator):  # type: ignore[misc]
         """
 
     def get_handlers(self, app: Any) -> list[tuple[str, type]]:
-        """Return the pages for logging in and for changing one's password."""
-        return [(r'/login', CustomLoginHandler), (r'/auth/change-password', _ChangePassword)]
+        """Return the pages for logging in and for changing one's password.
+
+        The first is JupyterHub's own: that of jupyterhub-firstuseauthenticator (1.1) can't show
+        what is wrong with a form that was open for long.
+        """
+        return [(r'/login', LoginHandler), (r'/auth/change-password', _ChangePassword)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import re
 import shutil
 import ssl
 from collections.abc import Iterator
@@ -117,6 +118,22 @@ def test_a_password_that_one_changes(hub: Hub, trust: ssl.SSLContext) -> None:
     late = Person(hub, 'anna', trust)
     assert [late.log_in(word).status for word in (first, 'x' * 73, 'x' * 100)] == [403] * 3
     assert '/hub/login' not in late.log_in('x' * 72).address
+
+
+def test_a_form_that_was_open_for_long_is_told_and_shown_anew(
+    hub: Hub, trust: ssl.SSLContext
+) -> None:
+    ben = Person(hub, 'ben', trust)
+    fields = {'username': 'ben', 'password': hub.password('ben'), '_xsrf': 'of an hour ago'}
+    answer = ben.ask('/hub/login', 'POST', fields, type='form')
+    assert answer.status == 403 and 'Login form invalid or expired. Try again.' in answer.text
+    (form,) = re.findall(r'name="_xsrf"\s+value="([^"]+)"', answer.text)
+    again = ben.ask('/hub/login', 'POST', fields | {'_xsrf': form}, type='form')
+    assert again.status == 200 and '/hub/login' not in again.address
+    # The other form of ours; JupyterHub's words for it.
+    answer = ben.ask('/hub/auth/change-password', 'POST', fields, type='form')
+    assert answer.status == 403 and 'XSRF cookie does not match' in answer.text
+    assert 'Traceback' not in hub.log
 
 
 def test_names_are_not_told_by_the_time_it_takes(
