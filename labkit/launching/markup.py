@@ -485,8 +485,8 @@ def _command_line(text: Text) -> list[Text]:
         if (not tokens or part.text[0].isspace()) and current:
             words.append(current)
             current = []
-        for token in tokens:
-            if token is not tokens[0] and current:
+        for number, token in enumerate(tokens):
+            if number and current:
                 words.append(current)
                 current = []
             current.append(TextSubstitution(text=token))

@@ -80,9 +80,8 @@ def _contents() -> dict[str, dict[str, Any]]:
     ros = {**_public(ros_actions), 'PushRosNamespace': ros_actions.PushROSNamespace}
     values = {name: ros.pop(name) for name in ('Parameter', 'ParameterFile', 'ParameterValue')}
     texts = _public(substitutions)
-    packages = ('FindPackagePrefix', 'FindPackageShare', 'ExecutableInPackage')
+    packages = ('FindPackage', 'FindPackagePrefix', 'FindPackageShare', 'ExecutableInPackage')
     in_packages = {name: texts.pop(name) for name in packages}
-    in_packages['FindPackage'] = in_packages['FindPackagePrefix']
     general = {
         name: value
         for name, value in _public(actions).items()

@@ -67,22 +67,32 @@ class EnvironmentVariable(Substitution):
         return perform(context, self.default)
 
 
-class FindPackagePrefix(Substitution):
-    """`$(find-pkg-prefix name)`: the folder in which a package is installed."""
+class FindPackage(Substitution):
+    """A folder of a package; the classes below say which, in `find`."""
 
     def __init__(self, package: Any) -> None:
         self.package = pieces(package)
 
+    def find(self, package_name: str) -> str:
+        """Return the folder."""
+        raise NotImplementedError
+
     def perform(self, context: Context) -> str:
-        return str(prefix_of(perform(context, self.package)))
+        return self.find(perform(context, self.package))
 
 
-class FindPackageShare(FindPackagePrefix):
+class FindPackagePrefix(FindPackage):
+    """`$(find-pkg-prefix name)`: the folder in which a package is installed."""
+
+    def find(self, package_name: str) -> str:
+        return str(prefix_of(package_name))
+
+
+class FindPackageShare(FindPackage):
     """`$(find-pkg-share name)`: the folder with the shared files of a package."""
 
-    def perform(self, context: Context) -> str:
-        package = perform(context, self.package)
-        return str(prefix_of(package) / 'share' / package)
+    def find(self, package_name: str) -> str:
+        return str(prefix_of(package_name) / 'share' / package_name)
 
 
 class ExecutableInPackage(Substitution):
