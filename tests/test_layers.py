@@ -35,7 +35,7 @@ FLOORS = {
     'labkit.silent': 2.4,
     'labkit.bags': 3,
     'labkit.packages': 3,
-    'labkit.launching': 3,
+    'labkit.launching': 3.1,
     'labkit.ros2': 4,
     'labkit.sim': 4,
     'labkit.checkup': 4,

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import math
 import os
-import shlex
-import shutil
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from labkit.errors import did_you_mean
 from labkit.launching import events
+from labkit.launching.event_handlers import BaseEventHandler
 from labkit.launching.model import (
     Action,
-    Condition,
     Context,
     LaunchDescription,
     LaunchError,
@@ -29,26 +26,25 @@ __all__ = [
     'AppendEnvironmentVariable',
     'DeclareLaunchArgument',
     'EmitEvent',
-    'ExecuteProcess',
     'GroupAction',
     'IncludeLaunchDescription',
     'LogInfo',
     'OpaqueFunction',
+    'PopEnvironment',
+    'PopLaunchConfigurations',
+    'PushEnvironment',
+    'PushLaunchConfigurations',
     'RegisterEventHandler',
     'ResetEnvironment',
     'ResetLaunchConfigurations',
     'SetEnvironmentVariable',
     'SetLaunchConfiguration',
     'Shutdown',
-    'Start',
     'TimerAction',
     'UnregisterEventHandler',
     'UnsetEnvironmentVariable',
     'UnsetLaunchConfiguration',
-    'Written',
 ]
-
-OUTPUTS = ('log', 'screen', 'both', 'own_log', 'full')
 
 
 def setting(context: Context, value: Any, kind: str) -> Any:
@@ -85,12 +81,7 @@ class DeclareLaunchArgument(Action):
         known = context.launch_configurations
         if self.name not in known:
             if self.default_value is None:
-                raise LaunchError(
-                    f'Required launch argument "{self.name}" (description: '
-                    f'"{self.description}") was not provided.',
-                    todo=f'Give it a value, {self.name}:=value on the command line or <arg> in '
-                    'an <include>, or a default here.',
-                )
+                raise self.missing()
             known[self.name] = perform(context, self.default_value)
         if self.choices is not None and known[self.name] not in self.choices:
             raise LaunchError(
@@ -98,6 +89,16 @@ class DeclareLaunchArgument(Action):
                 f'options are: {self.choices}',
                 todo=did_you_mean(known[self.name], self.choices),
             )
+
+    def missing(self) -> LaunchError:
+        """Return the error that it was given no value."""
+        return LaunchError(
+            f'Required launch argument "{self.name}" (description: "{self.description}") was not '
+            'provided.',
+            todo=f'Give it a value, {self.name}:=value on the command line or <let> in the '
+            '<include> of this file, or a default here.',
+            place=self.place,
+        )
 
     def describe(self) -> str:
         return f'DeclareLaunchArgument({self.name!r})'
@@ -133,12 +134,11 @@ class ResetLaunchConfigurations(Action):
         self, launch_configurations: Mapping[Any, Any] | None = None, **options: Any
     ) -> None:
         super().__init__(**options)
-        self.kept = _pairs(launch_configurations)
+        self.kept = pairs_in(launch_configurations)
 
     def execute(self, context: Context) -> None:
         kept = {perform(context, name): perform(context, value) for name, value in self.kept}
         context.launch_configurations = kept
-        context.settings = {}
 
 
 class SetEnvironmentVariable(SetLaunchConfiguration):
@@ -181,7 +181,35 @@ class ResetEnvironment(Action):
     """Go back to the environment variables of the terminal: `<reset_env>`."""
 
     def execute(self, context: Context) -> None:
-        context.environment = dict(os.environ)
+        context.reset_environment()
+
+
+class PushEnvironment(Action):
+    """Note the environment variables, for `PopEnvironment`."""
+
+    def execute(self, context: Context) -> None:
+        context.push_environment()
+
+
+class PopEnvironment(Action):
+    """Go back to the environment variables that were noted last."""
+
+    def execute(self, context: Context) -> None:
+        context.pop_environment()
+
+
+class PushLaunchConfigurations(Action):
+    """Note the launch configurations, for `PopLaunchConfigurations`."""
+
+    def execute(self, context: Context) -> None:
+        context.push_configurations()
+
+
+class PopLaunchConfigurations(Action):
+    """Go back to the launch configurations that were noted last."""
+
+    def execute(self, context: Context) -> None:
+        context.pop_configurations()
 
 
 class LogInfo(Action):
@@ -230,12 +258,12 @@ class GroupAction(Action):
         kept = [SetLaunchConfiguration(name, value) for name, value in self.kept.items()]
         if not self.scoped:
             return [*kept, *self.actions]
-        begin: list[Action] = [_Step(Context.open_scope)]
+        begin: list[Action] = [PushLaunchConfigurations(), PushEnvironment()]
         if self.forwarding:
             begin += kept
         else:
             begin += [ResetEnvironment(), ResetLaunchConfigurations(self.kept)]
-        return [*begin, *self.actions, _Step(Context.close_scope)]
+        return [*begin, *self.actions, PopEnvironment(), PopLaunchConfigurations()]
 
     def inside(self) -> Iterable[tuple[Sequence[Action], bool]]:
         return [(self.actions, self.condition is not None)]
@@ -259,7 +287,7 @@ class IncludeLaunchDescription(Action):
         super().__init__(**options)
         source = launch_description_source
         self.source = source if isinstance(source, Source) else Source(source)
-        self.launch_arguments = _pairs(launch_arguments)
+        self.launch_arguments = pairs_in(launch_arguments)
 
     def execute(self, context: Context) -> Sequence[Action]:
         path = os.path.abspath(perform(context, self.source.path))
@@ -270,6 +298,7 @@ class IncludeLaunchDescription(Action):
                 f'The file includes itself: {names}.', todo='Take one of the <include> out.'
             )
         description = self.source.load(path)
+        self._check_arguments(context, description)
         arguments = [SetLaunchConfiguration(*pair) for pair in self.launch_arguments]
         for argument in arguments:
             argument.place = self.place
@@ -279,6 +308,26 @@ class IncludeLaunchDescription(Action):
             description,
             _Step(Context.leave_file),
         ]
+
+    def _check_arguments(self, context: Context, description: LaunchDescription) -> None:
+        """Raise a LaunchError if an argument that the file must be given is not given here."""
+        given = {perform(context, name) for name, _ in self.launch_arguments}
+        known: set[str] = set()
+        for argument, includes in declared([description]):
+            if argument.name in known or argument.default_value is not None:
+                known.add(argument.name)
+                continue
+            # Best effort, as in the real one: those given further inside count too.
+            inside = {name for one in includes for name in one.argument_names()}
+            if argument.name not in given | inside:
+                raise argument.missing()
+
+    def argument_names(self) -> set[str]:
+        """Return the names of the arguments that it gives, as far as they are known already."""
+        try:
+            return {perform(Context(), name) for name, _ in self.launch_arguments}
+        except LaunchError:
+            return set()
 
     def inside(self) -> Iterable[tuple[Sequence[Action], bool]]:
         try:
@@ -295,12 +344,15 @@ class Source:
 
     def __init__(self, launch_file_path: Any) -> None:
         self.path = pieces(launch_file_path)
+        self._loaded: dict[str, LaunchDescription] = {}
 
     def load(self, path: str) -> LaunchDescription:
-        """Return the description in a file."""
+        """Return the description in a file; it is read once."""
         from labkit.launching.launch_files import load
 
-        return load(path, self.form)
+        if path not in self._loaded:
+            self._loaded[path] = load(path, self.form)
+        return self._loaded[path]
 
 
 class OpaqueFunction(Action):
@@ -340,9 +392,17 @@ class TimerAction(Action):
         self.actions = list(actions)
 
     def execute(self, context: Context) -> None:
-        seconds = _not_below_0('The period of a timer', setting(context, self.period, 'float'))
+        seconds = not_below_0('The period of a timer', setting(context, self.period, 'float'))
         cancelled = setting(context, self.cancel_on_shutdown, 'bool')
-        context.timers.append(Timer(seconds, self.actions, cancelled, list(context.files)))
+        context.timers.append(
+            Timer(
+                seconds,
+                self.actions,
+                cancelled,
+                list(context.files),
+                dict(context.launch_configurations),
+            )
+        )
 
     def inside(self) -> Iterable[tuple[Sequence[Action], bool]]:
         return [(self.actions, True)]
@@ -351,44 +411,48 @@ class TimerAction(Action):
 class RegisterEventHandler(Action):
     """Let a handler handle events from now on."""
 
-    def __init__(self, event_handler: events.EventHandler, **options: Any) -> None:
+    def __init__(self, event_handler: BaseEventHandler, **options: Any) -> None:
         super().__init__(**options)
-        self.handler = event_handler
+        if isinstance(getattr(event_handler, 'entities', None), Action):
+            raise LaunchError('entities of an EventHandler is a list.', place=self.place)
+        self.event_handler = event_handler
 
     def execute(self, context: Context) -> None:
-        self.handler.files = list(context.files)
-        context.handlers.insert(0, self.handler)
+        context.register_event_handler(self.event_handler)
 
     def inside(self) -> Iterable[tuple[Sequence[Action], bool]]:
-        return [(self.handler.actions, True)]
+        return [(self.event_handler.actions, True)]
 
     def describe(self) -> str:
-        return f'RegisterEventHandler({type(self.handler).__name__})'
+        return f'{type(self).__name__}({type(self.event_handler).__name__})'
 
 
 class UnregisterEventHandler(RegisterEventHandler):
     """Let a handler handle no more events."""
 
     def execute(self, context: Context) -> None:
-        if self.handler in context.handlers:
-            context.handlers.remove(self.handler)
+        context.unregister_event_handler(self.event_handler)
 
     def inside(self) -> Iterable[tuple[Sequence[Action], bool]]:
         return ()
 
 
 class EmitEvent(Action):
-    """Let an event happen; here the event `Shutdown`."""
+    """Let an event happen."""
 
     def __init__(self, *, event: Any, **options: Any) -> None:
         super().__init__(**options)
-        if not isinstance(event, events.Shutdown):
-            raise LaunchError(f'EmitEvent takes Shutdown(...) here, and this is {event!r}.')
+        if not isinstance(event, events.Event):
+            raise LaunchError(
+                f'EmitEvent takes an event, and this is {event!r}.', place=self.place
+            )
         self.event = event
 
     def execute(self, context: Context) -> None:
-        reason = perform(context, pieces(self.event.reason))
-        context.events.append(events.Shutdown(reason))
+        event = self.event
+        if isinstance(event, events.Shutdown):
+            event = events.Shutdown(perform(context, pieces(event.reason)))
+        context.emit_event_sync(event)
 
 
 class Shutdown(EmitEvent):
@@ -398,7 +462,7 @@ class Shutdown(EmitEvent):
         super().__init__(event=events.Shutdown(reason), **options)
 
     def execute(self, context: Context) -> None:
-        event = context.locals.event
+        event = context.get_locals_as_dict().get('event')
         if isinstance(event, events.ProcessExited):
             context.say(
                 'INFO',
@@ -408,219 +472,33 @@ class Shutdown(EmitEvent):
         super().execute(context)
 
 
-@dataclass(frozen=True)
-class Written:
-    """A word of a command that is the path of a file which has yet to be written."""
-
-    text: str
-
-
-@dataclass
-class Start:
-    """A process that is to be started.
-
-    Attributes:
-        command: Its words. With `shell` they are joined and given to a shell.
-        is_node: Whether a node is expected to appear.
-        sigterm: Seconds from SIGINT to SIGTERM.
-        sigkill: Seconds from then to SIGKILL.
-        retries: How often it may be started again; below 0 without end.
-    """
-
-    action: ExecuteProcess
-    name: str
-    command: list[str | Written]
-    cwd: str | None
-    environment: dict[str, str]
-    shell: bool = False
-    output: str = 'log'
-    is_node: bool = False
-    respawn: bool = False
-    respawn_delay: float = 0.0
-    retries: int = -1
-    sigterm: float = 5.0
-    sigkill: float = 5.0
-    log_command: bool = False
+def declared(
+    actions: Iterable[Action], includes: tuple[IncludeLaunchDescription, ...] = ()
+) -> Iterator[tuple[DeclareLaunchArgument, tuple[IncludeLaunchDescription, ...]]]:
+    """Yield the arguments that do not depend on a condition, and the includes around each."""
+    for action in actions:
+        if isinstance(action, ResetLaunchConfigurations):
+            return  # what follows can not be given from outside
+        if action.condition is not None:
+            continue
+        if isinstance(action, DeclareLaunchArgument):
+            yield action, includes
+        around = (*includes, action) if isinstance(action, IncludeLaunchDescription) else includes
+        for inner, open_one in action.inside():
+            if not open_one:
+                yield from declared(inner, around)
 
 
-@dataclass
-class _Options:
-    """Options of `ExecuteProcess` by the names of the real one."""
-
-    shell: Any = False
-    output: Any = 'log'
-    cwd: Any = None
-    env: Mapping[Any, Any] | None = None
-    additional_env: Mapping[Any, Any] | None = None
-    respawn: Any = False
-    respawn_delay: Any = 0.0
-    respawn_max_retries: Any = -1
-    sigterm_timeout: Any = None
-    sigkill_timeout: Any = None
-    log_cmd: bool = False
-    # Without effect here: output comes at once, and is not kept twice.
-    emulate_tty: Any = False
-    cached_output: bool = False
-    refused: dict[str, Any] = field(default_factory=dict)
-
-
-class ExecuteProcess(Action):
-    """Start a program: `<executable>`.
-
-    Args:
-        cmd: Its words, each a text; with `shell` often one text.
-        name: What its output is marked with; by default the name of the program.
-        on_exit: Actions, or a function that returns some, for its end.
-        condition: Whether it is started.
-        options: See `_Options`.
-    """
-
-    is_node = False
-
-    def __init__(
-        self,
-        *,
-        cmd: Iterable[Any],
-        name: Any = None,
-        on_exit: Any = None,
-        condition: Condition | None = None,
-        **options: Any,
-    ) -> None:
-        super().__init__(condition=condition)
-        for word in ('prefix', 'output_format'):
-            if options.pop(word, None) is not None:
-                shown = 'launch-prefix' if word == 'prefix' else word
-                raise LaunchError(
-                    f'{shown} is not supported here: programs are started as they are.',
-                    place=self.place,
-                )
-        known = set(_Options.__dataclass_fields__) - {'refused'}
-        wrong = next((word for word in options if word not in known), None)
-        if wrong is not None:
-            raise LaunchError(
-                f'{type(self).__name__} has no argument {wrong!r}.',
-                todo=did_you_mean(wrong, [*known, 'cmd', 'name', 'on_exit', 'condition']),
-                place=self.place,
-            )
-        if isinstance(cmd, str):
-            raise LaunchError(
-                f'cmd is a list of words, and this is {cmd!r}.',
-                todo=f'cmd={shlex.split(cmd)!r}',
-                place=self.place,
-            )
-        self.command = [pieces(word) for word in cmd]
-        self.label = None if name is None else pieces(name)
-        self.options = _Options(**options)
-        self.on_exit = on_exit
-        self._executed = False
-
-    def execute(self, context: Context) -> None:
-        name, words = self.words(context)
-        start = self._start(context, words, name)
-        self._check(start)
-        if context.rehearsing:
-            return
-        if self._executed:
-            raise LaunchError(f'{start.name} was started already: one action, one process.')
-        self._executed = True
-        if self.on_exit is not None:
-            handler = events.OnProcessExit(target_action=self, on_exit=self.on_exit)
-            handler.files = list(context.files)
-            context.handlers.insert(0, handler)
-        context.starts.append(start)
-
-    def words(self, context: Context) -> tuple[str, list[str | Written]]:
-        """Return the name of the program, and the words of its command."""
-        words: list[str | Written] = [perform(context, word) for word in self.command]
-        if not words:
-            raise LaunchError('cmd is empty.')
-        return os.path.basename(str(words[0])), words
-
-    def _start(self, context: Context, command: list[str | Written], name: str) -> Start:
-        options = self.options
-        if self.label is not None:
-            name = perform(context, self.label)
-        context.counter += 1
-        environment = dict(context.environment)
-        if options.env is not None:
-            environment = _texts(context, options.env)
-        environment.update(_texts(context, options.additional_env or {}))
-        delay = setting(context, options.respawn_delay, 'float') or 0.0
-        configured = context.launch_configurations
-        return Start(
-            self,
-            f'{name}-{context.counter}',
-            command,
-            None if options.cwd is None else perform(context, pieces(options.cwd)),
-            environment,
-            shell=setting(context, options.shell, 'bool'),
-            output=self._output(context),
-            is_node=self.is_node,
-            respawn=setting(context, options.respawn, 'bool'),
-            respawn_delay=_not_below_0('respawn_delay', delay),
-            retries=setting(context, options.respawn_max_retries, 'int'),
-            sigterm=self._timeout(context, options.sigterm_timeout, 'sigterm_timeout', configured),
-            sigkill=self._timeout(context, options.sigkill_timeout, 'sigkill_timeout', configured),
-            log_command=options.log_cmd,
-        )
-
-    def _timeout(
-        self, context: Context, value: Any, name: str, configured: Mapping[str, str]
-    ) -> float:
-        chosen = configured.get(name, 5.0) if value is None else value
-        return _not_below_0(name, setting(context, chosen, 'float'))
-
-    def _output(self, context: Context) -> str:
-        chosen = self.options.output
-        if isinstance(chosen, Mapping):  # by stream: here both are shown, or none
-            chosen = 'screen' if 'screen' in str(chosen) else 'log'
-        output = context.environment.get('OVERRIDE_LAUNCH_PROCESS_OUTPUT') or perform(
-            context, pieces(chosen)
-        )
-        if output not in OUTPUTS:
-            raise LaunchError(
-                f'output is one of {", ".join(OUTPUTS)}, and this is {output!r}.',
-                todo=did_you_mean(output, OUTPUTS),
-            )
-        return output
-
-    def _check(self, start: Start) -> None:
-        """Raise a LaunchError if the program can't be found."""
-        program = start.command[0]
-        if start.shell or not isinstance(program, str):
-            return
-        folder = start.cwd or '.'
-        path = os.path.join(folder, program) if '/' in program else program
-        if shutil.which(path, path=start.environment.get('PATH', os.defpath)) is None:
-            raise LaunchError(
-                f'There is no program {program!r}.',
-                todo='A line of a shell needs shell="true".' if ' ' in program else '',
-            )
-        if start.cwd is not None and not os.path.isdir(start.cwd):
-            raise LaunchError(f'cwd is no folder: {start.cwd!r}')
-
-    def inside(self) -> Iterable[tuple[Sequence[Action], bool]]:
-        if self.on_exit is None or callable(self.on_exit):
-            return ()
-        return [([self.on_exit] if isinstance(self.on_exit, Action) else self.on_exit, True)]
-
-    def describe(self) -> str:
-        words = ' '.join(
-            ''.join(part.describe().strip("'") for part in word) for word in self.command
-        )
-        return f'{type(self).__name__}({words})'
-
-
-def _not_below_0(name: str, value: float) -> float:
+def not_below_0(name: str, value: float) -> float:
+    """Return a number of seconds, unless it is none."""
     if not 0 <= value < math.inf:
         raise LaunchError(f'{name} is {value}; it can not be below 0, nor without end.')
     return value
 
 
-def _pairs(value: Mapping[Any, Any] | Iterable[tuple[Any, Any]] | None) -> list[tuple[Text, Text]]:
+def pairs_in(
+    value: Mapping[Any, Any] | Iterable[tuple[Any, Any]] | None,
+) -> list[tuple[Text, Text]]:
+    """Return pairs of texts, of a dictionary or of pairs."""
     items = value.items() if isinstance(value, Mapping) else value or ()
     return [(pieces(name), pieces(text)) for name, text in items]
-
-
-def _texts(context: Context, values: Mapping[Any, Any]) -> dict[str, str]:
-    return {perform(context, name): perform(context, text) for name, text in _pairs(values)}

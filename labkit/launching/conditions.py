@@ -11,7 +11,13 @@ __all__ = [
     'LaunchConfigurationEquals',
     'LaunchConfigurationNotEquals',
     'UnlessCondition',
+    'evaluate_condition_expression',
 ]
+
+
+def evaluate_condition_expression(context: Context, expression: Any) -> bool:
+    """Return what a text, with its substitutions made, says as a condition."""
+    return truth(perform(context, pieces(expression)))
 
 
 class IfCondition(Condition):

@@ -1,192 +1,192 @@
-"""Events of a running launch, and what is done when they come."""
+"""Events of a running launch: what has happened, and what is asked of programs that run."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+import signal
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
 
-from labkit.launching.model import Action, Context, LaunchError
+from labkit.launching.model import Action, LaunchError, Timer, placed
 
 __all__ = [
     'Event',
-    'EventHandler',
     'ExecutionComplete',
-    'OnExecutionComplete',
-    'OnProcessExit',
-    'OnProcessIO',
-    'OnProcessStart',
-    'OnShutdown',
     'ProcessExited',
     'ProcessIO',
     'ProcessStarted',
+    'ProcessStderr',
+    'ProcessStdin',
+    'ProcessStdout',
+    'ProcessTargetedEvent',
+    'RunningProcessEvent',
     'Shutdown',
+    'ShutdownProcess',
+    'SignalProcess',
+    'TimerEvent',
+    'matches_action',
+    'matches_executable',
+    'matches_name',
+    'matches_pid',
 ]
+
+Matcher = Callable[[Any], bool]
+"""Which actions of programs are meant."""
 
 
 class Event:
-    """Something that has happened."""
+    """Something that has happened, or is to happen."""
+
+    name: ClassVar[str] = 'launch.Event'
 
 
 @dataclass
 class Shutdown(Event):
     """The launch is to end."""
 
-    reason: str = 'reason not given'
+    name: ClassVar[str] = 'launch.events.Shutdown'
+    reason: Any = 'reason not given'
     due_to_sigint: bool = False
-
-
-@dataclass
-class ProcessEvent(Event):
-    """Something that has happened to a process."""
-
-    action: Action
-    process_name: str
-    pid: int
-
-
-@dataclass
-class ProcessStarted(ProcessEvent):
-    """A process was started."""
-
-
-@dataclass
-class ProcessExited(ProcessEvent):
-    """A process has ended."""
-
-    returncode: int = 0
-
-
-@dataclass
-class ProcessIO(ProcessEvent):
-    """A process has written something."""
-
-    text: bytes = b''
-    fd: int = 1
-
-    from_stdout = property(lambda self: self.fd == 1)
-    from_stderr = property(lambda self: self.fd == 2)
 
 
 @dataclass
 class ExecutionComplete(Event):
     """An action has done all that it does."""
 
+    name: ClassVar[str] = 'launch.events.ExecutionComplete'
     action: Action
 
 
-class EventHandler:
-    """What to do when an event comes.
+@dataclass
+class TimerEvent(Event):
+    """The time of a timer has come."""
+
+    name: ClassVar[str] = 'launch.events.TimerEvent'
+    timer: Timer
+
+
+@dataclass
+class RunningProcessEvent(Event):
+    """Something that has happened to a program.
 
     Attributes:
-        kind: The class of the events.
-        target: The action that they are about; None for any, or a function that chooses.
-        todo: The actions, or a function that returns some.
-        files: The launch files in which it stands, the innermost last.
+        process_name: What its output is marked with, such as `'talker-1'`.
+        cmd: The words of its command.
+        cwd: The folder in which it runs; None for that of the launch.
+        env: Its environment variables.
     """
 
-    kind: type[Event] = Event
-    # Name of the argument with what is to be done.
-    word = 'entities'
+    name: ClassVar[str] = 'launch.events.process.RunningProcessEvent'
+    action: Action
+    process_name: str
+    pid: int
+    cmd: Sequence[str] = ()
+    cwd: str | None = None
+    env: Mapping[str, str] = field(default_factory=dict)
 
-    def __init__(
-        self, *, target_action: Any = None, handle_once: bool = False, **todo: Any
-    ) -> None:
-        name = type(self).__name__
-        if set(todo) != {self.word}:
-            wrong = next(iter(set(todo) - {self.word}), None)
+    execute_process_action = property(lambda self: self.action)
+
+
+@dataclass
+class ProcessStarted(RunningProcessEvent):
+    """A program was started."""
+
+    name: ClassVar[str] = 'launch.events.process.ProcessStarted'
+
+
+@dataclass
+class ProcessExited(RunningProcessEvent):
+    """A program has ended."""
+
+    name: ClassVar[str] = 'launch.events.process.ProcessExited'
+    returncode: int = 0
+
+
+@dataclass
+class ProcessIO(RunningProcessEvent):
+    """A program has written something."""
+
+    name: ClassVar[str] = 'launch.events.process.ProcessIO'
+    fd: ClassVar[int] = 1
+    text: bytes = b''
+
+    from_stdin = property(lambda self: self.fd == 0)
+    from_stdout = property(lambda self: self.fd == 1)
+    from_stderr = property(lambda self: self.fd == 2)
+
+
+@dataclass
+class ProcessStdin(ProcessIO):
+    """A program is to read something; no program of a launch does."""
+
+    name: ClassVar[str] = 'launch.events.process.ProcessStdin'
+    fd: ClassVar[int] = 0
+
+
+@dataclass
+class ProcessStdout(ProcessIO):
+    """A program has written something to its standard output."""
+
+    name: ClassVar[str] = 'launch.events.process.ProcessStdout'
+
+
+@dataclass
+class ProcessStderr(ProcessIO):
+    """A program has written something to its standard error."""
+
+    name: ClassVar[str] = 'launch.events.process.ProcessStderr'
+    fd: ClassVar[int] = 2
+
+
+class ProcessTargetedEvent(Event):
+    """Something that is asked of the programs that a function chooses."""
+
+    name: ClassVar[str] = 'launch.events.process.ProcessTargetedEvent'
+
+    def __init__(self, *, process_matcher: Matcher) -> None:
+        self.process_matcher = process_matcher
+
+
+class ShutdownProcess(ProcessTargetedEvent):
+    """Programs are to end, first by SIGINT."""
+
+    name: ClassVar[str] = 'launch.events.process.ShutdownProcess'
+
+
+class SignalProcess(ProcessTargetedEvent):
+    """Programs are sent a signal."""
+
+    name: ClassVar[str] = 'launch.events.process.SignalProcess'
+
+    def __init__(self, *, signal_number: str | signal.Signals, process_matcher: Matcher) -> None:
+        super().__init__(process_matcher=process_matcher)
+        self.signal_name = getattr(signal_number, 'name', str(signal_number))
+        if self.signal_name not in signal.Signals.__members__:
             raise LaunchError(
-                f'{name} has no argument {wrong!r}.' if wrong else f'{name} has nothing to do.',
-                todo=f'{name}(target_action=..., {self.word}=[...])',
+                f'signal_number is a signal, and this is {signal_number!r}.',
+                todo='signal.SIGINT, of the module signal',
+                place=placed(),
             )
-        self.target = target_action
-        self.todo = todo[self.word]
-        self.files: list[str] = []
-        self._once = handle_once
-        self._done = False
-
-    def matches(self, event: Event) -> bool:
-        """Return whether an event is one to handle."""
-        if not isinstance(event, self.kind) or (self._once and self._done):
-            return False
-        if self.target is None or self.target is getattr(event, 'action', None):
-            return True
-        return not isinstance(self.target, Action) and bool(self.target(event.action))  # type: ignore[attr-defined]
-
-    def handle(self, event: Event, context: Context) -> Sequence[Action]:
-        """Return what is to be visited."""
-        self._done = True
-        todo = self.todo
-        if callable(todo) and not isinstance(todo, Action):
-            todo = _called(todo, event, context)
-        return _actions(todo)
-
-    @property
-    def actions(self) -> Sequence[Action]:
-        """The actions, as far as no function has to be called for them."""
-        return () if callable(self.todo) else _actions(self.todo)
+        self.signal = signal_number
 
 
-def _called(function: Callable[..., Any], event: Event, context: Context) -> Any:
-    """Call a function of a launch file, which takes the event, and the context if it wants to."""
-    import inspect
-
-    count = len(inspect.signature(function).parameters)
-    return function(*(event, context)[:count])
+def matches_action(target_action: Action) -> Matcher:
+    """Return a function that chooses one action."""
+    return lambda action: action is target_action
 
 
-def _actions(todo: Any) -> Sequence[Action]:
-    if todo is None:
-        return ()
-    return [todo] if isinstance(todo, Action) else [one for one in todo if one is not None]
+def matches_pid(pid: int) -> Matcher:
+    """Return a function that chooses the program with a process id."""
+    return lambda action: action.process_details and action.process_details['pid'] == pid
 
 
-class OnProcessStart(EventHandler):
-    """Handle the start of a process."""
-
-    kind = ProcessStarted
-    word = 'on_start'
+def matches_name(name: str) -> Matcher:
+    """Return a function that chooses the program with a name, such as `'talker-1'`."""
+    return lambda action: action.process_details and action.process_details['name'] == name
 
 
-class OnProcessExit(EventHandler):
-    """Handle the end of a process."""
-
-    kind = ProcessExited
-    word = 'on_exit'
-
-
-class OnExecutionComplete(EventHandler):
-    """Handle that an action has ended."""
-
-    kind = ExecutionComplete
-    word = 'on_completion'
-
-
-class OnShutdown(EventHandler):
-    """Handle that the launch is to end."""
-
-    kind = Shutdown
-    word = 'on_shutdown'
-
-
-class OnProcessIO(EventHandler):
-    """Handle what a process writes."""
-
-    kind = ProcessIO
-
-    def __init__(
-        self,
-        *,
-        target_action: Any = None,
-        on_stdin: Any = None,
-        on_stdout: Any = None,
-        on_stderr: Any = None,
-        **options: Any,
-    ) -> None:
-        super().__init__(target_action=target_action, entities=[], **options)
-        self._by_fd = {1: on_stdout, 2: on_stderr}
-
-    def handle(self, event: Event, context: Context) -> Sequence[Action]:
-        assert isinstance(event, ProcessIO)
-        function = self._by_fd[event.fd]
-        return () if function is None else _actions(_called(function, event, context))
+def matches_executable(executable: str) -> Matcher:
+    """Return a function that chooses the programs whose path ends so."""
+    return lambda action: (
+        action.process_details and action.process_details['cmd'][0].endswith(executable)
+    )

@@ -23,8 +23,9 @@ from typing import Any
 
 from labkit.errors import LabError
 from labkit.launching import events
-from labkit.launching.actions import Start, Written
-from labkit.launching.model import Action, Context, Timer
+from labkit.launching.event_handlers import BaseEventHandler, entities_in
+from labkit.launching.execute import Start, Written
+from labkit.launching.model import Action, Context, Timer, raised
 
 __all__ = ['Service']
 
@@ -43,8 +44,10 @@ class _Program:
         self.left = start.retries
         self.popen: subprocess.Popen[bytes] | None = None
         self.words: list[str] = []
+        self.about: dict[str, Any] = {}  # what events tell of it
         self.rest = {1: b'', 2: b''}
         self.timers: list[asyncio.TimerHandle] = []
+        self.ending = False
 
     @property
     def pid(self) -> int:
@@ -65,6 +68,7 @@ class Service:
         actions: What to visit.
         interactive: Whether a person sits before it, whose Ctrl-C needs no words.
         debug: Whether to tell more.
+        argv: Arguments of the command line, for those in a launch file who ask.
         tell: Is told what happens, for a program that watches.
     """
 
@@ -74,13 +78,14 @@ class Service:
         *,
         interactive: bool = False,
         debug: bool = False,
+        argv: Sequence[str] = (),
         tell: Callable[[dict[str, Any]], None] | None = None,
     ) -> None:
         self._actions = actions
         self._interactive, self._debug = interactive, debug
         self._tell = tell or (lambda event: None)
         self._quiet = tell is not None
-        self._context = Context(say=self._say)
+        self._context = Context(argv=list(argv), noninteractive=not interactive, say=self._say)
         self._programs: list[_Program] = []
         self._timers: dict[asyncio.TimerHandle, Timer] = {}
         self._asked_to_end = self._shutting_down = self._interrupted = False
@@ -100,7 +105,9 @@ class Service:
             self._folder = stack.enter_context(tempfile.TemporaryDirectory(prefix='launch_'))
             self._open_log(stack)
             self._context.visit(self._actions)
+            self._context.push_environment()
             self._rehearse()
+            self._context.pop_environment()
             loop.set_exception_handler(self._on_error)
             loop.add_signal_handler(signal.SIGCHLD, self._reap)
             for number in (signal.SIGINT, *_ENDING):
@@ -132,7 +139,9 @@ class Service:
                 return
             for one in waiting:
                 done.append(one)
+                held = self._context.launch_configurations
                 trial.files = list(one.files)
+                trial.launch_configurations = dict(getattr(one, 'configurations', held))
                 trial.visit(one.actions)
 
     def _begin(self) -> None:
@@ -161,26 +170,29 @@ class Service:
     def _begin_timer(self, timer: Timer) -> None:
         def fire() -> None:
             del self._timers[handle]
-            self._visit(lambda: timer.actions, None, timer.files)
+            self._context.push_configurations()
+            self._context.launch_configurations = dict(timer.configurations)
+            self._visit(lambda: timer.actions, events.TimerEvent(timer), timer.files)
+            self._context.pop_configurations()
             self._settle()
             self._end_if_idle()
 
         handle = self._loop.call_later(timer.seconds, fire)
         self._timers[handle] = timer
 
-    def _visit(
-        self, actions: Callable[[], Sequence[Action]], event: Any, files: Sequence[str]
-    ) -> None:
+    def _visit(self, actions: Callable[[], Any], event: Any, files: Sequence[str]) -> None:
         """Visit actions while the launch runs; a fault in them ends it."""
         context = self._context
-        context.locals.event, context.files = event, list(files)
+        context.extend_locals({'event': event})
+        context.files = list(files)
         try:
-            context.visit(actions())
+            context.visit(entities_in(actions()))
         except Exception as error:  # a function of a launch file may raise anything
-            why = str(error) if isinstance(error, LabError) else f'{type(error).__name__}: {error}'
+            why = error if isinstance(error, LabError) else raised(error)
             self._fail(f'Caught exception in launch: {why}')
         finally:
-            context.locals.event, context.files = None, []
+            context.clear_locals()
+            context.files = []
 
     def _fail(self, why: str) -> None:
         self._code = 1
@@ -195,11 +207,22 @@ class Service:
         if self._debug:
             self._say('DEBUG', 'launch', f'processing event: {type(event).__name__}')
         for handler in list(self._context.handlers):
-            if handler.matches(event):
-                handle = functools.partial(handler.handle, event, self._context)
-                self._visit(handle, event, handler.files)
+            handle = functools.partial(_handled, handler, event, self._context)
+            self._visit(handle, event, handler.files)
         if isinstance(event, events.Shutdown):
             self._shut_down(due_to_sigint=event.due_to_sigint)
+        elif isinstance(event, events.ProcessTargetedEvent):
+            self._ask(event)
+
+    def _ask(self, event: events.ProcessTargetedEvent) -> None:
+        """Send a signal to the programs that an event is about."""
+        for program in list(self._programs):
+            if program.popen is None or not event.process_matcher(program.start.action):
+                continue
+            if isinstance(event, events.SignalProcess):
+                self._signal(program, signal.Signals[event.signal_name], said=True)
+            elif isinstance(event, events.ShutdownProcess):
+                self._end(program, said=True)
 
     def _start(self, program: _Program) -> None:
         start = program.start
@@ -218,7 +241,8 @@ class Service:
             )
         except OSError as error:
             self._programs.remove(program)
-            self._fail(f'{start.name} can not be started: {error.strerror}')
+            self._say('ERROR', start.name, f'can not be started: {error.strerror}')
+            self._emit(events.ExecutionComplete(start.action))
             return
         self._say('INFO', start.name, f'process started with pid [{popen.pid}]')
         if self._debug or start.log_command:
@@ -228,7 +252,10 @@ class Service:
             os.set_blocking(stream.fileno(), False)
             self._loop.add_reader(stream.fileno(), self._read, program, fd, stream.fileno())
         self._tell({'started': start.name, 'pid': popen.pid, 'node': start.is_node})
-        self._emit(events.ProcessStarted(start.action, start.name, popen.pid))
+        details = {'cmd': program.words, 'cwd': start.cwd, 'env': start.environment}
+        program.about = {'process_name': start.name, 'pid': popen.pid, **details}
+        start.action.process_details = {'name': start.name, 'pid': popen.pid, **details}
+        self._emit(events.ProcessStarted(start.action, **program.about))
 
     def _word(self, word: str | Written) -> str:
         if isinstance(word, str):
@@ -250,9 +277,8 @@ class Service:
         for line in lines:
             self._show(program, fd, line)
         if data:
-            start = program.start
-            event = events.ProcessIO(start.action, start.name, program.pid, text=data, fd=fd)
-            self._emit(event)
+            kind = events.ProcessStdout if fd == 1 else events.ProcessStderr
+            self._emit(kind(program.start.action, **program.about, text=data))
         return bool(data)
 
     def _show(self, program: _Program, fd: int, line: bytes) -> None:
@@ -287,12 +313,13 @@ class Service:
         else:
             what = f"pid {popen.pid}, exit code {code}, cmd '{' '.join(program.words)}'"
             self._say('ERROR', start.name, f'process has died [{what}].')
-        again = bool(start.respawn and program.left and not self._shutting_down)
+        again = bool(start.respawn and program.left and not program.ending)
+        again = again and not self._shutting_down
         told = {'ended': start.name, 'exit_code': code, 'again': again}
         self._tell({**told, 'shutting_down': self._shutting_down})
-        self._emit(events.ProcessExited(start.action, start.name, popen.pid, returncode=code))
+        self._emit(events.ProcessExited(start.action, **program.about, returncode=code))
         self._settle()
-        if start.respawn and program.left and not self._shutting_down:
+        if again and not self._shutting_down:
             program.left -= 1
             self._programs.append(program)
             program.timers = [self._loop.call_later(start.respawn_delay, self._again, program)]
@@ -340,17 +367,22 @@ class Service:
                     waiting.cancel()
                 self._programs.remove(program)
                 continue
-            self._signal(program, signal.SIGINT, said=not (due_to_sigint and self._interactive))
-            start = program.start
-            first, second = start.sigterm, start.sigterm + start.sigkill
-            for seconds, sent, following in (
-                (first, signal.SIGINT, signal.SIGTERM),
-                (second, signal.SIGTERM, signal.SIGKILL),
-            ):
-                timer_ = self._loop.call_later(
-                    seconds, self._escalate, program, seconds, sent, following
-                )
-                program.timers.append(timer_)
+            self._end(program, said=not (due_to_sigint and self._interactive))
+
+    def _end(self, program: _Program, *, said: bool) -> None:
+        """Interrupt a program, and be stricter with it if it does not end."""
+        self._signal(program, signal.SIGINT, said=said)
+        program.ending = True
+        start = program.start
+        first, second = start.sigterm, start.sigterm + start.sigkill
+        for seconds, sent, following in (
+            (first, signal.SIGINT, signal.SIGTERM),
+            (second, signal.SIGTERM, signal.SIGKILL),
+        ):
+            timer = self._loop.call_later(
+                seconds, self._escalate, program, seconds, sent, following
+            )
+            program.timers.append(timer)
 
     def _escalate(
         self, program: _Program, seconds: float, sent: signal.Signals, number: signal.Signals
@@ -408,6 +440,11 @@ class Service:
         if self._log is not None:
             self._log.write(f'{time.time():.7f} {line}\n')
             self._log.flush()
+
+
+def _handled(handler: BaseEventHandler, event: events.Event, context: Context) -> Any:
+    """Return what a handler, which may be of somebody's own class, wants to be visited."""
+    return handler.handle(event, context) if handler.matches(event) else None
 
 
 def _on_its_own() -> None:

@@ -12,7 +12,7 @@ from xml.parsers import expat
 import yaml
 
 from labkit.errors import LabError, did_you_mean, nearest
-from labkit.launching import actions, ros_actions
+from labkit.launching import actions, execute, ros_actions
 from labkit.launching.conditions import IfCondition, UnlessCondition
 from labkit.launching.model import (
     Action,
@@ -33,7 +33,7 @@ __all__ = ['from_xml', 'from_yaml']
 _PARTS = {
     'arg': ('choice',),
     'group': ('keep',),
-    'include': ('arg',),
+    'include': ('arg', 'let'),
     'executable': ('env',),
     'node': ('env', 'param', 'remap'),
     'param': ('param',),
@@ -356,7 +356,8 @@ def _flag(entity: Entity, name: str) -> bool:
 
 def _include(entity: Entity) -> Action:
     return actions.IncludeLaunchDescription(
-        actions.Source(entity.pieces('file')), launch_arguments=_pairs(entity, 'arg')
+        actions.Source(entity.pieces('file')),
+        launch_arguments=[*_pairs(entity, 'arg'), *_pairs(entity, 'let')],
     )
 
 
@@ -385,7 +386,7 @@ def _process(entity: Entity) -> dict[str, Any]:
 
 
 def _executable(entity: Entity) -> Action:
-    return actions.ExecuteProcess(
+    return execute.ExecuteProcess(
         cmd=_command_line(entity.pieces('cmd')), **_given(entity, name='name'), **_process(entity)
     )
 
@@ -451,12 +452,16 @@ def _untyped(entity: Entity, kind: str, text: str) -> Any:
     """Return the value of a text of XML; a text with substitutions has its value later."""
     if entity.has('value-sep'):
         item = kind.removeprefix('list_of_')
-        parts = text.split(entity.text('value-sep'))
-        return [part if '$(' in part else coerce(part, item) for part in parts]
+        return [_coerced(part, item) for part in text.split(entity.text('value-sep'))]
+    return _coerced(text, kind)
+
+
+def _coerced(text: str, kind: str) -> Any:
+    """Return a text as a value; one that is no YAML is meant as it stands."""
     try:
         return coerce(text, kind)
-    except LaunchError:
-        if '$(' in text:
+    except LaunchError as error:
+        if '$(' in text or (not kind and isinstance(error.__cause__, ValueError)):
             return text
         raise
 

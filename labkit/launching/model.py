@@ -5,15 +5,17 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Callable, Iterable, Sequence
+import traceback
+from collections.abc import Callable, Iterable, Mapping, MutableMapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from labkit.errors import LabError
 
 if TYPE_CHECKING:
-    from labkit.launching.events import EventHandler
+    from labkit.launching.event_handlers import BaseEventHandler
 
 __all__ = [
     'Action',
@@ -29,6 +31,7 @@ __all__ = [
     'perform',
     'placed',
     'python_files',
+    'raised',
     'truth',
 ]
 
@@ -233,54 +236,56 @@ class LaunchDescription(Action):
         return [(self.entities, False)]
 
 
-class Locals:
-    """What `context.locals` has: the event that is being handled."""
-
-    event: Any = None
-
-
 @dataclass
 class Timer:
-    """Actions that are visited after a time, as if they stood in these files."""
+    """Actions that are visited after a time, as if they stood in these files.
+
+    Attributes:
+        configurations: The launch configurations that hold for them.
+    """
 
     seconds: float
     actions: Sequence[Action]
     cancel_on_shutdown: bool = True
     files: Sequence[str] = ()
+    configurations: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass
 class Context:
     """What is known while a description is visited, and what it has asked for.
 
+    Environment variables are those of this process, so that what a file in Python sets in
+    `os.environ` is seen by substitutions and by programs.
+
     Attributes:
-        launch_configurations: Values by name, for `$(var name)`.
-        environment: Environment variables, for `$(env name)` and for processes.
+        launch_configurations: Values by name, for `$(var name)`. What holds for all nodes that
+            follow is among them: `ros_namespace`, `ros_remaps`, `global_params`.
+        argv: Arguments of the command line.
         files: The launch files that are being visited, the innermost last.
-        settings: What holds for all nodes that follow: namespace, parameters and remappings.
         starts: Processes that are to be started.
         rehearsing: Whether nothing is to happen, because only faults are looked for.
         say: Shows a line: level, who, text.
     """
 
-    launch_configurations: dict[str, str] = field(default_factory=dict)
-    environment: dict[str, str] = field(default_factory=lambda: dict(os.environ))
+    launch_configurations: dict[str, Any] = field(default_factory=dict)
+    argv: list[str] = field(default_factory=list)
+    noninteractive: bool = False
     files: list[str] = field(default_factory=list)
-    settings: dict[str, Any] = field(default_factory=dict)
     starts: list[Any] = field(default_factory=list)
     timers: list[Timer] = field(default_factory=list)
-    handlers: list[EventHandler] = field(default_factory=list)
+    handlers: list[BaseEventHandler] = field(default_factory=list)
     events: list[Any] = field(default_factory=list)
     rehearsing: bool = False
     is_shutdown: bool = False
     say: Callable[[str, str, str], None] = lambda level, who, text: None
-    locals: Locals = field(default_factory=Locals)
     counter: int = 0
     node_names: list[str] = field(default_factory=list)
     log_dir: str = ''
-    _scopes: list[tuple[dict[str, str], dict[str, str], dict[str, Any]]] = field(
-        default_factory=list
-    )
+    _locals: dict[str, Any] = field(default_factory=dict)
+    _configurations: list[dict[str, Any]] = field(default_factory=list)
+    _environments: list[dict[str, str]] = field(default_factory=list)
+    _first_environment: dict[str, str] = field(default_factory=lambda: dict(os.environ))
 
     def visit(self, actions: Iterable[Action]) -> None:
         """Visit actions in order, each with all that it leads to.
@@ -291,22 +296,49 @@ class Context:
         for action in actions:
             if not isinstance(action, Action):
                 raise LaunchError(f'An action is expected, and this is {action!r}.')
+            if self.rehearsing and not type(action).__module__.startswith('labkit.'):
+                continue  # of somebody's own class, which may do anything
+            place = getattr(action, 'place', None)
             try:
-                self.visit(action.visit(self))
+                self.visit(action.visit(self) or ())
             except LabError as error:
-                raise at(error, action.place) from error
+                raise at(error, place) from error
             except RecursionError:
-                raise at(too_deep(), action.place) from None
+                raise at(too_deep(), place) from None
+            except Exception as error:  # a function, or a class, of a launch file
+                raise at(raised(error), place) from error
 
-    def open_scope(self) -> None:
-        """Begin a group, at whose end all is as before."""
-        held = (self.launch_configurations, self.environment, self.settings)
-        self._scopes.append(held)
-        self.launch_configurations, self.environment, self.settings = map(dict, held)
+    @property
+    def environment(self) -> MutableMapping[str, str]:
+        """Environment variables, for `$(env name)` and for processes."""
+        return os.environ
 
-    def close_scope(self) -> None:
-        """End a group."""
-        self.launch_configurations, self.environment, self.settings = self._scopes.pop()
+    def reset_environment(self) -> None:
+        """Go back to the environment variables with which this began."""
+        _become(self._first_environment)
+
+    def push_environment(self) -> None:
+        """Note the environment variables, for `pop_environment`."""
+        self._environments.append(dict(os.environ))
+
+    def pop_environment(self) -> None:
+        """Go back to the environment variables that were noted last."""
+        if not self._environments:
+            raise LaunchError('There is no PushEnvironment before this PopEnvironment.')
+        _become(self._environments.pop())
+
+    def push_configurations(self) -> None:
+        """Note the launch configurations, for `pop_configurations`."""
+        self._configurations.append(self.launch_configurations)
+        self.launch_configurations = dict(self.launch_configurations)
+
+    def pop_configurations(self) -> None:
+        """Go back to the launch configurations that were noted last."""
+        if not self._configurations:
+            raise LaunchError(
+                'There is no PushLaunchConfigurations before this PopLaunchConfigurations.'
+            )
+        self.launch_configurations = self._configurations.pop()
 
     def leave_file(self) -> None:
         """End the visit of the innermost launch file."""
@@ -316,16 +348,66 @@ class Context:
         """Return a context in which nothing happens."""
         return Context(
             dict(self.launch_configurations),
-            dict(self.environment),
-            list(self.files),
-            dict(self.settings),
+            files=list(self.files),
             rehearsing=True,
             log_dir=self.log_dir,
         )
 
+    @property
+    def locals(self) -> SimpleNamespace:
+        """What is known here only: the event that is being handled, the launch file."""
+        return SimpleNamespace(**self.get_locals_as_dict())
+
+    def get_locals_as_dict(self) -> dict[str, Any]:
+        """Return what `locals` has."""
+        found = dict(self._locals)
+        if self.files:
+            found['current_launch_file_path'] = self.files[-1]
+            found['current_launch_file_directory'] = os.path.dirname(self.files[-1])
+        return found
+
+    def extend_locals(self, extensions: Mapping[str, Any]) -> None:
+        """Add to `locals`."""
+        self._locals.update(extensions)
+
+    extend_globals = extend_locals
+
+    def clear_locals(self) -> None:
+        """Forget what `locals` had for an event."""
+        self._locals.clear()
+
+    def register_event_handler(self, handler: BaseEventHandler, append: bool = False) -> None:
+        """Let a handler handle events from now on, before the others or after them."""
+        handler.files = list(self.files)
+        self.handlers.insert(len(self.handlers) if append else 0, handler)
+
+    def unregister_event_handler(self, handler: BaseEventHandler) -> None:
+        """Let a handler handle no more events."""
+        if handler in self.handlers:
+            self.handlers.remove(handler)
+
+    def emit_event_sync(self, event: Any) -> None:
+        """Let an event happen."""
+        self.events.append(event)
+
     def perform_substitution(self, substitution: Substitution) -> str:
         """Return the text of a substitution; for functions of a launch file."""
         return substitution.perform(self)
+
+
+def _become(environment: Mapping[str, str]) -> None:
+    os.environ.clear()
+    os.environ.update(environment)
+
+
+def raised(error: BaseException) -> LaunchError:
+    """Return what the code of a launch file has raised, with its last line there."""
+    places = [
+        Place(frame.filename, frame.lineno)
+        for frame in traceback.extract_tb(error.__traceback__)
+        if frame.filename in python_files and frame.lineno
+    ]
+    return LaunchError(f'{type(error).__name__}: {error}', place=places[-1] if places else None)
 
 
 _NAME = re.compile(r'[A-Za-z_][A-Za-z0-9_]*')

@@ -50,8 +50,8 @@ def coerce(text: str, kind: str = '') -> Value:
         text = {'1': 'true', '0': 'false'}.get(text, text)
     try:
         value = load_yaml(text)
-    except ValueError:
-        raise _wrong(text, kind) from None
+    except ValueError as error:
+        raise _wrong(text, kind) from error
     if not is_value(value, kind):
         raise _wrong(text, kind)
     return value  # type: ignore[no-any-return]

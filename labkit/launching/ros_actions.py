@@ -9,7 +9,8 @@ from typing import Any
 import yaml
 
 from labkit.files import read_limited
-from labkit.launching.actions import ExecuteProcess, Written, setting
+from labkit.launching.actions import setting
+from labkit.launching.execute import ExecuteProcess, Written
 from labkit.launching.model import (
     Action,
     Context,
@@ -42,17 +43,17 @@ class ParameterValue:
 
     def __init__(self, value: Any, *, value_type: Any = None) -> None:
         self.value = value
-        self.kind = value_type if isinstance(value_type, str) else _kind_of(value_type)
+        self.kind = value_type if isinstance(value_type, str) else kind_of(value_type)
 
     def evaluate(self, context: Context) -> Any:
         """Return the value."""
         value = self.value
-        if _is_text(value):
+        if is_text(value):
             return coerce(perform(context, pieces(value)), self.kind)
         if isinstance(value, list):
             item = self.kind.removeprefix('list_of_') if self.kind else ''
             value = [
-                coerce(perform(context, pieces(one)), item) if _is_text(one) else one
+                coerce(perform(context, pieces(one)), item) if is_text(one) else one
                 for one in value
             ]
         if not is_value(value, self.kind):
@@ -144,7 +145,7 @@ class Node(ExecuteProcess):
 
     def words(self, context: Context) -> tuple[str, list[str | Written]]:
         namespace = joined_namespace(
-            context.settings.get('namespace'),
+            context.launch_configurations.get('ros_namespace'),
             None if self.node_namespace is None else perform(context, self.node_namespace),
         )
         name = '' if self.node_name is None else perform(context, self.node_name)
@@ -165,7 +166,7 @@ class Node(ExecuteProcess):
             command += ['-r', f'__ns:={namespace}']
         command += self._parameter_words(context, full, key)
         remaps = [
-            *context.settings.get('remaps', ()),
+            *context.launch_configurations.get('ros_remaps', ()),
             *((perform(context, old), perform(context, new)) for old, new in self.remappings),
         ]
         for old, new in remaps:
@@ -183,9 +184,9 @@ class Node(ExecuteProcess):
 
     def _parameter_words(self, context: Context, full: str, key: str) -> Iterable[str | Written]:
         words: list[str | Written] = []
-        for one in context.settings.get('parameters', ()):
+        for one in context.launch_configurations.get('global_params', ()):
             if isinstance(one, tuple):
-                words += ['-p', f'{one[0]}:={_flow(one[1])}']
+                words += ['-p', f'{one[0]}:={one[1]}']
             else:
                 words += ['--params-file', one.word(context, full)]
         for parameter in self.parameters:
@@ -247,10 +248,10 @@ class PushROSNamespace(Action):
 
     def execute(self, context: Context) -> None:
         pushed = perform(context, self.namespace)
-        namespace = joined_namespace(context.settings.get('namespace'), pushed)
+        namespace = joined_namespace(context.launch_configurations.get('ros_namespace'), pushed)
         assert namespace is not None
         check_namespace(namespace)
-        context.settings['namespace'] = namespace
+        context.launch_configurations['ros_namespace'] = namespace
 
 
 class SetParameter(Action):
@@ -261,7 +262,10 @@ class SetParameter(Action):
         self._values = {tuple(pieces(name)): value}
 
     def execute(self, context: Context) -> None:
-        _add(context, 'parameters', *_evaluated(context, self._values))
+        for name, value in _evaluated(context, self._values):
+            # As the real one has it: as Python writes it, a list as a tuple.
+            kept = tuple(value) if isinstance(value, list) else value
+            _add(context, 'global_params', (name, kept))
 
 
 class SetParametersFromFile(Action):
@@ -274,7 +278,7 @@ class SetParametersFromFile(Action):
     def execute(self, context: Context) -> None:
         path = os.path.abspath(perform(context, self.file.path))
         _keys(_read(path), path)
-        _add(context, 'parameters', ParameterFile(path))
+        _add(context, 'global_params', ParameterFile(path))
 
 
 class SetRemap(Action):
@@ -285,14 +289,15 @@ class SetRemap(Action):
         self.src, self.dst = pieces(src), pieces(dst)
 
     def execute(self, context: Context) -> None:
-        _add(context, 'remaps', (perform(context, self.src), perform(context, self.dst)))
+        _add(context, 'ros_remaps', (perform(context, self.src), perform(context, self.dst)))
 
 
 def _add(context: Context, name: str, *values: Any) -> None:
-    context.settings[name] = (*context.settings.get(name, ()), *values)
+    held = context.launch_configurations
+    held[name] = (*held.get(name, ()), *values)
 
 
-def _is_text(value: Any) -> bool:
+def is_text(value: Any) -> bool:
     """Return whether a value is made of substitutions, so that it is known only later."""
     if isinstance(value, (list, tuple)):
         parts = [isinstance(one, Substitution) for one in value]
@@ -300,7 +305,8 @@ def _is_text(value: Any) -> bool:
     return isinstance(value, Substitution)
 
 
-def _kind_of(value_type: Any) -> str:
+def kind_of(value_type: Any) -> str:
+    """Return the name of a type of parameters, `''` of None."""
     if value_type is None:
         return ''
     name = getattr(value_type, '__name__', '')
@@ -308,7 +314,7 @@ def _kind_of(value_type: Any) -> str:
         return name
     items = getattr(value_type, '__args__', ())
     if items and getattr(value_type, '__origin__', None) is list:
-        return f'list_of_{_kind_of(items[0])}'
+        return f'list_of_{kind_of(items[0])}'
     raise LaunchError(f'{value_type!r} is no type of a parameter.')
 
 
@@ -332,7 +338,7 @@ def _evaluated(context: Context, values: Mapping[Any, Any], start: str = '') -> 
                 yield from _evaluated(context, value, f'{name}.')
             elif isinstance(value, ParameterValue):
                 yield name, value.evaluate(context)
-            elif isinstance(value, (list, tuple)) and not _is_text(value):
+            elif isinstance(value, (list, tuple)) and not is_text(value):
                 yield name, _list(context, value)
             else:
                 yield name, ParameterValue(value).evaluate(context)

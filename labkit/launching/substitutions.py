@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 import os
 import random
+import shlex
 import shutil
 import socket
+import subprocess
 from collections.abc import Callable, Iterable
 from typing import Any, ClassVar
 
-from labkit.errors import did_you_mean, nearest
+from labkit.errors import did_you_mean, nearest, quoted
 from labkit.files import read_limited
 from labkit.launching.expressions import evaluate
 from labkit.launching.model import (
@@ -18,14 +20,49 @@ from labkit.launching.model import (
     LaunchError,
     Substitution,
     Text,
-    TextSubstitution,
     perform,
     pieces,
 )
 from labkit.launching.parameter_types import coerce
 from labkit.rosgraph.packages import executable, prefix_of
 
-__all__ = ['REFUSED', 'WORDS', 'Substitution', 'TextSubstitution', 'substitution']
+__all__ = [
+    'REFUSED',
+    'WORDS',
+    'AllSubstitution',
+    'AndSubstitution',
+    'AnonName',
+    'AnySubstitution',
+    'Command',
+    'EnvironmentVariable',
+    'EqualsSubstitution',
+    'ExecutableInPackage',
+    'FileContent',
+    'FindExecutable',
+    'FindPackage',
+    'FindPackagePrefix',
+    'FindPackageShare',
+    'IfElseSubstitution',
+    'LaunchConfiguration',
+    'LaunchLogDir',
+    'LocalSubstitution',
+    'NotEqualsSubstitution',
+    'NotSubstitution',
+    'OrSubstitution',
+    'PathJoinSubstitution',
+    'PathSubstitution',
+    'PythonExpression',
+    'ThisLaunchFile',
+    'ThisLaunchFileDir',
+    'substitution',
+]
+
+
+class _Path(Substitution):
+    """A substitution that is a path, to which `/` adds a part."""
+
+    def __truediv__(self, additional_path: Any) -> PathJoinSubstitution:
+        return PathJoinSubstitution([self, additional_path])
 
 
 class LaunchConfiguration(Substitution):
@@ -38,7 +75,7 @@ class LaunchConfiguration(Substitution):
     def perform(self, context: Context) -> str:
         name = perform(context, self.name)
         if name in context.launch_configurations:
-            return context.launch_configurations[name]
+            return str(context.launch_configurations[name])
         if self.default is not None:
             return perform(context, self.default)
         known = ', '.join(context.launch_configurations) or 'none'
@@ -67,7 +104,7 @@ class EnvironmentVariable(Substitution):
         return perform(context, self.default)
 
 
-class FindPackage(Substitution):
+class FindPackage(_Path):
     """A folder of a package; the classes below say which, in `find`."""
 
     def __init__(self, package: Any) -> None:
@@ -132,7 +169,7 @@ class ThisLaunchFile(Substitution):
         return f'{type(self).__name__}()'
 
 
-class ThisLaunchFileDir(ThisLaunchFile):
+class ThisLaunchFileDir(ThisLaunchFile, _Path):
     """`$(dirname)`: the folder of the launch file."""
 
     def perform(self, context: Context) -> str:
@@ -260,14 +297,63 @@ class FileContent(Substitution):
             raise LaunchError(f'{path} can not be read: {error}') from error
 
 
-class PathJoinSubstitution(Substitution):
-    """Parts of a path, joined by `/`."""
+class Command(Substitution):
+    """`$(command words on_stderr)`: what a program prints.
 
-    def __init__(self, substitutions: Iterable[Any]) -> None:
-        self.parts = [pieces(part) for part in substitutions]
+    Args:
+        command: The words of its command line; no shell reads them.
+        on_stderr: What to do if it writes to standard error: `fail`, `warn`, `ignore`, or
+            `capture` that too.
+    """
+
+    def __init__(self, command: Any, *, on_stderr: Any = 'fail') -> None:
+        self.command, self.on_stderr = pieces(command), pieces(on_stderr)
 
     def perform(self, context: Context) -> str:
-        return os.path.join(*(perform(context, part) for part in self.parts))
+        line, on_stderr = perform(context, self.command), perform(context, self.on_stderr)
+        known = ('fail', 'ignore', 'warn', 'capture')
+        if on_stderr not in known:
+            raise LaunchError(
+                f'on_stderr is one of {", ".join(known)}, and this is {on_stderr!r}.'
+            )
+        if context.rehearsing:
+            return ''
+        to = subprocess.STDOUT if on_stderr == 'capture' else subprocess.PIPE
+        try:
+            words = shlex.split(line)
+            done = subprocess.run(words, stdout=subprocess.PIPE, stderr=to, text=True, check=False)
+        except (OSError, ValueError) as error:
+            raise LaunchError(f'The command {quoted(line)} can not be run: {error}') from error
+        if done.returncode != 0:
+            raise LaunchError(
+                f'The command {quoted(line)} has failed: exit code {done.returncode}.',
+                todo=(done.stderr or '').strip(),
+            )
+        if done.stderr and on_stderr == 'fail':
+            raise LaunchError(
+                f'The command {quoted(line)} has written to standard error: {done.stderr.strip()}',
+                todo="If that is no failure: on_stderr='warn'",
+            )
+        if done.stderr and on_stderr == 'warn':
+            context.say('WARNING', 'launch', f'{line} writes: {done.stderr.strip()}')
+        return done.stdout
+
+
+class PathJoinSubstitution(_Path):
+    """Parts of a path, joined by `/`; each part is a text, which may be of several pieces."""
+
+    def __init__(self, substitutions: Iterable[Any]) -> None:
+        self.substitutions = [pieces(part) for part in substitutions]
+
+    def perform(self, context: Context) -> str:
+        return os.path.join(*(perform(context, part) for part in self.substitutions))
+
+
+class PathSubstitution(PathJoinSubstitution):
+    """A path; of several texts each is a part."""
+
+    def __init__(self, path: Any) -> None:
+        super().__init__(pieces(path))
 
 
 class LocalSubstitution(Substitution):
@@ -277,17 +363,17 @@ class LocalSubstitution(Substitution):
         self.expression = expression
 
     def perform(self, context: Context) -> str:
+        if context.rehearsing:
+            return ''
         value: Any = context.locals
         for part in self.expression.split('.'):
-            if context.rehearsing:
-                return ''
             if part.startswith('_') or not hasattr(value, part):
                 raise LaunchError(f'There is no {self.expression!r} here.')
             value = getattr(value, part)
         return str(value)
 
 
-class LaunchLogDir(Substitution):
+class LaunchLogDir(_Path):
     """`$(log_dir)`: the folder of this launch's log file."""
 
     def perform(self, context: Context) -> str:
@@ -303,6 +389,10 @@ WORDS: dict[str, tuple[Callable[..., Substitution], range]] = {
     'and': (AndSubstitution, range(2, 3)),
     'anon': (AnonName, range(1, 2)),
     'any': (AnySubstitution, range(1, 100)),
+    'command': (
+        lambda line, *rest: Command(line, on_stderr=_first(rest) or 'fail'),
+        range(1, 3),
+    ),
     'dirname': (ThisLaunchFileDir, range(1)),
     'env': (
         lambda name, *rest: EnvironmentVariable(name, default_value=_first(rest)),
@@ -326,7 +416,6 @@ WORDS: dict[str, tuple[Callable[..., Substitution], range]] = {
 }
 # Those of the real one that this course leaves out, and why.
 REFUSED = {
-    'command': 'it would run a program while the file is read',
     'param': 'it reads parameters of the launch itself',
     # ROS 1.
     'arg': 'that is ROS 1; ROS 2 writes $(var name)',

@@ -26,7 +26,7 @@ from types import ModuleType
 from labkit import settings, stop_button
 from labkit.errors import LabError
 
-__all__ = ['register']
+__all__ = ['register', 'why_not_installed']
 
 _REAL = 'It comes with an installed ROS 2 (apt install ros-jazzy-{}), not with wheels.'
 # Package -> what it is and what to use here, where to find it.
@@ -95,9 +95,10 @@ _UNAVAILABLE = {
             ('image_geometry', 'the geometry of a camera'),
             ('image_transport_py', 'what sends images in compressed form'),
             ('laser_geometry', 'a converter of laser scans to point clouds'),
-            ('xacro', 'a language in which robots are described'),
         )
     },
+    'xacro': ('a language in which robots are described. Here, `pip install xacro` has it', ''),
+    'nav2_common': ('what launch files of Nav2 are written with', _REAL.format('nav2-common')),
     'urdf_parser_py': ('a reader of descriptions of robots', _REAL.format('urdfdom-py')),
     **dict.fromkeys(
         ('rqt_gui', 'rqt_gui_py', 'rqt_py_common', 'python_qt_binding'),
@@ -156,7 +157,7 @@ class _Finder:
                     self._follow(loader)
                 return spec
         if path is None and not _is_only_asked():
-            error = _why_missing(name)
+            error = why_not_installed(name)
             if error is not None:
                 error.name = name
                 raise error
@@ -194,7 +195,7 @@ class _Finder:
         loader.exec_module = exec_module  # type: ignore[method-assign]
 
 
-def _why_missing(name: str) -> _NotInWheels | None:
+def why_not_installed(name: str) -> _NotInWheels | None:
     """Return what to say of a package that is not there; None for what is no part of ROS."""
     if name in _UNAVAILABLE:
         what, where = _UNAVAILABLE[name]

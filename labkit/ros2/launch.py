@@ -46,7 +46,8 @@ def launch(args: Namespace) -> int | None:
     interactive = sys.stdin.isatty() and not args.noninteractive
     tell = teller()
     try:
-        return Service([root], interactive=interactive, debug=args.debug, tell=tell).run()
+        service = Service([root], interactive=interactive, debug=args.debug, argv=given, tell=tell)
+        return service.run()
     except LabError as error:
         if tell is not None:
             tell({'fault': error.message, 'todo': error.todo})

@@ -7,10 +7,12 @@ import textwrap
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import yaml
 
-from labkit.launching.actions import IncludeLaunchDescription, Source, Written
+from labkit.launching.actions import IncludeLaunchDescription, Source
+from labkit.launching.execute import Written
 from labkit.launching.model import Context
 
 # A package with one program, which shows its arguments.
@@ -54,9 +56,10 @@ def visit(path: Path, *arguments: str) -> Visit:
     def say(level: str, who: str, text: str) -> None:
         (found.said if who == 'launch.user' else found.warned).append(text)
 
-    found.context = context = Context(say=say)
+    found.context = context = Context(argv=list(arguments), say=say)
     pairs = [one.partition(':=')[::2] for one in arguments]
-    context.visit([IncludeLaunchDescription(Source(str(path)), launch_arguments=pairs)])
+    with mock.patch.dict(os.environ):  # as if it were a process of its own
+        context.visit([IncludeLaunchDescription(Source(str(path)), launch_arguments=pairs)])
     for start in context.starts:
         before = ['', *start.command[:-1]]
         words = [_shown(word, one) for word, one in zip(start.command, before, strict=True)]

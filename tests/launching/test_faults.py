@@ -23,7 +23,6 @@ XML = [
     ('<machine name="a"/>', 2, 'that is ROS 1'),
     ('<node_container pkg="a" exec="b"/>', 2, 'programs in C++'),
     ('<lifecycle_node pkg="a" exec="b"/>', 2, 'life cycle'),
-    ('<node pkg="toys" exec="echo_args" launch-prefix="gdb"/>', 2, 'launch-prefix'),
     ('<node pkg="toys" exec="echo_args" output="sceen"/>', 2, "Did you mean 'screen'?"),
     ('<node pkg="toys" exec="echo_args"><param from="a.yaml"/></node>', 2, '$(dirname)/'),
     ('<node pkg="toys" exec="echo_args"><param name="a"/></node>', 2, "'value'"),
@@ -35,8 +34,6 @@ XML = [
     ('<include file="$(dirname)/nowhere.launch.xml"/>', 2, 'There is no launch file'),
     ('<include file="$(dirname)/main.launch.xm"/>', 2, "Did you mean 'main.launch.xml'?"),
     ('<include file="$(filename)"/>', 2, 'The file includes itself: main.launch.xml includes'),
-    ('<executable cmd="lab_no_such_program"/>', 2, 'There is no program'),
-    ('<executable cmd="echo a" cwd="/lab/none"/>', 2, 'cwd is no folder'),
     ('<arg name="need"/>', 2, 'need:=value on the command line'),
     ('<log message="a" if="maybe"/>', 2, 'A condition is true, false, 1 or 0'),
     ('<timer period="-1"><log message="a"/></timer>', 2, 'below 0'),
@@ -59,6 +56,27 @@ def test_xml(body: str, line: int, words: str, tmp_path: Path, toys: Path):
         visit(path)
     assert str(caught.value).startswith(f'{path}, line {line}: '), caught.value
     assert words in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ('program', 'words'),
+    [
+        ('<executable cmd="lab_no_such_program"/>', "There is no program 'lab_no_such_program'."),
+        ('<executable cmd="echo a" cwd="/lab/none"/>', "cwd is no folder: '/lab/none'"),
+        (
+            '<node pkg="toys" exec="echo_args" launch-prefix="lab_none -x"/>',
+            "There is no program 'lab_none'.",
+        ),
+    ],
+)
+def test_a_program_that_is_not_there_is_told_and_the_others_start(
+    program: str, words: str, tmp_path: Path, toys: Path
+):
+    body = f'<launch>\n{program}<executable cmd="echo"/></launch>'
+    path = write(tmp_path, {'main.launch.xml': body})
+    found = visit(path)
+    assert found.warned == [f'can not be started: {path}, line 2: {words}']
+    assert [name for name, *_ in found.started] == ['echo-2']
 
 
 MUCH = {
@@ -101,9 +119,12 @@ def test_yaml(body: str, line: int, words: str, tmp_path: Path, toys: Path):
 
 PYTHON = [
     ('from launch.actions import LogInf', 1, 'Did you mean LogInfo?'),
-    ('from launch_ros.actions import ComposableNodeContainer', 1, 'programs in C++'),
-    ('from launch_ros.actions import LifecycleNode', 1, 'life cycle'),
-    ('from launch.substitutions import Command', 1, 'run a program'),
+    ('from launch_ros.actions import ComposableNodeContainer as C\n\nC()', 3, 'programs in C++'),
+    ('from launch_ros.actions import LifecycleNode\nLifecycleNode(name="a")', 2, 'life cycle'),
+    ('from launch import LaunchService\nLaunchService()', 2, 'this launch runs already'),
+    ('from launch.utilities import is_an', 1, 'Did you mean is_a?'),
+    ('import launch\nimport xacro', 2, 'pip install xacro'),
+    ('from nav2_common.launch import RewrittenYaml', 1, 'apt install ros-jazzy-nav2-common'),
     ('\nimport lab_not_there', 2, 'ModuleNotFoundError'),
     ('x = (', 1, 'was never closed'),
     ('\nraise SystemExit(3)', 2, 'SystemExit: 3'),

@@ -188,7 +188,7 @@ def test_who_does_not_listen_is_terminated_then_killed(launch):
 
 
 def test_the_waits_are_those_of_the_real_one():
-    from labkit.launching.actions import Start
+    from labkit.launching.execute import Start
 
     assert (Start.sigterm, Start.sigkill) == (5.0, 5.0)
 
@@ -314,7 +314,8 @@ def test_a_function_that_fails_late_ends_the_launch(launch):
         '        period=0.01, actions=[OpaqueFunction(function=broken)])])\n'
     )
     assert one.end() == 1
-    assert '[ERROR] [launch]: Caught exception in launch: ValueError: of its own' in one.lines
+    (told,) = [line for line in one.lines if 'Caught exception in launch: ' in line]
+    assert told.endswith('main.launch.py, line 4: ValueError: of its own')
 
 
 @pytest.mark.parametrize('number', [signal.SIGTERM, signal.SIGHUP])

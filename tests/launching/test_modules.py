@@ -1,0 +1,52 @@
+"""The modules that launch files import: those of the real packages, with all their names.
+
+`real_modules.txt` has what the real ones let other modules have: a line a module.
+"""
+
+from pathlib import Path
+
+import pytest
+
+from labkit.errors import LabError
+from labkit.launching.modules import LEFT_OUT, contents
+from tests.launching.stage import visit, write
+
+REAL = Path(__file__).with_name('real_modules.txt').read_text(encoding='utf-8')
+BY_MODULE = dict(line.split(':') for line in REAL.splitlines())
+
+
+@pytest.mark.parametrize('module', BY_MODULE)
+def test_all_names_of_the_real_modules_are_there(module: str):
+    assert module in contents()
+    assert [name for name in BY_MODULE[module].split() if name not in contents()[module]] == []
+
+
+def test_what_is_left_out_can_be_imported_and_says_so_when_it_is_used(tmp_path: Path):
+    for module, names in LEFT_OUT.items():
+        for name, why in names.items():
+            text = f'from {module} import {name}\n\n{name}()\n'
+            path = write(tmp_path, {'main.launch.py': text})
+            with pytest.raises(LabError) as caught:
+                visit(path)
+            assert str(caught.value) == f'{path}, line 3: {name} is not supported here: {why}.'
+
+
+def test_a_left_out_class_may_be_named_for_the_types(tmp_path: Path):
+    text = (
+        'from launch import LaunchDescription\n'
+        'from launch.actions import LogInfo\n'
+        'from launch_ros.actions import LifecycleNode\n\n\n'
+        'class Mine(LifecycleNode):\n    pass\n\n\n'
+        'def generate_launch_description() -> LaunchDescription:\n'
+        '    log = LogInfo(msg="here")\n'
+        '    assert not isinstance(log, LifecycleNode)\n'
+        '    return LaunchDescription([log])\n'
+    )
+    assert visit(write(tmp_path, {'main.launch.py': text})).said == ['here']
+
+
+def test_a_name_that_is_nowhere_is_told_with_the_nearest(tmp_path: Path):
+    text = 'import launch\nimport launch.logging\nlaunch.actions.LogInf(msg="a")\n'
+    path = write(tmp_path, {'main.launch.py': text})
+    with pytest.raises(LabError, match=r'line 3: .*\nDid you mean LogInfo\?'):
+        visit(path)
