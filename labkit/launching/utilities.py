@@ -12,8 +12,8 @@ from typing import Any
 
 from labkit.launching.event_handlers import entities_in
 from labkit.launching.model import Action, Context, Substitution, Text, perform, pieces
+from labkit.launching.parameter_types import coerce, is_value
 from labkit.launching.ros_actions import is_text, kind_of
-from labkit.launching.values import coerce, is_value
 
 __all__ = [
     'coerce_to_type',
