@@ -3,7 +3,7 @@
 What is said, and in which order, is as with the real launch.
 """
 
-from tests.launching.test_service import launch
+from tests.launching.test_launch_service import launch
 
 __all__ = ['launch']
 
