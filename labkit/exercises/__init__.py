@@ -78,7 +78,8 @@ model of what a program with it sends, and the change of the solution that makes
 the proof makes each of them. `Answers(mistakes=...)` names the first one whose model answers as
 the node did; another judge raises it: `Fail(expected, seen, MISTAKE)`, or
 `MISTAKE.of(name=value)` where its words have names in braces. Those that can be made in any
-exercise are in `words`. A cause is named only if it was seen.
+exercise are in `common_mistakes`. Their words stand in a YAML file beside the module, see `words`.
+A cause is named only if it was seen.
 
 What was seen is half a minute of the lives of the learner's nodes, in virtual time (`life`): each
 message with the exact time at which it was published. Threads that sleep, and code that asks for
@@ -151,6 +152,7 @@ from labkit.exercises.probe import Probe
 from labkit.exercises.quiz.questions import Choice, Number, Several, Word, right, wrong
 from labkit.exercises.quiz.quiz import Quiz
 from labkit.exercises.verdict import Fail, NotAttempted, Outcome
+from labkit.exercises.words import words_of
 
 __all__ = [
     'Choice',
@@ -172,5 +174,6 @@ __all__ = [
     'anything',
     'expect',
     'right',
+    'words_of',
     'wrong',
 ]

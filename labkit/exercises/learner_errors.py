@@ -12,8 +12,11 @@ from labkit import settings
 from labkit.errors import LabError, cell_name
 from labkit.exercises.mistakes import Mistake
 from labkit.exercises.verdict import LearnerError
+from labkit.exercises.words import words_of
 
 __all__ = ['LastCell', 'explain_error', 'last_cell', 'where_it_hangs']
+
+WORDS = words_of(__file__)
 
 
 class LastCell:
@@ -98,255 +101,134 @@ _KNOWN: tuple[tuple[tuple[str, ...], str, Mistake], ...] = (
     (
         ('SyntaxError', 'IndentationError'),
         r'(?m)^\s*[$>]?\s*ros2\b',
-        Mistake(
-            'error/shell-command',
-            'A cell holds Python. A line of a cell that is for the command line begins with %.',
-            'Write %ros2 at the beginning of each line with a command.',
-        ),
+        WORDS.mistake('error/shell-command'),
     ),
     (
         ('TypeError',),
         r'Node\.__init__\(\) missing 1 required positional argument: .node_name.',
-        Mistake(
-            'error/node-without-name',
-            'A node needs a name.',
-            "Give it one: super().__init__('my_node')",
-        ),
+        WORDS.mistake('error/node-without-name'),
     ),
     (
         ('TypeError',),
         r'Publisher\.publish\(\) missing',
-        Mistake(
-            'error/publish-nothing',
-            'publish() sends a message, and got none.',
-            'Pass it the message object: self.publisher.publish(msg)',
-        ),
+        WORDS.mistake('error/publish-nothing'),
     ),
     (
         ('TypeError',),
         r'create_(?P<what>publisher|subscription)\(\) missing .*qos_profile',
-        Mistake(
-            'error/no-depth',
-            'The last argument is missing: the depth of the queue.',
-            'Add a number, such as 10, as the last argument.',
-        ),
+        WORDS.mistake('error/no-depth'),
     ),
     (
         ('TypeError',),
         r'(?P<name>[\w.<>]+)\(\) missing \d+ required positional argument',
-        Mistake(
-            'error/called-at-once',
-            '{name} was called without its argument. A callback is passed, not called: with '
-            'brackets after its name Python calls it at once. And a timer calls its callback '
-            'without any.',
-            'Pass the name alone, without brackets.',
-        ),
+        WORDS.mistake('error/called-at-once'),
     ),
     (
         ('TypeError',),
         r'(?P<name>[\w.<>]+)\(\) takes 0 positional arguments but 1 was given',
-        Mistake(
-            'error/no-self',
-            'A method gets the object itself as its first argument.',
-            'Write self as the first parameter of {name}.',
-        ),
+        WORDS.mistake('error/no-self'),
     ),
     (
         ('LabError',),
         r'expects a function as its \w+, but got None: with brackets',
-        Mistake(
-            'error/callback-is-none',
-            'A callback is None. With brackets after its name the function is called at once, '
-            'and what it returns, None, is passed on as the callback.',
-            'Pass the name alone, without brackets: self.on_timer, not self.on_timer().',
-        ),
+        WORDS.mistake('error/callback-is-none'),
     ),
     (
         ('RuntimeError',),
         r'callback should be either be callable with one argument',
-        Mistake(
-            'error/callback-takes-no-message',
-            'A subscription calls its callback with the message. This callback does not take '
-            'one argument; or it was called, with brackets, and not passed.',
-            'Define def on_message(self, msg): and pass self.on_message without brackets.',
-        ),
+        WORDS.mistake('error/callback-takes-no-message'),
     ),
     (
         ('TypeError',),
         r"Expected <class '.*\.(?P<want>\w+)'>, got <class '.*\.Metaclass_\w+'>",
-        Mistake(
-            'error/publishes-the-class',
-            '{want} is the class; publish() takes an object made of it.',
-            'Make one, with brackets: msg = {want}()',
-        ),
+        WORDS.mistake('error/publishes-the-class'),
     ),
     (
         ('TypeError',),
         r"Expected <class '.*\.(?P<want>\w+)'>, got <class '(?:.*\.)?(?P<got>\w+)'>",
-        Mistake(
-            'error/publishes-another-type',
-            'publish() takes a message of the type that the publisher was made for, {want}; it '
-            'got one of type {got}.',
-            'Make a message of it first: msg = {want}(), then set its fields.',
-        ),
+        WORDS.mistake('error/publishes-another-type'),
     ),
     (
         ('AssertionError',),
         r"The '(?P<field>[\w.]+)' field must be an integer in (?P<range>\[.*\])",
-        Mistake(
-            'error/number-does-not-fit',
-            'The field {field} holds whole numbers from one limit to the other, {range}. This '
-            'number does not fit: unlike an int of Python, it has a fixed size.',
-            'Keep the number within the limits, or use a larger type.',
-        ),
+        WORDS.mistake('error/number-does-not-fit'),
     ),
     (
         ('AssertionError',),
         r"The '(?P<field>[\w.]+)' field must be of type '(?P<want>\w+)'",
-        Mistake(
-            'error/value-type',
-            'The field {field} takes values of type {want} and no others: a message does not '
-            'convert.',
-            'Convert the value before you set the field: {want}(value)',
-        ),
+        WORDS.mistake('error/value-type'),
     ),
     (
         ('AssertionError',),
         r'Invalid arguments passed to constructor: (?P<name>.*)',
-        Mistake(
-            'error/no-such-field',
-            'The message has no field called {name}.',
-            '%ros2 interface show lists the fields of a message type.',
-        ),
+        WORDS.mistake('error/no-such-field'),
     ),
     (
         ('RCLError',),
         r'invalid allocator|incompatible type|existing topic name',
-        Mistake(
-            'error/topic-type',
-            'This topic already has another type in this notebook. A topic carries one type. '
-            'Within one process ROS refuses a second one, as here; between processes it says '
-            'nothing.',
-            'Use the type of the topic (%ros2 topic list -t), or another topic name.',
-        ),
+        WORDS.mistake('error/topic-type'),
     ),
     (
         ('InvalidNodeNameException',),
         r'.',
-        Mistake(
-            'error/node-name',
-            'The name of a node has letters, digits and _ only: no spaces, no slash.',
-            "Write it like this: 'my_node'",
-        ),
+        WORDS.mistake('error/node-name'),
     ),
     (
         ('InvalidTopicNameException',),
         r'.',
-        Mistake(
-            'error/topic-name',
-            'The name of a topic has letters, digits, _ and / only, no slash at the end, and '
-            'no part of it starts with a digit.',
-            "Write it like this: '/my_topic'",
-        ),
+        WORDS.mistake('error/topic-name'),
     ),
     (
         ('TypeError',),
         r"float\(\) argument must be .* number, not 'tuple'",
-        Mistake(
-            'error/decimal-comma',
-            'In Python a comma stands between two values: 0,25 is the pair of 0 and 25.',
-            'Write the number with a point: 0.25',
-        ),
+        WORDS.mistake('error/decimal-comma'),
     ),
     (
         ('LabError',),
         r'The callback of a service returns the response',
-        Mistake(
-            'error/no-response',
-            'A callback of a service has to give its response back. Without "return" a '
-            'function gives back None.',
-            'End the callback with: return response',
-        ),
+        WORDS.mistake('error/no-response'),
     ),
     (
         ('LabError',),
         r'call_async\(\) (expects|sends) an object',
-        Mistake(
-            'error/request-type',
-            'A client sends an object of the type of its requests, and got something else.',
-            'Make one first, such as SetBool.Request(data=True), and pass it.',
-        ),
+        WORDS.mistake('error/request-type'),
     ),
     (
         ('AttributeError',),
         r"'(?P<kind>\w+)' object attribute '(?P<name>\w+)' is read-only",
-        Mistake(
-            'error/class-for-object',
-            'An earlier cell has set {name} on the class {kind} itself, as after msg = {kind} '
-            'without brackets.',
-            'Write msg = {kind}(), with brackets.',
-        ),
+        WORDS.mistake('error/class-for-object'),
     ),
     (
         ('AttributeError',),
         r"'NoneType' object has no attribute '(?P<name>\w+)'",
-        Mistake(
-            'error/attribute-of-none',
-            'What stands before .{name} is None. It was not set, or it is the result of a '
-            'future that was not done yet.',
-            'Set it before it is used. The result of a future is there in the callback that '
-            'its add_done_callback() gets.',
-        ),
+        WORDS.mistake('error/attribute-of-none'),
     ),
     (
         ('AttributeError',),
         r"object has no attribute '_(Node__\w+|default_callback_group|logger|clock|rate_group|"
         r"parameter_overrides)'",
-        Mistake(
-            'error/no-super-init',
-            'The node was not set up before it was used: super().__init__(...) has not been '
-            'called.',
-            "Make super().__init__('my_node') the first line of __init__.",
-        ),
+        WORDS.mistake('error/no-super-init'),
     ),
     (
         ('AttributeError',),
         r"^(?P<name>handle) cannot be modified|^property '(?P<other>\w+)' of '\w+' object has no "
         r"setter|^can't set attribute '(?P<third>\w+)'",
-        Mistake(
-            'error/taken-name',
-            'rclpy uses the name {name}{other}{third} in each node for a thing of its own.',
-            'Choose another name, such as self.my_{name}{other}{third}.',
-        ),
+        WORDS.mistake('error/taken-name'),
     ),
     (
         ('AttributeError',),
         r"'(?P<kind>[A-Z]\w*)' object has no attribute '(?P<name>\w+)'",
-        Mistake(
-            'error/no-such-attribute',
-            '{kind} has nothing called {name}: the name is misspelt, or it is made in a line '
-            'that has not run yet.',
-            'Compare the spelling, letter by letter, with the place where it is made.',
-        ),
+        WORDS.mistake('error/no-such-attribute'),
     ),
     (
         ('TypeError',),
         r"operand type\(s\) for .*: '(?P<kind>(?!None)[A-Z]\w*)'|"
         r'\(not \"(?P<other>(?!None)[A-Z]\w*)\"\)',
-        Mistake(
-            'error/message-for-value',
-            'A message object ({kind}{other}) is not the value in it.',
-            'Take the value out of the message: msg.data',
-        ),
+        WORDS.mistake('error/message-for-value'),
     ),
     (
         ('NameError',),
         r"name '(?P<name>\w+)' is not defined",
-        Mistake(
-            'error/name-not-defined',
-            'Python does not know the name {name} here: it is misspelt, not imported, or lacks '
-            'self.',
-            'Import it, correct it, or write self.{name} if it belongs to the node.',
-        ),
+        WORDS.mistake('error/name-not-defined'),
     ),
 )

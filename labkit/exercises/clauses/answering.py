@@ -24,6 +24,7 @@ from labkit.exercises.mistakes import Mistake, anything, recognise
 from labkit.exercises.observation import SAME_SEC
 from labkit.exercises.verdict import Fail
 from labkit.exercises.what_is_asked import PUBLISHER, SUBSCRIPTION, Role
+from labkit.exercises.words import words_of
 
 if TYPE_CHECKING:
     from labkit.exercises.observation import Life
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['WITHIN', 'WITHIN_SEC', 'Answers', 'Explain', 'said_upon', 'value_of']
+
+WORDS = words_of(__file__)
 
 # How soon an answer has to come, s. A node may keep what it hears until its timer ticks.
 WITHIN_SEC = 1.0
@@ -50,52 +53,19 @@ Timed = list[tuple[float, Any]]
 # How long an answer took, the moment and the value of the message, and the answer.
 Answered = tuple[float, float, Any, Any]
 
-DIFFERS = Mistake('answers/differs', '', 'Compare the value that is wanted with the one seen.')
-SOME = Mistake(
-    'answers/some',
-    '{answered} of {count} messages were answered correctly, the others were not.',
-    'Do the same for each message that comes, whatever it says, and each time.',
-)
-SILENT = Mistake(
-    'answers/silent',
-    'The message reached {node}, but its callback did not publish.',
-    'Publish on {outer} in the callback of the subscription to {inner}.',
-)
-LATE = Mistake(
-    'answers/late',
-    'The answers wait for a timer, or for something else that comes seldom.',
-    'Publish in the callback of the subscription, or take a shorter period.',
-)
-_ONCE = 'Publish on {outer} only in the callback for {inner}, and once.'
-OTHER_TOPIC = Mistake(
-    'answers/other-topic', 'What comes on {topic} is answered, too. Nobody asked for that.', _ONCE
-)
-TWICE = Mistake('answers/twice', 'A message is answered more than once.', _ONCE)
-NOT_DUE = Mistake(
-    'answers/not-due',
-    'Nothing should be published for {value}.',
-    'Look at what has come before you publish on {outer}.',
-)
-REPEATED = Mistake(
-    'answers/repeated',
-    'The answer is repeated, again and again: a timer or a loop publishes it.',
-    _ONCE,
-)
-ECHO = Mistake(
-    'answers/echo', 'The input is published too, as it came, next to the answer.', _ONCE
-)
-TALKS_BACK = Mistake(
-    'answers/talks-back',
-    'It publishes on {inner}, too, where it only has to listen.',
-    'Publish on {outer} only.',
-)
-UNASKED = Mistake('answers/unasked', 'It publishes although nothing has come.', _ONCE)
-ITSELF = Mistake(
-    'answers/itself',
-    'What it has said itself reaches it, too, and is answered.',
-    'Do not answer what the node has said itself.',
-)
-MORE = Mistake('answers/more', 'More is published than answers.', _ONCE)
+DIFFERS = WORDS.mistake('answers/differs')
+SOME = WORDS.mistake('answers/some')
+SILENT = WORDS.mistake('answers/silent')
+LATE = WORDS.mistake('answers/late')
+OTHER_TOPIC = WORDS.mistake('answers/other-topic')
+TWICE = WORDS.mistake('answers/twice')
+NOT_DUE = WORDS.mistake('answers/not-due')
+REPEATED = WORDS.mistake('answers/repeated')
+ECHO = WORDS.mistake('answers/echo')
+TALKS_BACK = WORDS.mistake('answers/talks-back')
+UNASKED = WORDS.mistake('answers/unasked')
+ITSELF = WORDS.mistake('answers/itself')
+MORE = WORDS.mistake('answers/more')
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,44 +11,24 @@ from labkit.exercises.callback_count import find_node
 from labkit.exercises.clauses.base import Evidence, GraphClause
 from labkit.exercises.mistakes import Mistake, recognise
 from labkit.exercises.verdict import Fail
+from labkit.exercises.words import words_of
 
 __all__ = ['AsksForEach']
+
+WORDS = words_of(__file__)
 
 # Of a process that is slow the last one may be on its way, s of real time.
 UNDERWAY_SEC = 1.0
 # A node that answers nobody for so long waits for itself, s of real time.
 ANSWER_SEC = 2.5
 
-NO_PARTNER = Mistake(
-    'asks/no-partner',
-    'Your node is there, and what it should ask is not.',
-    'Run the cell again that says: {cell}',
-)
-DEADLOCK = Mistake(
-    'asks/deadlock',
-    'Its callback waits for the response: by {call}(), or by await with a client in the same '
-    'callback group. The response can be taken only when this callback has returned. So it waits '
-    'for ever: a deadlock.',
-    'Use {call}_async() and add_done_callback(), and return from the callback.',
-)
-NOTHING = Mistake(
-    'asks/nothing',
-    'No {what} has come to {partner}. One that is made and not sent asks nothing.',
-    'In the callback of the subscription: self.client.{call}_async({request})',
-)
-MORE = Mistake(
-    'asks/more',
-    '{partner} is asked more often than messages come.',
-    'Call {call}_async() once in the callback of the subscription, and nowhere else.',
-)
-SOME = Mistake(
-    'asks/some',
-    'Some messages lead to a {what}, and others do not.',
-    'Send a {what} for each message, whatever it says, also for one that came before.',
-)
-_TODO = 'In the callback of the subscription: {request}'
-SAME = Mistake('asks/same', 'The {what} is always the same, whatever the message says.', _TODO)
-OTHER = Mistake('asks/other', 'What is asked differs from what was heard.', _TODO)
+NO_PARTNER = WORDS.mistake('asks/no-partner')
+DEADLOCK = WORDS.mistake('asks/deadlock')
+NOTHING = WORDS.mistake('asks/nothing')
+MORE = WORDS.mistake('asks/more')
+SOME = WORDS.mistake('asks/some')
+SAME = WORDS.mistake('asks/same')
+OTHER = WORDS.mistake('asks/other')
 
 
 @dataclass(frozen=True, eq=False)
