@@ -57,6 +57,7 @@ __all__ = [
     'parameter_values',
     'parameters_of',
     'pending_requests',
+    'running_number',
     'running_request',
     'set_ros_time_is_active',
     'set_thread_request',
@@ -303,6 +304,12 @@ def running_request() -> dict[str, Any]:
     """Return the request that runs the current cell."""
     request: dict[str, Any] = settings.shell().get_parent()
     return request
+
+
+def running_number() -> int:
+    """Return which execution the current cell is, as in `In[12]`, or the one that ran last."""
+    # The count of the shell is one ahead while a cell runs.
+    return len(settings.shell().history_manager.input_hist_raw) - 1
 
 
 def set_thread_request(request: dict[str, Any]) -> None:

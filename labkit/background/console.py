@@ -41,6 +41,7 @@ class Cell:
 
     Attributes:
         parent: The kernel's request that runs the cell; empty outside a kernel.
+        number: Which execution of the notebook it is, as in `In[12]`; 0 if that is not known.
         lines: Number of lines that callbacks have shown under it.
         box: The box of these lines, None if there are none or no page shows them.
         stream: The stream that they have written to last.
@@ -49,6 +50,7 @@ class Cell:
     """
 
     parent: dict[str, Any] = field(default_factory=dict)
+    number: int = 0
     lines: int = 0
     box: LogBox | None = None
     stream: TextIO | None = None
@@ -172,9 +174,9 @@ class Console:
             return self._cell
         if self._give_logs_back is None:
             # ROS does not run, so no event would tell that this cell has ended.
-            return Cell(compat.running_request())
+            return Cell(compat.running_request(), compat.running_number())
         if self._running is None:
-            self._running = Cell(compat.running_request())
+            self._running = Cell(compat.running_request(), compat.running_number())
         return self._running
 
     @property

@@ -27,7 +27,7 @@ from labkit.files import read_limited
 if TYPE_CHECKING:
     from labkit.exercises.probe import Probe
 
-__all__ = ['refuse_nameless', 'refuse_traces']
+__all__ = ['definition', 'refuse_nameless', 'refuse_traces']
 
 # Of a longer program the beginning is looked at, in characters.
 MAX_PROGRAM = 100_000
@@ -161,22 +161,28 @@ def _classes() -> dict[str, type]:
 
 def _is_written(kind: type) -> bool:
     """Tell whether nothing of a class is left open: three dots stand where a learner writes."""
+    written = definition(kind)
+    inside = list(ast.walk(written)) if written is not None else []
+    open_ends = [node for node in inside if isinstance(node, ast.Constant) and node.value is ...]
+    return bool(inside) and not open_ends
+
+
+def definition(kind: type) -> ast.ClassDef | None:
+    """Return what a cell says of a class, None if that cannot be read."""
     functions = [thing for thing in vars(kind).values() if isinstance(thing, FunctionType)]
     if not functions:
-        return False
+        return None
     lines = linecache.getlines(functions[0].__code__.co_filename)
     try:
         tree = ast.parse(''.join(lines))
     except SyntaxError:  # it has lines for IPython, such as those that begin with %
-        return False
-    written = [
+        return None
+    found = [
         node
         for node in ast.walk(tree)
         if isinstance(node, ast.ClassDef) and node.name == kind.__name__
     ]
-    inside = [node for definition in written for node in ast.walk(definition)]
-    open_ends = [node for node in inside if isinstance(node, ast.Constant) and node.value is ...]
-    return bool(written) and not open_ends
+    return found[-1] if found else None
 
 
 def _refuse_process(probe: Probe, task: str) -> None:

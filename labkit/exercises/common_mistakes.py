@@ -112,6 +112,7 @@ NAME_LOST = WORDS.mistake('traces/name-lost')
 SOMETHING_ELSE = WORDS.mistake('traces/something-else')
 SHUT_DOWN = WORDS.mistake('traces/shut-down')
 ONLY_A_CLASS = WORDS.mistake('traces/only-a-class')
+CLASS_CHANGED = WORDS.mistake('traces/class-changed')
 PROCESS_ENDED = WORDS.mistake('traces/process-ended')
 OTHERS_SHARE = WORDS.mistake('traces/others-share')
 

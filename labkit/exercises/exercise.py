@@ -25,6 +25,7 @@ from labkit.exercises.sent_once import Recorder
 from labkit.exercises.time.other_time import other_times
 from labkit.exercises.verdict import Fail, LearnerError, NotAttempted, Outcome, Verdict
 from labkit.exercises.what_is_asked import NODE, PUBLISHER, SERVICE, SUBSCRIPTION, Role, Scope
+from labkit.exercises.which_run import changed_since, failed_last, judged_nodes, told_of_older
 from labkit.views.card import Card
 from labkit.views.solution import SolutionCard
 
@@ -272,7 +273,7 @@ class Exercise:
         began = time.monotonic()
         try:
             with Probe(self.name, self.scope, recorded=recorded) as probe:
-                verdict = self._verdict(probe, recorded)
+                verdict = self._of_its_run(self._verdict(probe, recorded), probe)
                 return self._with_note(verdict, probe, time.monotonic() - began)
         except LabError as error:  # e.g. ROS can't be started here
             return Verdict(
@@ -284,6 +285,34 @@ class Exercise:
             )
         except Exception as error:  # a check never raises
             return self._internal_error(error)
+
+    def _of_its_run(self, verdict: Verdict, probe: Probe) -> Verdict:
+        """Return what is to be said first where a cell has failed since, or was changed."""
+        judged = judged_nodes(probe)
+        failed = failed_last(self.starter_id, judged, passed=verdict.passed)
+        if failed is not None:
+            note = told_of_older(judged, failed, verdict)
+            error = last_cell.learner_error(failed)
+            assert error is not None
+            return self._learner_error(error).with_note(note)
+        changed = changed_since(judged)
+        if changed is None:
+            return verdict
+        node, mistake = changed
+        if verdict.passed:
+            name = mistake.values['name']
+            return verdict.with_note(f'Judged was {node}. The class {name} was changed since.')
+        return replace(
+            verdict,
+            outcome=Outcome.FAIL,
+            text='',
+            expected=verdict.expected or self._asked(),
+            seen=verdict.seen or verdict.text,
+            why=mistake.reason,
+            todo=mistake.step,
+            trace='',
+            mistake=mistake,
+        )
 
     def _with_note(self, verdict: Verdict, probe: Probe, seconds: float) -> Verdict:
         notes = []
@@ -338,9 +367,6 @@ class Exercise:
                     # The cause explains more than its consequences.
                     _look_again(probe)
                     probe.callbacks.raise_old_error(probe.scope)
-                error = last_cell.learner_error()
-                if error is not None:
-                    raise error from None
                 refuse_nameless(probe, self._asked())
                 unexplained = isinstance(outcome, NotAttempted) and not str(outcome)
                 if unexplained and not probe.something_is_starting():

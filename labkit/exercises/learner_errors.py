@@ -5,6 +5,7 @@ from __future__ import annotations
 import linecache
 import re
 from collections.abc import Callable
+from dataclasses import dataclass
 from types import FrameType
 from typing import Any
 
@@ -14,20 +15,36 @@ from labkit.exercises.mistakes import Mistake
 from labkit.exercises.verdict import LearnerError
 from labkit.exercises.words import words_of
 
-__all__ = ['LastCell', 'explain_error', 'last_cell', 'where_it_hangs']
+__all__ = ['LastCell', 'Run', 'explain_error', 'last_cell', 'where_it_hangs']
+
+
+@dataclass(frozen=True)
+class Run:
+    """How a cell ended when it ran last.
+
+    Attributes:
+        cell_id: Its id in the notebook, `''` where the front end does not send it.
+        number: Which execution of the notebook it was, as in `In[12]`.
+        error: What it raised, None if it ended well or was stopped.
+    """
+
+    cell_id: str
+    number: int
+    error: BaseException | None
 
 WORDS = words_of(__file__)
 
 
 class LastCell:
-    """Remember the error of the cell that was run last.
+    """Remember the error of the cell that was run last, and of each cell when it ran last.
 
     A cell whose code raises leaves nothing on the graph. Without this, a check would say of it
     that nothing was attempted.
     """
 
     def __init__(self) -> None:
-        self.error: BaseException | None = None
+        self.run: Run | None = None
+        self._runs: dict[str, Run] = {}
         self._asked = False
         self._after: list[Callable[[], None]] = []
         self._shell: Any = None
@@ -48,17 +65,28 @@ class LastCell:
         if action not in self._after:
             self._after.append(action)
 
-    def learner_error(self) -> LearnerError | None:
-        """Return the error of the last cell, None if it ended well."""
-        if self.error is None or isinstance(self.error, KeyboardInterrupt):
+    def run_of(self, cell_id: str) -> Run | None:
+        """Return how a cell ended when it ran last, None if it has not run."""
+        return self._runs.get(cell_id)
+
+    def learner_error(self, run: Run | None = None) -> LearnerError | None:
+        """Return the error of a run, by default of the last one; None if it ended well."""
+        run = run or self.run
+        if run is None or run.error is None:
             return None
         from labkit.background.tracebacks import short_traceback
 
-        return LearnerError('The cell that ran last', self.error, short_traceback(self.error))
+        where = 'The cell that ran last' if run is self.run else 'The cell of this exercise'
+        return LearnerError(where, run.error, short_traceback(run.error))
 
     def _look(self, result: Any) -> None:
         if not self._asked:
-            self.error = result.error_before_exec or result.error_in_exec
+            error = result.error_before_exec or result.error_in_exec
+            if isinstance(error, KeyboardInterrupt):
+                error = None
+            cell_id = getattr(result.info, 'cell_id', None) or ''
+            self.run = Run(cell_id, result.execution_count or 0, error)
+            self._runs[cell_id] = self.run
         self._asked = False
         for action in self._after:
             action()

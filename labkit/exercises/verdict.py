@@ -93,8 +93,8 @@ class Verdict:
         return self
 
     def with_note(self, note: str) -> Verdict:
-        """Return the same verdict with a note."""
-        return dataclasses.replace(self, note=note)
+        """Return the same verdict with a note, after those that it has."""
+        return dataclasses.replace(self, note=f'{self.note} {note}'.strip())
 
     def _card(self) -> Card:
         rows = [

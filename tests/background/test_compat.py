@@ -166,6 +166,8 @@ print(sorted(set(request) & {'header', 'metadata'}), compat.is_kernel_stream(sys
 """
     first = kernel.run(code)
     assert first.text == "['header', 'metadata'] True\n"
+    number = 'print(len(In) - 1, compat.running_number())'
+    assert kernel.run(number).text == '2 2\n'
     later = kernel.run(
         """
 def speak():
