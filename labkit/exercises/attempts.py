@@ -20,11 +20,14 @@ from typing import TYPE_CHECKING, Any
 from labkit import settings
 from labkit.exercises import common_mistakes
 from labkit.exercises.callback_count import is_given
+from labkit.exercises.learner_errors import last_cell
 from labkit.exercises.verdict import Fail
 from labkit.exercises.what_is_asked import PUBLISHER, SERVICE, SUBSCRIPTION
 from labkit.files import read_limited
 
 if TYPE_CHECKING:
+    from labkit.background.console import Cell
+    from labkit.exercises.exercise import Exercise
     from labkit.exercises.probe import Probe
 
 __all__ = ['definition', 'refuse_nameless', 'refuse_traces']
@@ -33,19 +36,21 @@ __all__ = ['definition', 'refuse_nameless', 'refuse_traces']
 MAX_PROGRAM = 100_000
 
 
-def refuse_traces(probe: Probe, task: str, starter_id: str) -> None:
+def refuse_traces(probe: Probe, exercise: Exercise, task: str) -> None:
     """Raise Fail if the learner has made something that may be meant as an attempt.
 
     Args:
         probe: The probe of the check.
-        task: What the exercise asks for, in a few words.
-        starter_id: Id of the cell to edit. What it has made is meant, whatever it does.
+        exercise: The exercise.
+        task: What it asks for, in a few words.
     """
     _refuse_ended_nodes(task)
-    _refuse_nodes(probe, task, starter_id)
+    _refuse_nodes(probe, exercise, task)
     if settings.in_kernel():
         _refuse_class(task)
     _refuse_process(probe, task)
+    if settings.in_kernel():
+        _refuse_cell(exercise, task)
 
 
 def refuse_nameless(probe: Probe, task: str) -> None:
@@ -72,13 +77,14 @@ def refuse_nameless(probe: Probe, task: str) -> None:
         )
 
 
-def _refuse_nodes(probe: Probe, task: str, starter_id: str) -> None:
-    """Raise Fail if there is a node that does nothing this lesson knows, or of that cell."""
+def _refuse_nodes(probe: Probe, exercise: Exercise, task: str) -> None:
+    """Raise Fail if there is a node that does nothing this lesson knows, or is meant for this."""
     from labkit.background.runtime import runtime
 
     asked = {topic for _, topic in probe.scope.of_lesson}
     ends: dict[str, list[str]] = {name: [] for name in _own_nodes(probe)}
     known: set[str] = set()
+    meant = {e.name for e in runtime.nodes() if _is_meant(e.cell, exercise)}
     for kind, found in (
         (PUBLISHER, probe.all_publishers()),
         (SUBSCRIPTION, probe.all_subscriptions()),
@@ -88,6 +94,8 @@ def _refuse_nodes(probe: Probe, task: str, starter_id: str) -> None:
                 continue
             word = 'publishes on' if kind == PUBLISHER else 'subscribes to'
             ends[end.node].append(f'{word} {end.topic} ({end.msg_type})')
+            if end.node in meant:
+                _refuse_kept_topic(exercise, task, end.node, (kind, end.topic), word)
             shown = end.topic in probe.scope.known and end.topic not in asked
             if shown or (kind, end.topic) in probe.scope.of_lesson:
                 known.add(end.node)
@@ -96,7 +104,7 @@ def _refuse_nodes(probe: Probe, task: str, starter_id: str) -> None:
             ends[server.node].append(f'serves {server.service} ({server.srv_type})')
             if (SERVICE, server.service) in probe.scope.of_lesson:
                 known.add(server.node)
-    known.difference_update(e.name for e in runtime.nodes() if e.cell.cell_id == starter_id)
+    known -= meant
     new = {name: what for name, what in ends.items() if name not in known}
     if not new:
         return
@@ -107,6 +115,52 @@ def _refuse_nodes(probe: Probe, task: str, starter_id: str) -> None:
         f'the node {name}, which {", ".join(what) or "neither publishes nor subscribes"}{other}',
         common_mistakes.SOMETHING_ELSE.of(node=name),
     )
+
+
+def _is_meant(cell: Cell, exercise: Exercise) -> bool:
+    """Tell whether what a cell has made is meant for an exercise, whatever it does.
+
+    That is so for the cell to edit, and for any that has run since another exercise was checked,
+    if it is not the one of another exercise.
+    """
+    if cell.cell_id == exercise.starter_id:
+        return True
+    lesson = exercise.belongs_to
+    others = [other.starter_id for other in lesson.exercises] if lesson is not None else []
+    since = last_cell.since_another_check(exercise.name)
+    return cell.cell_id not in others and 0 < since <= cell.number
+
+
+def _refuse_kept_topic(
+    exercise: Exercise, task: str, node: str, role: tuple[str, str], does: str
+) -> None:
+    """Raise Fail if a node that is meant for this exercise has a role of an earlier one."""
+    lesson = exercise.belongs_to
+    wanted = next((topic for kind, topic in exercise.scope.own if kind == role[0]), '')
+    if lesson is None or not wanted or role in exercise.scope.roles:
+        return
+    for number, other in enumerate(lesson.exercises, start=1):
+        if role in other.scope.roles and role in exercise.scope.earlier:
+            said = {'node': node, 'does': does, 'topic': role[1]}
+            kept = common_mistakes.KEPT_TOPIC.of(number=number, wanted=wanted, **said)
+            raise Fail(task, f'the node {node}, which {does} {role[1]}', kept)
+
+
+def _refuse_cell(exercise: Exercise, task: str) -> None:
+    """Raise Fail if the cell to edit has run with a whole program, of which nothing is there."""
+    from labkit.settings import shell
+
+    run = last_cell.run_of(exercise.starter_id)
+    if run is None or run.error is not None:
+        return
+    try:
+        tree = ast.parse(shell().user_ns['In'][run.number])
+    except (LookupError, SyntaxError):
+        return
+    inside = list(ast.walk(tree))
+    defined = [n for n in inside if isinstance(n, (ast.ClassDef, ast.FunctionDef))]
+    if defined and not any(isinstance(n, ast.Constant) and n.value is ... for n in inside):
+        raise Fail(task, 'the cell, which ran, and no node of it', common_mistakes.NOTHING_MADE)
 
 
 def _refuse_ended_nodes(task: str) -> None:

@@ -199,7 +199,7 @@ class Exercise:
         Returns:
             The verdict, or a `Pending` one while an asyncio task of the notebook is running.
         """
-        last_cell.asked()
+        last_cell.asked(self.name)
         if learner_task_runs():
             return Pending(self.name, self._check)
         Pending.wait_for_all()
@@ -370,7 +370,7 @@ class Exercise:
                 refuse_nameless(probe, self._asked())
                 unexplained = isinstance(outcome, NotAttempted) and not str(outcome)
                 if unexplained and not probe.something_is_starting():
-                    refuse_traces(probe, self._asked(), self.starter_id)
+                    refuse_traces(probe, self, self._asked())
                 raise
         except LearnerError as error:
             return self._learner_error(error)

@@ -45,6 +45,7 @@ class LastCell:
     def __init__(self) -> None:
         self.run: Run | None = None
         self._runs: dict[str, Run] = {}
+        self._checks: dict[str, int] = {}
         self._asked = False
         self._after: list[Callable[[], None]] = []
         self._shell: Any = None
@@ -56,9 +57,26 @@ class LastCell:
             self._shell = shell
             shell.events.register('post_run_cell', self._look)
 
-    def asked(self) -> None:
-        """Say that the running cell asks about the one before it, and does not count itself."""
+    def asked(self, checks: str = '') -> None:
+        """Say that the running cell asks about the one before it, and does not count itself.
+
+        Args:
+            checks: Name of the exercise that it checks, if it does.
+        """
         self._asked = True
+        if checks and self._shell is not None:
+            from labkit.background.compat import running_number
+
+            self._checks[checks] = running_number()
+
+    def since_another_check(self, name: str) -> int:
+        """Return from which execution on cells are about an exercise, and no other.
+
+        Those behind the last check of another one are; before there was one, the last cell is.
+        """
+        others = [number for other, number in self._checks.items() if other != name]
+        last = self.run.number if self.run is not None else 0
+        return max(others, default=last - 1) + 1
 
     def after_each(self, action: Callable[[], None]) -> None:
         """Call `action` after each cell, once however often it is given."""
