@@ -96,11 +96,13 @@ class Publication(NamedTuple):
         publisher: Whose method was called.
         began: When, in nanoseconds since 1970. The stamp of the message is not before that,
         ended: and not after this.
+        caller: The node in whose callback that was, with the name of the callback; None outside.
     """
 
     publisher: Publisher
     began: int
     ended: int
+    caller: tuple[str, str] | None = None
 
 
 @contextmanager
@@ -142,11 +144,17 @@ def _publish(publisher: Publisher, msg: Any) -> None:
         sent = publisher._labkit_sent = Sent(first=now)  # type: ignore[attr-defined]
     sent.count += 1
     sent.last = now
+    ended = time.time_ns()
     for note in tuple(_notes):
-        note(Publication(publisher, began, time.time_ns()), msg)
+        note(Publication(publisher, began, ended, _caller()), msg)
     if _look is not None and (sent.count == 1 or now - sent.looked_at >= LOOK_SEC):
         sent.looked_at = now
         _look(publisher, msg, sent)
+
+
+def _caller() -> tuple[str, str] | None:
+    found = runtime.executor.caller() if runtime.started else None
+    return (found[0].name, found[1]) if found is not None else None
 
 
 def keep_counting(look: Callable[[Publisher, Any, Sent], None]) -> None:

@@ -36,7 +36,7 @@ def python() -> str:
 
 def ros_packages() -> str:
     """Check that the ROS 2 packages are installed, from one distribution and one place."""
-    wanted = {name: version for name, version in _pinned().items() if name.startswith('ros-')}
+    wanted = {name: version for name, version in pinned().items() if name.startswith('ros-')}
     _compare(wanted)
     spec = importlib.util.find_spec('rclpy')
     origin = (spec.origin if spec is not None else None) or ''
@@ -59,7 +59,7 @@ def ros_packages() -> str:
 
 def jupyter() -> str:
     """Check that JupyterLab and its parts are the versions in environment.txt."""
-    wanted = {name: version for name, version in _pinned().items() if name in _JUPYTER}
+    wanted = {name: version for name, version in pinned().items() if name in _JUPYTER}
     spec = importlib.util.find_spec('ipykernel')
     if spec is not None and not is_inside(spec.origin or '', sys.prefix, follow_links=False):
         found = [f'{name} {_version(name)}' for name in _JUPYTER if _version(name)]
@@ -72,7 +72,7 @@ def _python_path() -> list[str]:
     return [entry for entry in os.environ.get('PYTHONPATH', '').split(os.pathsep) if entry]
 
 
-def _pinned() -> dict[str, str]:
+def pinned() -> dict[str, str]:
     """Return the packages and versions that environment.txt pins for this Python."""
     try:
         lines = (ROOT / 'environment.txt').read_text(encoding='utf-8').splitlines()

@@ -21,6 +21,7 @@ from labkit import settings
 from labkit.exercises import common_mistakes
 from labkit.exercises.callback_count import is_given
 from labkit.exercises.learner_errors import last_cell
+from labkit.exercises.machine_faults import refuse_machine_fault
 from labkit.exercises.verdict import Fail
 from labkit.exercises.what_is_asked import PUBLISHER, SERVICE, SUBSCRIPTION
 from labkit.files import read_limited
@@ -247,6 +248,7 @@ def _refuse_process(probe: Probe, task: str) -> None:
         # The lesson and other exercises have processes that have ended, too.
         if not _may_mean(probe, _program(child.command)):
             continue
+        refuse_machine_fault((), child.exit_code)
         code = f' with exit code {child.exit_code}' if child.exit_code else ''
         raise Fail(
             task,

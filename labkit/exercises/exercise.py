@@ -11,13 +11,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from labkit.errors import LabError
+from labkit.exercises import common_mistakes
 from labkit.exercises.attempts import refuse_nameless, refuse_traces
 from labkit.exercises.clauses.base import Graph
 from labkit.exercises.expect.endpoints import alone
 from labkit.exercises.history import history
 from labkit.exercises.judging import Clause, Stage, judge
 from labkit.exercises.learner_errors import explain_error, last_cell
+from labkit.exercises.machine_faults import machine_fault
 from labkit.exercises.messages_heard import Watch
+from labkit.exercises.mistakes import Mistake
 from labkit.exercises.pending import Pending, learner_task_runs
 from labkit.exercises.probe import Probe
 from labkit.exercises.record.progress_store import progress_store
@@ -284,7 +287,8 @@ class Exercise:
                 todo=error.todo,
             )
         except Exception as error:  # a check never raises
-            return self._internal_error(error)
+            fault = machine_fault(error)
+            return self._internal_error(error) if fault is None else self._machine_error(fault)
 
     def _of_its_run(self, verdict: Verdict, probe: Probe) -> Verdict:
         """Return what is to be said first where a cell has failed since, or was changed."""
@@ -380,15 +384,16 @@ class Exercise:
             clause = self._asked() if self.seed else ''
             return Verdict(Outcome.NOT_ATTEMPTED, self.name, text, clause=clause)
         except Fail as fail:
+            stray = _stray(probe)
             return Verdict(
                 Outcome.FAIL,
                 self.name,
                 expected=fail.expected,
                 seen=fail.seen,
-                why=fail.why,
-                todo=fail.todo,
+                why=stray.reason if stray is not None else fail.why,
+                todo=stray.step if stray is not None else fail.todo,
                 clause=fail.clause,
-                mistake=fail.mistake,
+                mistake=stray or fail.mistake,
                 time_line=probe.life.time_line(fail.at) if probe.life is not None else None,
             )
         text = text or 'It does what the task asks for.'
@@ -412,6 +417,12 @@ class Exercise:
             trace=error.trace,
         )
 
+    def _machine_error(self, fault: Mistake) -> Verdict:
+        text = 'Nothing could be checked. That is no fault of yours.'
+        return Verdict(
+            Outcome.ERROR, self.name, text, why=fault.reason, todo=fault.step, mistake=fault
+        )
+
     def _internal_error(self, error: Exception) -> Verdict:
         import traceback
 
@@ -422,6 +433,15 @@ class Exercise:
             todo='Run the check again. If it stays, please report it with the lines below.',
             trace=''.join(traceback.format_exception(error)[-4:]),
         )
+
+
+def _stray(probe: Probe) -> Mistake | None:
+    """Return what is wrong if a node publishes elsewhere, with the publisher of another one."""
+    judged = probe.attempt() if probe.life is not None and probe.life.strays else ()
+    for stray in probe.life.strays if probe.life is not None else ():
+        if stray.node in judged and stray.topic not in probe.scope.publishes:
+            return common_mistakes.WENT_ELSEWHERE.of(**vars(stray))
+    return None
 
 
 def _look_again(probe: Probe) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 
 from labkit import settings
 from labkit.errors import LabError, cell_name
+from labkit.exercises.machine_faults import machine_fault
 from labkit.exercises.mistakes import Mistake
 from labkit.exercises.verdict import LearnerError
 from labkit.exercises.words import words_of
@@ -131,6 +132,9 @@ def explain_error(error: BaseException) -> Mistake | None:
     Args:
         error: What the learner's code raised.
     """
+    fault = machine_fault(error)
+    if fault is not None:
+        return fault
     text = str(error)
     if isinstance(error, SyntaxError):
         text = f'{text}\n{error.text or ""}'

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from labkit.asking.traffic import Publication
     from labkit.exercises.probe import Probe
 
-__all__ = ['LIFE_SEC', 'Life', 'Sent', 'Stimulus', 'live']
+__all__ = ['LIFE_SEC', 'Life', 'Sent', 'Stimulus', 'Stray', 'live']
 
 # Who has sent a message, where it is no node of the notebook.
 BY_CHECK, ANOTHER = 'this check', 'another process'
@@ -86,6 +86,23 @@ class Sent:
     fields: Mapping[str, Any]
 
 
+@dataclass(frozen=True)
+class Stray:
+    """A message that a callback has published with the publisher of another node.
+
+    Attributes:
+        node: Full name of the node of the callback.
+        callback: Its name.
+        topic: Where the message went.
+        owner: Full name of the node of the publisher.
+    """
+
+    node: str
+    callback: str
+    topic: str
+    owner: str
+
+
 @dataclass
 class Life:
     """What was seen.
@@ -109,6 +126,7 @@ class Life:
         began: When time began to pass, ns since 1970.
         since: From when on all topics were listened to, s, below 0: of a message that came before,
             the answer may have been missed.
+        strays: What callbacks have published with the publisher of another node.
     """
 
     seconds: float = 0.0
@@ -126,6 +144,7 @@ class Life:
     error: LearnerError | None = None
     began: int = 0
     since: float = -math.inf
+    strays: Sequence[Stray] = ()
 
     def on(self, topic: str, *, before: bool = False) -> list[Lived]:
         """Return the messages of a topic, if asked for with those that came just before."""
@@ -308,6 +327,7 @@ def live(
         life.flooded, life.hanging = passing.flooded, passing.hanging
         life.overloaded, life.overrun = passing.overloaded, passing.overrun
         probe.work_sec -= passing.worked
+    life.strays = _strays(published)
     probe.note_output(life.seconds, said)
     for topic, watch in watches.items():
         samples = [*earlier[topic], *watch.samples]
@@ -318,12 +338,29 @@ def live(
     return life
 
 
-def _authors(topic: str, published: Sequence[Publication]) -> list[tuple[float, float, str]]:
-    """Return from when to when a node of this process has published on a topic, s since 1970."""
+def _owners() -> dict[Any, str]:
+    """Return the publishers of this process with the full names of their nodes."""
     from labkit.background.nodes import existing_nodes, full_name
 
     nodes = [(node, full_name(node)) for node in existing_nodes()]
-    of = {publisher: name for node, name in nodes for publisher in node.publishers}
+    return {publisher: name for node, name in nodes for publisher in node.publishers}
+
+
+def _strays(published: Sequence[Publication]) -> list[Stray]:
+    """Return what callbacks have published with the publisher of another node."""
+    of = _owners()
+    return [
+        Stray(*each.caller, each.publisher.topic_name, of[each.publisher])
+        for each in published
+        if each.caller is not None
+        and each.publisher in of
+        and each.caller[0] != of[each.publisher]
+    ]
+
+
+def _authors(topic: str, published: Sequence[Publication]) -> list[tuple[float, float, str]]:
+    """Return from when to when a node of this process has published on a topic, s since 1970."""
+    of = _owners()
     return [
         (each.began * 1e-9, each.ended * 1e-9, of[each.publisher])
         for each in published

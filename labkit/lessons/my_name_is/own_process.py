@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, Solution
 from labkit.exercises.clauses import Evidence, GraphClause, Publishes
+from labkit.exercises.machine_faults import refuse_machine_fault
 from labkit.lessons.my_name_is.programs import ended_program
 from labkit.lessons.my_name_is.stages import INNER, STRING, says_opening
 
@@ -39,6 +40,7 @@ class _InAnotherProcess(GraphClause):
             program = ended_program(evidence.probe)
             if program is None:
                 raise
+            refuse_machine_fault(program.output, program.exit_code)
             last = program.output[-1] if program.output else 'nothing'
             raise Fail(
                 f'a program that goes on, and publishes on {INNER}',

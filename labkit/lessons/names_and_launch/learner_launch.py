@@ -17,6 +17,7 @@ from labkit import stop_button
 from labkit.errors import LabError
 from labkit.exercises import Clause, Fail, Mistake, NotAttempted, Probe, Stage
 from labkit.exercises.exercise import NOTHING_YET
+from labkit.exercises.machine_faults import refuse_machine_fault
 from labkit.lessons.package.learner_workspace import workspace
 
 if TYPE_CHECKING:
@@ -150,14 +151,16 @@ class System:
     def _refuse_dead(self) -> None:
         for program in self.launch.processes:
             if program.exit_code is not None or program.starts > 1:
-                last = self._last_words(program.name)
+                said = self._output_of(program.name)
+                refuse_machine_fault(said, program.exit_code)
+                last = said[-1] if said else 'nothing'
                 raise Fail(f'{program.name} runs', f'it has ended, and said at last: {last}', DIED)
 
-    def _last_words(self, program: str) -> str:
+    def _output_of(self, program: str) -> list[str]:
         ended, start = f'[{program}]: process has ', f'[{program}] '
         self.wait(lambda: any(ended in line for line in self.launch.output))
-        said = [line for line in self.launch.output if line.startswith(start)]
-        return said[-1].removeprefix(start) if said else 'nothing'
+        output = self.launch.output
+        return [line.removeprefix(start) for line in output if line.startswith(start)]
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from labkit.errors import nearest
 from labkit.exercises import Clause, Fail, Mistake, NotAttempted, Probe, Stage, common_mistakes
 from labkit.exercises.clauses import Asked
 from labkit.exercises.expect.timing import FOUND_SEC
+from labkit.exercises.machine_faults import refuse_machine_fault
 from labkit.exercises.messages_heard import Lived
 from labkit.exercises.observation import Life, live
 from labkit.lessons.package.learner_workspace import workspace
@@ -352,6 +353,7 @@ class Runs(Clause[Work]):
             if not work.wait(lambda: not process.running):
                 return ''
         if not process.running:
+            refuse_machine_fault(process.output, process.exit_code)
             last = process.output[-1] if process.output else 'nothing'
             raise Fail(
                 wanted,
