@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import dbm
+import hashlib
 from typing import Any
 
 import bcrypt
@@ -13,7 +14,10 @@ from firstuseauthenticator.firstuseauthenticator import (  # type: ignore[import
 )
 from jupyterhub.handlers import LoginHandler
 from jupyterhub.orm import Role, object_session
+from tornado.web import HTTPError
 from traitlets import Set
+
+from labkit.hub.guesses import Guesses, TooManyError
 
 __all__ = ['LONGEST', 'TEACHER', 'ClassAuthenticator']
 
@@ -21,8 +25,11 @@ TEACHER = 'teacher'
 """The role of teachers."""
 LONGEST = 72
 """How many bytes of a password bcrypt takes."""
-# Somebody who is not of the class takes as long as a wrong password.
 _NOBODY = bcrypt.hashpw(b'', bcrypt.gensalt())
+# The cookie of a browser with which somebody has logged in, and how long it is good for, days.
+_COOKIE, _COOKIE_DAYS = 'labkit-known', 365
+# More than a name of the class has.
+_LONGEST_NAME = 32
 
 
 class _ChangePassword(ResetPasswordHandler):  # type: ignore[misc]
@@ -54,22 +61,58 @@ class ClassAuthenticator(FirstUseAuthenticator):  # type: ignore[misc]
 
     teachers = Set(help='Who teaches.').tag(config=True)
 
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._guesses = Guesses()
+        self._strangers = asyncio.Lock()
+
     async def authenticate(self, handler: Any, data: dict[str, str]) -> str | None:
         """Return the name of who logs in, None if name and password don't fit.
 
         Args:
             handler: The request.
             data: Name and password.
+
+        Raises:
+            HTTPError: Too many others try passwords of this account just now.
         """
-        name = self.normalize_username(data['username'])
-        password = data['password'].encode()
-        with dbm.open(self.dbm_path, 'c', 0o600) as hashes:
-            stored = hashes.get(name.encode())
-        known = stored is not None and len(password) <= LONGEST
-        right = await asyncio.to_thread(
-            bcrypt.checkpw, password[:LONGEST], stored if stored is not None else _NOBODY
+        name = str(self.normalize_username(data['username']))[:_LONGEST_NAME]
+        shown = handler.get_signed_cookie(_COOKIE, max_age_days=_COOKIE_DAYS)
+        known = shown == _mark(name, self._stored(name))
+        who = {'name': name, 'address': _address(handler.request), 'known': known}
+        try:
+            async with self._guesses.turn(**who):
+                stored = self._stored(name)  # which may be another one by now
+                if not await self._compare(data['password'].encode(), stored):
+                    self._guesses.note_wrong(**who)
+                    return None
+        except TooManyError:
+            raise HTTPError(
+                429, 'Many passwords are tried for this account just now. Try again in a minute.'
+            ) from None
+        handler.set_signed_cookie(
+            *(_COOKIE, _mark(name, stored), _COOKIE_DAYS),
+            path=handler.hub.base_url,
+            httponly=True,
+            samesite='Lax',
+            secure=handler.request.protocol == 'https',
         )
-        return name if known and right else None
+        return name
+
+    def _stored(self, name: str) -> bytes | None:
+        with dbm.open(self.dbm_path, 'c', 0o600) as hashes:
+            return hashes.get(name.encode())
+
+    async def _compare(self, password: bytes, stored: bytes | None) -> bool:
+        """Return whether a password is the stored one, beside the hub's other work."""
+        short = password[:LONGEST]
+        if stored is None:
+            # As long as a wrong password takes, but one at a time: names can be made up without
+            # end, and those who have one would wait for a processor.
+            async with self._strangers:
+                await asyncio.to_thread(bcrypt.checkpw, short, _NOBODY)
+            return False
+        return await asyncio.to_thread(bcrypt.checkpw, short, stored) and short == password
 
     def reset_password(self, username: str, new_password: str) -> str:
         """Change a password; return what to tell the person.
@@ -107,9 +150,19 @@ class ClassAuthenticator(FirstUseAuthenticator):  # type: ignore[misc]
         """
 
     def get_handlers(self, app: Any) -> list[tuple[str, type]]:
-        """Return the pages for logging in and for changing one's password.
-
-        The first is JupyterHub's own: that of jupyterhub-firstuseauthenticator (1.1) can't show
-        what is wrong with a form that was open for long.
-        """
+        """Return the pages for logging in and for changing one's password."""
         return [(r'/login', LoginHandler), (r'/auth/change-password', _ChangePassword)]
+
+
+def _mark(name: str, stored: bytes | None) -> bytes:
+    """Return what the cookie says: once the password is another one, it is of no use."""
+    return f'{name}:{hashlib.sha256(stored or b"").hexdigest()}'.encode()
+
+
+def _address(request: Any) -> str:
+    """Return where a request comes from, as the proxy has seen it.
+
+    What stands before that, and in other headers, anybody can write.
+    """
+    seen = request.headers.get('X-Forwarded-For', '').rpartition(',')[2].strip()
+    return str(seen or request.remote_ip)

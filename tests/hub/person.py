@@ -74,15 +74,15 @@ class Person:
         except urllib.error.HTTPError as error:
             return Answer(error.code, error.url or '', error.read().decode(errors='replace'))
 
-    def log_in(self, password: str | None = None) -> Answer:
+    def log_in(self, password: str | None = None, **headers: str) -> Answer:
         """Fill in the form of the login page."""
-        self.ask('/hub/login')
+        self.ask('/hub/login', **headers)
         fields = {
             'username': self.name,
             'password': password or self._hub.password(self.name),
             '_xsrf': self._cookie('_xsrf'),
         }
-        return self.ask('/hub/login', 'POST', fields, type='form')
+        return self.ask('/hub/login', 'POST', fields, type='form', **headers)
 
     def get_token(self) -> None:
         """Let the hub make a token for one's own scripts, which is used from here on."""

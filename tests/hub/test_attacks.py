@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import socket
 import sys
+import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -341,3 +343,37 @@ def test_nobody_takes_the_place_of_a_hub_that_is_down(
     finally:
         hub.start()
     assert notebooks['ben'].run('print(6 * 7)').strip() == '42'
+
+
+@pytest.mark.slow('a hub, with servers and kernels')
+def test_guessed_passwords_wait_and_hold_up_nobody(hub: Hub) -> None:
+    anna = Person(hub, 'anna')
+    assert '/hub/login' not in anna.log_in().address
+    seen: list[int] = []
+    over = threading.Event()
+
+    def attack(number: int) -> None:
+        thief = Person(hub, 'anna')
+        # What anybody may write there makes no other address of it.
+        forged = {'X-Forwarded-For': f'192.0.2.{number}', 'X-Real-Ip': f'192.0.2.{number}'}
+        while not over.is_set():
+            seen.append(thief.log_in('a guess', **forged).status)
+
+    begin = time.monotonic()
+    thieves = [threading.Thread(target=attack, args=(number,)) for number in range(8)]
+    for thief in thieves:
+        thief.start()
+    try:
+        hub.wait(lambda: 429 in seen, 'a guess that is refused')
+        for _ in range(3):
+            assert '/hub/login' not in Person(hub, 'ben').log_in().address
+        # She herself, in the browser that she has used before.
+        assert '/hub/login' not in anna.log_in().address
+    finally:
+        over.set()
+        for thief in thieves:
+            thief.join()
+    longest = time.monotonic() - begin
+    assert set(seen) == {403, 429}
+    # Five at once, then after 1, 2, 4 and each further 8 s.
+    assert seen.count(403) <= 5 + 3 + longest / 8 + 1, (seen.count(403), longest)
