@@ -33,7 +33,7 @@ from labkit.packages.workspace import colcon, load_libraries
 from labkit.rosgraph import interfaces
 from labkit.setup.compiler import check_compiler
 
-__all__ = ['stand_in']
+__all__ = ['is_loaded', 'is_ready', 'stand_in']
 
 _CMAKE = Path(__file__).with_suffix('.cmake')
 # The packages whose version decides what is generated; it stands in their package.xml.
@@ -72,6 +72,20 @@ def stand_in(package: str) -> None:
         words = [each.rpartition('/')[2] for each in interfaces.names_in(package, kind)]
         module = sys.modules[f'{package}.{kind}'] = _Types(f'{package}.{kind}', words)
         setattr(sys.modules[package], kind, module)
+
+
+def is_loaded(name: str) -> bool:
+    """Return whether this process has the class of a type, such as `tf2_msgs/msg/TFMessage`."""
+    package, kind, word = name.split('/')
+    return word in vars(sys.modules.get(f'{package}.{kind}', object))
+
+
+def is_ready(name: str) -> bool:
+    """Return whether a type can be imported at once: it is installed, or was built before."""
+    package = name.partition('/')[0]
+    if package in interfaces.packages():
+        return True
+    return any((place / _key(name, _texts(name))).is_dir() for place in _places())
 
 
 class _Types(ModuleType):
@@ -157,7 +171,7 @@ def _built(name: str, of_all: str = '') -> Path:
         LabError: It can not be built.
     """
     texts = _texts(name)
-    key = f'{name.replace("/", ".")}-{_digest(texts)}'
+    key = _key(name, texts)
     for place in _places():
         if (place / key).is_dir():
             return place / key
@@ -189,6 +203,11 @@ def _texts(name: str) -> dict[str, str]:
     for inner in _OWN.findall(text):
         texts.update(_texts(f'{package}/msg/{inner}'))
     return texts
+
+
+def _key(name: str, texts: dict[str, str]) -> str:
+    """Return the name of the folder with what was built of a type."""
+    return f'{name.replace("/", ".")}-{_digest(texts)}'
 
 
 def _digest(texts: dict[str, str]) -> str:

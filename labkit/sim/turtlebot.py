@@ -5,8 +5,8 @@ unchanged. Sources: ROBOTIS-GIT/turtlebot3, turtlebot3_node: src/turtlebot3.cpp,
 include/turtlebot3_node/sensors/sensors.hpp (KeepLast(10), reliable); ROBOTIS-GIT/
 hls_lfcd_lds_driver, src/hlds_laser_publisher.cpp (SensorDataQoS).
 
-Missing are `/tf`, since there is no wheel of tf2_msgs for ROS 2 Jazzy, `/magnetic_field`, and
-`/sensor_state`, whose type is ROBOTIS's own.
+Missing are `/magnetic_field`, and `/sensor_state`, whose type is ROBOTIS's own. `/tf` and
+`/tf_static` are there once somebody wants them: no wheel has their type, so it is built first.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from collections.abc import Callable
 from typing import Any, cast
 
 import rclpy.utilities
+from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Twist, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.clock import ROSClock
@@ -31,6 +32,7 @@ from std_msgs.msg import Float64
 
 from labkit.background.runtime import runtime
 from labkit.errors import LabError
+from labkit.packages.built_types import is_loaded, is_ready
 from labkit.rosgraph.endpoints import publishers
 from labkit.rosgraph.interfaces import type_name
 from labkit.sim.burger_messages import (
@@ -47,6 +49,7 @@ from labkit.sim.camera import PI_CAMERA
 from labkit.sim.command_timeout import COMMAND_TIMEOUT, TIMED_OUT_TOPIC, timed_out_words
 from labkit.sim.kinematics import Pose, Twist2
 from labkit.sim.pace import Beat, Stopwatch
+from labkit.sim.parts import moving_parts, static_parts
 from labkit.sim.simulator import Simulator
 from labkit.sim.world import Contact, Wall, World
 
@@ -59,6 +62,9 @@ QUEUE_DEPTH = 10
 # Queue depth of images, as in the driver of the real camera (camera_ros): only the newest is of
 # use.
 PICTURES = 1
+# The type of /tf and /tf_static, and the queue depth of tf2_ros.
+TF_TYPE = 'tf2_msgs/msg/TFMessage'
+TF_DEPTH = 100
 # Beyond this speed rclpy can't keep up with the messages, simulated seconds per second.
 MAX_SPEED = 100.0
 # Shortest timer period, s: when time runs fast, a call does several rounds.
@@ -77,9 +83,11 @@ class Turtlebot(Node):
     is a plain model, which falls from 100 % to 0 % in 2.5 h of simulated time. Its camera, a
     Raspberry Pi camera v2 that looks ahead, publishes `camera/image_raw` (sensor_msgs/msg/Image:
     rgb8, 320 by 240 pixels, 62.2 degrees wide) and `camera/camera_info`
-    (sensor_msgs/msg/CameraInfo) at 10 Hz, if anyone subscribes. There is no `/tf`. The robot stops
-    when commands stop coming, and when it touches a wall. The frame `odom` has the origin of the
-    world, wherever the robot starts.
+    (sensor_msgs/msg/CameraInfo) at 10 Hz, if anyone subscribes. As soon as this process has
+    imported the type tf2_msgs/msg/TFMessage, or anybody subscribes to them, `/tf` says at 30 Hz
+    where odometry has the robot and how its wheels are turned, and `/tf_static` where its other
+    parts are. The robot stops when commands stop coming, and when it touches a wall. The frame
+    `odom` has the origin of the world, wherever the robot starts.
 
     Time can pass in three ways. By default it is real time. With `speed` it runs faster or slower,
     and `/clock` publishes it for nodes with the parameter `use_sim_time`. With `lockstep` it
@@ -203,6 +211,8 @@ class Turtlebot(Node):
         self._battery = self.create_publisher(BatteryState, 'battery_state', QUEUE_DEPTH)
         self._image = self.create_publisher(Image, 'camera/image_raw', PICTURES)
         self._camera_info = self.create_publisher(CameraInfo, 'camera/camera_info', PICTURES)
+        self._frames: Any = None
+        self._open_frames()
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)  # type: ignore[no-untyped-call]
         self._timed_out = self.create_publisher(Float64, TIMED_OUT_TOPIC, latched)
         self._said_timed_out: bool | None = None
@@ -407,8 +417,10 @@ class Turtlebot(Node):
         if self._clock_publisher is not None:
             self._clock_publisher.publish(Clock(clock=self._stamp()))
         self._say_timed_out()
-        self._publish_odometry()
+        # One stamp for all: what a sensor has seen can be looked up in the frames of that moment.
         stamp = self._stamp()
+        self._publish_odometry(stamp)
+        self._publish_frames(stamp)
         # These rarely have subscribers; making them would be a waste.
         if self._joints.get_subscription_count():
             self._joints.publish(joint_state_message(self.simulator, stamp, self._prefix))
@@ -417,8 +429,9 @@ class Turtlebot(Node):
         if self._battery.get_subscription_count():
             self._battery.publish(battery_message(self.simulator, stamp))
         if self._scan_beat.is_due(self.simulator.time):
-            self._publish_scan()
+            self._publish_scan(stamp)
             self._warn_of_other_commands()
+            self._open_frames()
         if self._camera_beat.is_due(self.simulator.time):
             self._publish_picture()
 
@@ -428,11 +441,38 @@ class Turtlebot(Node):
             limit = self.simulator.command_timeout if self.timed_out else 0.0
             self._timed_out.publish(Float64(data=limit))
 
-    def _publish_odometry(self) -> None:
-        self._odom.publish(odometry_message(self.simulator, self._stamp(), self._prefix))
+    def _publish_odometry(self, stamp: Time | None = None) -> None:
+        stamp = stamp or self._stamp()
+        self._odom.publish(odometry_message(self.simulator, stamp, self._prefix))
 
-    def _publish_scan(self) -> None:
-        self._scan.publish(scan_message(self.simulator, self._stamp(), self._prefix))
+    def _publish_scan(self, stamp: Time | None = None) -> None:
+        self._scan.publish(scan_message(self.simulator, stamp or self._stamp(), self._prefix))
+
+    def _open_frames(self) -> None:
+        """Begin to say where the parts are, if somebody wants that and the type is there."""
+        if self._frames is not None:
+            return
+        heard = self.count_subscribers('/tf') or self.count_subscribers('/tf_static')
+        if not is_loaded(TF_TYPE) and not (heard and is_ready(TF_TYPE)):
+            if heard:
+                self._warn_once(
+                    'frames',
+                    f"Can't say on /tf where my parts are: the type {TF_TYPE} is not there. This "
+                    'builds it, once: from tf2_msgs.msg import TFMessage',
+                )
+            return
+        from tf2_msgs.msg import TFMessage
+
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)  # type: ignore[no-untyped-call]
+        static = self.create_publisher(TFMessage, '/tf_static', latched)
+        static.publish(TFMessage(transforms=static_parts(self._stamp(), self._prefix)))
+        on_join = self._on_join(self._publish_frames)
+        self._frames = self.create_publisher(TFMessage, '/tf', TF_DEPTH, event_callbacks=on_join)
+
+    def _publish_frames(self, stamp: Time | None = None) -> None:
+        if self._frames is not None:
+            parts = moving_parts(self.simulator, stamp or self._stamp(), self._prefix)
+            self._frames.publish(self._frames.msg_type(transforms=parts))
 
     def _publish_picture(self) -> None:
         stamp = self._stamp()

@@ -14,6 +14,7 @@ __all__ = [
     'Matrix',
     'Quaternion',
     'Vector',
+    'from_rpy',
     'interpolated',
     'inverse',
     'matrix',
@@ -26,6 +27,19 @@ __all__ = [
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 Matrix = tuple[Vector, Vector, Vector]
+
+
+def from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
+    """Return the turn about the fixed x axis, then y, then z; angles in rad."""
+    sin_x, cos_x = math.sin(roll / 2), math.cos(roll / 2)
+    sin_y, cos_y = math.sin(pitch / 2), math.cos(pitch / 2)
+    sin_z, cos_z = math.sin(yaw / 2), math.cos(yaw / 2)
+    return (
+        sin_x * cos_y * cos_z - cos_x * sin_y * sin_z,
+        cos_x * sin_y * cos_z + sin_x * cos_y * sin_z,
+        cos_x * cos_y * sin_z - sin_x * sin_y * cos_z,
+        cos_x * cos_y * cos_z + sin_x * sin_y * sin_z,
+    )
 
 
 def product(a: Quaternion, b: Quaternion) -> Quaternion:
