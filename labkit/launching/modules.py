@@ -21,7 +21,10 @@ from labkit.launching import (
 from labkit.launching.model import LaunchDescription, LaunchError, placed
 from labkit.launching.templates import template
 
-__all__ = ['contents']
+__all__ = ['FOLLOWS', 'contents']
+
+FOLLOWS = {'launch': '3.4.10', 'launch_ros': '0.26.10'}
+"""The versions of the real packages that launch files are read as by."""
 
 _COMPONENTS = 'nodes that share a process are programs in C++'
 _LIFECYCLE = 'nodes with a life cycle are not part of this course'

@@ -1,6 +1,6 @@
 """The process that launches: what it starts, shows, signals and leaves: nothing.
 
-Texts, exit codes and the order of signals are those of the real `launch` 3.4.3.
+Texts, exit codes and the order of signals are those of the real `launch`.
 """
 
 import os
@@ -240,6 +240,24 @@ def test_timers(launch):
     said = [line.rpartition(' ')[2] for line in one.lines if 'launch.user' in line]
     assert said[0] == 'first' and sorted(said[1:]) == ['inner', 'second']
     assert '[echo-1]: process has finished cleanly' in one.shown
+
+
+def test_what_is_in_a_timer_has_the_configurations_of_its_place(launch):
+    one = launch(
+        xml(
+            '<let name="a" value="outer"/>',
+            '<group>',
+            '<let name="a" value="inner"/><push_ros_namespace namespace="r1"/>',
+            '<timer period="0.01"><log message="$(var a) $(var ros_namespace)"/>',
+            '<let name="a" value="changed"/></timer>',
+            '</group>',
+            '<timer period="0.2"><log message="$(var a)"/></timer>',
+            '<let name="a" value="later"/>',
+        )
+    )
+    assert one.end() == 0, one.shown
+    said = [line.partition(']: ')[2] for line in one.lines if 'launch.user' in line]
+    assert said == ['inner /r1', 'outer']
 
 
 def test_shutdown_cancels_timers(launch):

@@ -1,4 +1,4 @@
-"""Each case was given to the real `launch` 3.4.3 and `launch_ros` 0.26.6 of Jazzy; this is equal.
+"""Each case was given to the real `launch` and `launch_ros` of Jazzy; this is equal.
 
 `real_launch.json` has what they said and would have started, with parameter files as data. They
 were read from source in an environment of their own; nothing of them is here.
@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from labkit.errors import LabError
+from labkit.launching.modules import FOLLOWS
 from tests.launching.stage import visit, write
 
 HERE = Path(__file__).parent
@@ -38,5 +39,12 @@ def test_does_as_the_real_one(name: str, tmp_path: Path, toys: Path):
     assert json.loads(seen) == [case['said'], case['started']]
 
 
-def test_there_are_enough_cases():
-    assert len(CASES) > 250
+def test_the_page_names_the_version_and_counts_the_cases():
+    page = (HERE.parents[1] / 'docs' / 'launch.md').read_text(encoding='utf-8')
+    text = ' '.join(page.split())
+    texts = json.loads((HERE / 'real_substitutions.json').read_text(encoding='utf-8'))
+    assert f'the real `launch` {FOLLOWS["launch"]} and `launch_ros` {FOLLOWS["launch_ros"]}' in text
+    assert (
+        f'{len(CASES) + len(texts)} cases stand in `tests/launching`: {len(CASES)} launch files '
+        f'and {len(texts)} texts'
+    ) in text

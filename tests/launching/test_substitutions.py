@@ -1,4 +1,4 @@
-"""Texts with `$(...)`: the values are those of the real `launch` 3.4.3."""
+"""Texts with `$(...)`: the values are those of the real `launch`."""
 
 import json
 from pathlib import Path
@@ -60,7 +60,6 @@ def test_a_name_is_found_that_is_near():
 
 
 def test_any_and_all():
-    # Those of the real one raise a TypeError, whatever they are given; this is as documented.
     assert performed('$(any false true)') == 'true'
     assert performed('$(all true true false)') == 'false'
 
