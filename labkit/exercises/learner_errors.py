@@ -33,6 +33,7 @@ class Run:
     number: int
     error: BaseException | None
 
+
 WORDS = words_of(__file__)
 
 
