@@ -43,9 +43,8 @@ def test_the_page_names_the_version_and_counts_the_cases():
     page = (HERE.parents[1] / 'docs' / 'launch.md').read_text(encoding='utf-8')
     text = ' '.join(page.split())
     texts = json.loads((HERE / 'real_substitutions.json').read_text(encoding='utf-8'))
-    assert (
-        f'the real `launch` {FOLLOWS["launch"]} and `launch_ros` {FOLLOWS["launch_ros"]}' in text
-    )
+    followed = f'the real `launch` {FOLLOWS["launch"]} and `launch_ros` {FOLLOWS["launch_ros"]}'
+    assert followed in text
     assert (
         f'{len(CASES) + len(texts)} cases stand in `tests/launching`: {len(CASES)} launch files '
         f'and {len(texts)} texts'

@@ -15,8 +15,9 @@ from rclpy.time import Time
 from labkit.packages import built_types
 from labkit.sim import turtlebot
 from labkit.sim.camera import PI_CAMERA
-from labkit.sim.kinematics import BURGER, Pose
+from labkit.sim.kinematics import Pose
 from labkit.sim.parts import moving_parts, static_parts
+from labkit.sim.robots import BURGER
 from labkit.sim.simulator import Simulator
 from labkit.sim.world import open_field
 from labkit.transforms import tf2_geometry_msgs
