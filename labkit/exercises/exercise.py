@@ -29,6 +29,7 @@ from labkit.exercises.time.other_time import other_times
 from labkit.exercises.verdict import Fail, LearnerError, NotAttempted, Outcome, Verdict
 from labkit.exercises.what_is_asked import NODE, PUBLISHER, SERVICE, SUBSCRIPTION, Role, Scope
 from labkit.exercises.which_run import changed_since, failed_last, judged_nodes, told_of_older
+from labkit.exercises.words import Words
 from labkit.views.card import Card
 from labkit.views.solution import SolutionCard
 
@@ -75,9 +76,19 @@ class Solution:
             code = code.replace(old, new)
         return code
 
+    @staticmethod
+    def of(words: Words) -> Solution:
+        """Return the solution with the name of a module, and the reason in its words."""
+        folder, name = words.path.parent, words.path.stem
+        found = sorted(each.name for each in (folder / 'solutions').glob(f'{name}.*'))
+        return Solution(str(words.path), found[0] if found else f'{name}.py', words.reason)
+
     def changed(self, *changes: tuple[str, str]) -> Solution:
         """Return the solution with further replacements."""
         return replace(self, changes=(*self.changes, *changes))
+
+
+_NO_SOLUTION = Solution('', '', '')
 
 
 def read_answer(path: Path) -> str:
@@ -93,7 +104,8 @@ class Exercise:
     """An exercise of a lesson. `check()`, `hint()` and `solution()` are for the learner.
 
     Attributes:
-        name: Its name as a Python name: `lesson.count_up`.
+        words: What it says. Name, task, hints and answer are theirs if they are not given.
+        name: Its name as a Python name: `lesson.count_up`; that of the module.
         task: The task in a sentence or two.
         clauses: The requirements of the task, which the check judges one by one.
         stage: The source of the evidence, by default the graph.
@@ -118,10 +130,11 @@ class Exercise:
         check_id: Id of the cell with the check; `'count-up-check'` if empty.
     """
 
-    name: str
-    task: str
-    hints: Sequence[str]
-    answer: Solution
+    words: Words | None = None
+    name: str = ''
+    task: str = ''
+    hints: Sequence[str] = ()
+    answer: Solution = _NO_SOLUTION
     clauses: Sequence[Clause[Any]] = ()
     stage: Stage[Any] = field(default_factory=Graph)
     publishes: Mapping[str, str] = field(default_factory=dict)
@@ -137,6 +150,12 @@ class Exercise:
     check_id: str = ''
 
     def __post_init__(self) -> None:
+        if self.words is not None:
+            self.name = self.name or self.words.path.stem
+            self.task = self.task or self.words.task
+            self.hints = self.hints or self.words.hints
+            if self.answer is _NO_SOLUTION:
+                self.answer = Solution.of(self.words)
         self.lesson = ''
         self.belongs_to: Lesson | None = None
         # The other variants, and the learner's seed; '' for the notebook's exercise.

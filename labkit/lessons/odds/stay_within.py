@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from labkit.exercises import Exercise, Fail, Mistake, Probe, Solution, expect
+from labkit.exercises import Exercise, Fail, Mistake, Probe, expect, words_of
 from labkit.exercises.clauses import (
     Asked,
     Evidence,
@@ -21,6 +21,8 @@ from labkit.exercises.messages_heard import Lived, Sample
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 TOPIC, INT16 = '/late_odds', 'std_msgs/msg/Int16'
 FIRST, LARGEST = 32751, 32767
 # So many messages show what comes after the largest number.
@@ -30,69 +32,15 @@ QUIET_SEC = 1.2
 # So many messages tell their rate exactly where time is virtual.
 MIN_EXACT = 4
 
-_ONE = 'self.number = 1\n'
-_OVER = f'After adding 2: if self.number > {LARGEST}, set self.number = 1.'
-HELD = Mistake(
-    'stay-within/held',
-    'The number is held at {seen}, and published again and again.',
-    _OVER,
-    change=[(_ONE, 'self.number = 32767\n')],
-)
-BELOW_ZERO = Mistake(
-    'stay-within/below-zero',
-    '{seen} is what 16 bits make of {large}. The count should not go below zero.',
-    _OVER,
-    change=[(_ONE, 'self.number -= 65536\n')],
-)
-REMAINDER = Mistake(
-    'stay-within/remainder-of-32767',
-    f'The remainder of {LARGEST} divided by {LARGEST} is 0, and 0 is even.',
-    _OVER,
-    change=[
-        (
-            '        if self.number > 32767:\n            self.number = 1\n',
-            '        self.number %= 32767\n',
-        )
-    ],
-)
-EVEN = Mistake(
-    'stay-within/even',
-    'The count goes on with {seen}, which is even; adding 2 keeps it even.',
-    _OVER,
-    change=[(_ONE, 'self.number = 0\n')],
-)
-TOO_EARLY = Mistake(
-    'stay-within/too-early',
-    'The count starts over too early: {next} still fits.',
-    _OVER,
-    change=[('> 32767', '> 32760')],
-)
-ANOTHER_START = Mistake(
-    'stay-within/another-start',
-    'The count goes on with another number than 1.',
-    _OVER,
-    change=[(_ONE, 'self.number = 3\n')],
-)
-FIRST_NOT_USED = Mistake(
-    'stay-within/first-not-used',
-    f'The count does not begin with the number that LateOdds(first={FIRST}) gets.',
-    'Keep it in __init__, self.number = first, and publish before you add 2.',
-    change=[('self.number = first', 'self.number = 1')],
-)
-ENDS_EARLY = Mistake(
-    'stay-within/ends-early',
-    f'{LARGEST} is the largest number that fits. The count ends before it.',
-    f'Compare with {LARGEST}: if self.number > {LARGEST}',
-    change=[
-        ('> 32767', '> 32760'),
-        ('            self.number = 1\n', '            self.timer.cancel()\n'),
-    ],
-)
-STOPS_LATER = Mistake(
-    'stay-within/stops-later',
-    'The count starts over, and then it stops.',
-    'Stop at the limit, or go on without end.',
-)
+HELD = WORDS.mistake('stay-within/held')
+BELOW_ZERO = WORDS.mistake('stay-within/below-zero')
+REMAINDER = WORDS.mistake('stay-within/remainder-of-32767')
+EVEN = WORDS.mistake('stay-within/even')
+TOO_EARLY = WORDS.mistake('stay-within/too-early')
+ANOTHER_START = WORDS.mistake('stay-within/another-start')
+FIRST_NOT_USED = WORDS.mistake('stay-within/first-not-used')
+ENDS_EARLY = WORDS.mistake('stay-within/ends-early')
+STOPS_LATER = WORDS.mistake('stay-within/stops-later')
 
 
 @dataclass(frozen=True)
@@ -261,34 +209,18 @@ def _deviation(run: Sequence[Sample]) -> Fail:
 
 
 exercise = Exercise(
-    name='stay_within',
-    task=f'Publish odd numbers on {TOPIC}, ten a second, from {FIRST} on. After {LARGEST} stop, '
-    'or start over with 1.',
+    words=WORDS,
     clauses=(
         _Run(TOPIC, 10.0, INT16),
         Messages(
             TOPIC,
-            f'the numbers are {FIRST}, {FIRST + 2}, {FIRST + 4}, ..., {LARGEST}, one in each '
-            f'message; {LARGEST - 2} as the last one is right, too',
+            WORDS.clause('messages'),
             _up_to_the_limit,
         ),
         Asked(
-            f'after that either nothing more comes, or {_again()} from the beginning; no callback '
-            'fails',
+            WORDS.clause('after-the-limit'),
             _after_the_limit,
         ),
-    ),
-    hints=[
-        f'Which number comes after {LARGEST} when you add 2? Does it fit into an Int16?',
-        'Look at the number after you have added 2, and before it is published.',
-        f'if self.number > {LARGEST}: self.number = 1. To stop instead: self.timer.cancel().',
-    ],
-    answer=Solution(
-        __file__,
-        'stay_within.py',
-        'The number is put right before it is published, so no message is ever refused. That the '
-        'first number is an argument makes the limit easy to try: nobody waits for 16000 '
-        'messages.',
     ),
     records=[TOPIC],
 )
