@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, Solution
+from labkit.exercises import Exercise, Fail, NotAttempted, words_of
 from labkit.exercises.clauses import Evidence, GraphClause, Publishes
 from labkit.exercises.machine_faults import refuse_machine_fault
 from labkit.lessons.my_name_is.programs import ended_program
@@ -10,27 +10,17 @@ from labkit.lessons.my_name_is.stages import INNER, STRING, says_opening
 
 __all__ = ['exercise']
 
-IN_THE_NOTEBOOK = Mistake(
-    'own-process/in-the-notebook',
-    'lab.spin() runs a node in the process of this notebook.',
-    'End it with lab.remove(...), and start a program with start_program(program).',
-)
-_AGAIN = 'Change the program, and run its cell again. That cell shows all that it says.'
-FAILED = Mistake(
-    'own-process/failed', 'An error has ended it. Its last line tells which one.', _AGAIN
-)
-ENDED = Mistake(
-    'own-process/ended',
-    'A program ends when its last line is done. rclpy.spin(node) in the last line keeps it going.',
-    _AGAIN,
-    change=[('rclpy.spin(Opener())', 'Opener()')],
-)
+WORDS = words_of(__file__)
+
+IN_THE_NOTEBOOK = WORDS.mistake('own-process/in-the-notebook')
+FAILED = WORDS.mistake('own-process/failed')
+ENDED = WORDS.mistake('own-process/ended')
 
 
 class _InAnotherProcess(GraphClause):
     """The publisher is not in this notebook's process."""
 
-    text = 'the publisher is in another process than this notebook'
+    text = WORDS.clause('in-another-process')
 
     def find(self, evidence: Evidence) -> None:
         """Look where the publisher is."""
@@ -62,21 +52,6 @@ class _InAnotherProcess(GraphClause):
 
 
 exercise = Exercise(
-    name='own_process',
-    task="Publish 'My name is ' on /incomplete, twice a second, from a process of its own.",
+    words=WORDS,
     clauses=(_InAnotherProcess(), Publishes(INNER, 2.0, STRING), says_opening()),
-    hints=[
-        'The class of stage one stays as it is. What does a program need besides the class?',
-        'Imports at the top; at the end rclpy.init() and rclpy.spin(...). lab is not needed '
-        'there.',
-        'Put all of it between the quotation marks, and remove the # from the last line.',
-    ],
-    answer=Solution(
-        __file__,
-        'own_process.py',
-        'rclpy.init() starts ROS in the new process, and rclpy.spin() keeps it going. Stage two '
-        'knows the topic only, so it does not matter to it in which process stage one runs. '
-        'Before another process is started, the earlier one is ended: otherwise both would '
-        'publish.',
-    ),
 )

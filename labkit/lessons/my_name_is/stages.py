@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator, Sequence
 from typing import Any
 
-from labkit.exercises import Mistake
+from labkit.exercises import Mistake, words_of
 from labkit.exercises.clauses import Says
 
 __all__ = [
@@ -18,35 +18,18 @@ __all__ = [
     'says_opening',
 ]
 
+WORDS = words_of(__file__)
+
 INNER, STRING = '/incomplete', 'std_msgs/msg/String'
 OPENING = 'My name is '
 
-_PUT = 'String(data=msg.data + ...), with what is to be added for the dots.'
-NOTHING_ADDED = Mistake(
-    'stages/nothing-added',
-    'The text is passed on as it came: nothing is added.',
-    _PUT,
-    model=str,
-)
-GROWS = Mistake(
-    'stages/grows',
-    'The texts of earlier messages are still in it: the string grows.',
-    'Make a new string from msg.data each time.',
-)
-SPACE_BESIDE = Mistake('stages/space-beside', 'There is a space too many beside the name.', _PUT)
-NO_SPACE = Mistake('stages/no-space', 'The space between the text and the name is missing.', _PUT)
-IN_FRONT = Mistake('stages/in-front', 'The name stands before the text.', _PUT)
-NOT_IN_IT = Mistake(
-    'stages/not-in-it',
-    'What goes out does not hold the text that came in: the string is made beforehand, or the '
-    'text is changed.',
-    'Make the string in the callback, from msg.data as it is.',
-)
-CHANGED = Mistake(
-    'stages/changed',
-    'The name is another one than with the first text.',
-    'Keep the name in the object, self.first_name, and do not change it.',
-)
+NOTHING_ADDED = WORDS.mistake('stages/nothing-added', str)
+GROWS = WORDS.mistake('stages/grows')
+SPACE_BESIDE = WORDS.mistake('stages/space-beside')
+NO_SPACE = WORDS.mistake('stages/no-space')
+IN_FRONT = WORDS.mistake('stages/in-front')
+NOT_IN_IT = WORDS.mistake('stages/not-in-it')
+CHANGED = WORDS.mistake('stages/changed')
 
 
 def says_opening() -> Says:

@@ -5,23 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from labkit.exercises import Exercise, Fail, Mistake, Probe, Solution, expect
-from labkit.exercises.clauses import WITHIN, Answers, Evidence
+from labkit.exercises import Exercise, Fail, Mistake, Probe, Solution, expect, words_of
+from labkit.exercises.clauses import Answers, Evidence
 from labkit.exercises.observation import Stimulus, live
 from labkit.exercises.variants import varied
 from labkit.lessons.my_name_is.stages import INNER, NOT_IN_IT, NOTHING_ADDED, STRING
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 HEARS, SAYS = '/complete', '/greeting'
 ENDING = '. Nice to meet you.'
 
-GOES_PAST = Mistake(
-    'third-stage/goes-past',
-    'It hears stage one and goes past stage two, so the first name is missing.',
-    f"Write the topic as '{HEARS}'.",
-    change=[("String, 'complete'", "String, 'incomplete'")],
-)
+GOES_PAST = WORDS.mistake('third-stage/goes-past')
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,33 +45,21 @@ def _trouble(text: str, came: Sequence[str]) -> Mistake | None:
 
 
 def _variant(*, ending: str = ENDING) -> Exercise:
+    words = WORDS.of(ending=ending)
     return Exercise(
-        name='third_stage',
-        task=f'A node that appends {ending!r} to each text of {HEARS}, and publishes it on '
-        f'{SAYS}.',
+        words=words,
         clauses=(
             _AtTheEnd(
                 HEARS,
                 SAYS,
                 STRING,
-                f'for each text on `{HEARS}`, publish it on `{SAYS}` with `{ending}` appended '
-                f'(both `{STRING}`), once, {WITHIN}',
+                words.clause('at-the-end'),
                 answer=lambda text: f'{text}{ending}',
                 mistakes=[NOTHING_ADDED],
                 explain=_trouble,
             ),
         ),
-        hints=[
-            'Stage three is like stage two: it hears one topic and publishes on another one.',
-            f'It hears {HEARS}. Stages one and two need not be changed.',
-            f'In the callback: self.publisher.publish(String(data=msg.data + {ending!r}))',
-        ],
-        answer=Solution(
-            __file__,
-            'third_stage.py',
-            'A chain grows at its end without a change to what is there. Stage two does not know '
-            'that somebody listens to it now.',
-        ).changed((ENDING, ending)),
+        answer=Solution.of(words).changed((ENDING, ending)),
     )
 
 

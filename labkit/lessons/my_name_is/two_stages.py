@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution
-from labkit.exercises.clauses import WITHIN, Answers, Evidence, GraphClause, Publishes, Test
+from labkit.exercises import Exercise, Fail, words_of
+from labkit.exercises.clauses import Answers, Evidence, GraphClause, Publishes, Test
 from labkit.exercises.draws import draw_texts
 from labkit.lessons.my_name_is.stages import (
     COMPLETES,
@@ -18,12 +18,10 @@ from labkit.lessons.my_name_is.stages import (
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 OUTER = '/complete'
-ONE_NODE = Mistake(
-    'two-stages/one-node',
-    'One node does the work of both stages, so neither can be replaced without the other.',
-    'Write a class for each stage.',
-)
+ONE_NODE = WORDS.mistake('two-stages/one-node')
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +43,7 @@ class _Completes(Answers):
 class _TwoNodes(GraphClause):
     """Each stage is a node."""
 
-    text = 'the two stages are two nodes'
+    text = WORDS.clause('two-nodes')
 
     def find(self, evidence: Evidence) -> None:
         """Compare their names."""
@@ -59,9 +57,7 @@ class _TwoNodes(GraphClause):
 
 
 exercise = Exercise(
-    name='two_stages',
-    task=f'Node one publishes {OPENING!r} on {INNER}, twice a second. Node two appends your first '
-    f'name and publishes the whole on {OUTER}.',
+    words=WORDS,
     clauses=(
         Publishes(INNER, 2.0, STRING),
         says_opening(),
@@ -69,23 +65,10 @@ exercise = Exercise(
             INNER,
             OUTER,
             STRING,
-            f'for each text on `{INNER}`, publish it on `{OUTER}` with your first name appended '
-            f'(both `{STRING}`), once, {WITHIN}',
+            WORDS.clause('completes'),
             draw=lambda: [OPENING, *draw_texts()],
             **COMPLETES,
         ),
         _TwoNodes(),
-    ),
-    hints=[
-        'Thermometer and Converter are such a chain. Which lines have to change?',
-        'Stage one: a timer of 0.5 s and a publisher. Stage two: a subscription and a publisher, '
-        'and no timer.',
-        "In the callback of stage two: self.publisher.publish(String(data=msg.data + 'Ada')).",
-    ],
-    answer=Solution(
-        __file__,
-        'two_stages.py',
-        'Each stage has one task and knows two topics at most. Stage two makes its text from the '
-        'message that came, so it goes on working when stage one says something else.',
     ),
 )

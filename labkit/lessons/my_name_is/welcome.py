@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from labkit.exercises import Exercise, Fail, Mistake, Probe, Solution, expect
+from labkit.exercises import Exercise, Fail, Mistake, Probe, expect, words_of
 from labkit.exercises.clauses import (
-    WITHIN,
     Answers,
     Asked,
     Evidence,
@@ -28,83 +27,28 @@ if TYPE_CHECKING:
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 OUTER, ENDING = '/welcome', '. Welcome!'
 # An odd number of texts shows whether the host waits for another one.
 FEW = 3
 
-_ONE_JOB = 'Give each job to a node: a guest appends a name, the host appends the rest.'
-ALL_IN_ONE = Mistake(
-    'welcome/all-in-one',
-    f'This node does all of it, from {INNER} to {OUTER}.',
-    _ONE_JOB,
-    change=[
-        ("'names', self", "'incomplete', self"),
-        ("msg.data + '. Welcome!'", "msg.data + 'Ada. Welcome!'"),
-    ],
-)
-SEVERAL_HOSTS = Mistake(
-    'welcome/several-hosts',
-    f'The words "{ENDING[2:]}" are the job of one node, and it does it for both names.',
-    _ONE_JOB,
-    change=[("'names', 10)", "'welcome', 10)")],
-)
-APART = Mistake(
-    'welcome/apart',
-    'What a guest publishes has to be what the host subscribes to.',
-    'Look at the arrows of lab.graph(), and give both ends one name.',
-    change=[("String, 'names', 10)", "String, 'guests', 10)")],
-)
-REPLACED = Mistake(
-    'welcome/replaced',
-    'Were two nodes of the same name started? lab.spin() ends the first of them when the second '
-    'one comes.',
-    "Give the name of the node as an argument, too: Guest('ada', 'Ada')",
-    change=[("'bob', 'Bob'", "'ada', 'Bob'")],
-)
-TOO_MANY = Mistake(
-    'welcome/too-many', 'Each text would come {count} times, and two are asked for.', 'End one.'
-)
-ELSEWHERE = Mistake(
-    'welcome/elsewhere',
-    'Who has said what, the check sees in this notebook alone.',
-    'End the program, and start the node here with lab.spin().',
-)
-PASSED_ON = Mistake(
-    'welcome/passed-on',
-    'The host passes the text on as it came.',
-    _ONE_JOB,
-    model=str,
-    change=[
-        ("msg.data + '. Welcome!'", 'msg.data'),
-        ('msg.data + self.first_name', "msg.data + self.first_name + '. Welcome!'"),
-    ],
-)
-HEARS_THE_OTHER = Mistake(
-    'welcome/hears-the-other',
-    'When the other guest goes, this one may have nothing to say.',
-    f'A guest needs {INNER}, and nothing else.',
-)
-WAITS = Mistake(
-    'welcome/waits',
-    'The host welcomes two guests, and not one alone: it waits for the other one.',
-    'Publish in the callback, for each text that comes.',
-)
-SHARED = Mistake(
-    'welcome/shared',
-    'Both say {name!r}: they share the name. A variable of the notebook or of the class is the '
-    'same for all objects.',
-    'Keep the name in the object: self.first_name = first_name in __init__',
-    change=[('self.first_name = first_name', 'Guest.first_name = first_name')],
-)
+ALL_IN_ONE = WORDS.mistake('welcome/all-in-one')
+SEVERAL_HOSTS = WORDS.mistake('welcome/several-hosts')
+APART = WORDS.mistake('welcome/apart')
+REPLACED = WORDS.mistake('welcome/replaced')
+TOO_MANY = WORDS.mistake('welcome/too-many')
+ELSEWHERE = WORDS.mistake('welcome/elsewhere')
+PASSED_ON = WORDS.mistake('welcome/passed-on', str)
+HEARS_THE_OTHER = WORDS.mistake('welcome/hears-the-other')
+WAITS = WORDS.mistake('welcome/waits')
+SHARED = WORDS.mistake('welcome/shared')
 
 
 class _ThreeNodes(GraphClause):
     """Two nodes hear the beginning, and a third one hears those two."""
 
-    text = (
-        'two nodes of this notebook append a first name each, and another one of it appends '
-        f'`{ENDING}`'
-    )
+    text = WORDS.clause('three-nodes')
 
     def find(self, evidence: Evidence) -> None:
         """Look for the host by its topic, and for the guests by what it hears."""
@@ -149,10 +93,7 @@ class _ThreeNodes(GraphClause):
 class _Flows(GraphClause):
     """While all three work, all texts arrive."""
 
-    text = (
-        f'each text on `{INNER}` comes on `{OUTER}` once with each name (all `{STRING}`); each '
-        f'node answers {WITHIN}'
-    )
+    text = WORDS.clause('flows')
     own_life = True
 
     def judge(self, evidence: Evidence) -> str:
@@ -185,10 +126,7 @@ class _Flows(GraphClause):
 class _OneIsEnough(GraphClause):
     """Nobody needs both guests."""
 
-    text = (
-        'no guest hears the other one, and the host answers each text by itself: so each guest '
-        'can go'
-    )
+    text = WORDS.clause('one-is-enough')
 
     def find(self, evidence: Evidence) -> None:
         """Look at what the guests hear."""
@@ -260,9 +198,7 @@ def _welcomes(topic: str, host: str) -> Answers:
 
 
 exercise = Exercise(
-    name='welcome',
-    task=f'Two guests complete each text of {INNER} with a first name, and a host welcomes both '
-    f'on {OUTER}.',
+    words=WORDS,
     subscribes={INNER: STRING},
     publishes={OUTER: STRING},
     shared=[OUTER],
@@ -270,20 +206,6 @@ exercise = Exercise(
         _ThreeNodes(),
         _Flows(),
         _OneIsEnough(),
-        Asked('the two names are different, and each node keeps its own', _names_differ),
-    ),
-    hints=[
-        'Draw three boxes, one for each job. Who has to hear whom? Each arrow between two of them '
-        'is a topic.',
-        f'Both guests hear {INNER}. They may publish on one topic, such as /names, and the host '
-        'hears that.',
-        'Two classes are enough: Host, and Guest with two arguments of __init__, the name of the '
-        'node and the first name.',
-    ],
-    answer=Solution(
-        __file__,
-        'welcome.py',
-        'Each job is a node, and each arrow of the plan a topic. The host knows a topic and not '
-        'who speaks there: so a guest can go, and a third one can come, without a change to it.',
+        Asked(WORDS.clause('names-differ'), _names_differ),
     ),
 )
