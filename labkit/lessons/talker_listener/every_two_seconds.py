@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Exercise, Probe, Solution
+from labkit.exercises import Exercise, Probe, Solution, words_of
 from labkit.exercises.clauses import HasText, Publishes
 from labkit.exercises.variants import varied
 
 __all__ = ['exercise']
+
+WORDS = words_of(__file__)
 
 # Names of which none is another one with a slip of the pen.
 _NAMES = (
@@ -20,23 +22,11 @@ _TOPICS = _NAMES.split()
 
 def _variant(*, topic: str = 'chatter') -> Exercise:
     name = f'/{topic}'
+    words = WORDS.of(topic=name)
     return Exercise(
-        name='every_two_seconds',
-        task=f'Write a node that publishes a `String` on {name} every 2 seconds.',
+        words=words,
         clauses=(Publishes(name, 0.5, 'std_msgs/msg/String'), HasText(name)),
-        hints=[
-            'The class Talker is nearly what you need. Which number in it is the period?',
-            'In __init__: the name of the node, create_publisher(...) and create_timer(2.0, ...). '
-            'In the callback: make a message, set msg.data, publish it.',
-            'self.timer = self.create_timer(2.0, self.on_timer), without brackets after on_timer; '
-            'then lab.spin(SlowTalker()).',
-        ],
-        answer=Solution(
-            __file__,
-            'every_two_seconds.py',
-            'The publisher is made once, in __init__, and kept in self. The timer calls on_timer '
-            'every 2.0 s, and each call makes a new message.',
-        ).changed(("'chatter'", f"'{topic}'")),
+        answer=Solution.of(words).changed(("'chatter'", f"'{topic}'")),
     )
 
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import random
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution, Watch, expect
+from labkit.exercises import Exercise, Fail, Watch, expect, words_of
 from labkit.exercises.clauses import Asked, Evidence, GraphClause, Runs
 from labkit.exercises.expect.timing import FOUND_SEC
-from labkit.exercises.observation import LIFE_SEC, live
+from labkit.exercises.observation import live
 
 __all__ = ['exercise']
+
+WORDS = words_of(__file__)
 
 TOPIC, STRING = '/door', 'std_msgs/msg/String'
 TEXT = 'The door is open'
@@ -20,42 +22,16 @@ ALONE_SEC = (20.0, 29.0)
 SOON_SEC = 1.2
 
 _AGAIN = 'Run the cell of your node again before each check: it speaks once only.'
-NOT_HEARD = Mistake(
-    'say-once/not-heard',
-    'If it was published before somebody listened, it is lost: nobody keeps it for those who come '
-    'later. Or publish() was not reached at all.',
-    f'Publish only when get_subscription_count() is not 0. {_AGAIN}',
-    change=[('if self.publisher.get_subscription_count() > 0:', 'if True:')],
-)
-TOO_EARLY = Mistake(
-    'say-once/too-early',
-    'The earlier ones were published while nobody listened.',
-    f'Look at get_subscription_count() before you publish. {_AGAIN}',
-    change=[
-        ('if self.publisher.get_subscription_count() > 0:', 'if True:'),
-        ('            self.timer.cancel()\n', ''),
-    ],
-)
-GOES_ON = Mistake(
-    'say-once/goes-on',
-    'Nothing stops the node after its first message.',
-    'self.timer.cancel() ends the timer.',
-    change=[('            self.timer.cancel()\n', '')],
-)
-HEARD_BEFORE = Mistake(
-    'say-once/heard-before',
-    'The node speaks once. If it has spoken to somebody else, the check hears nothing.',
-    'End the other subscription, and run the cell of your node again.',
-)
+NOT_HEARD = WORDS.mistake('say-once/not-heard')
+TOO_EARLY = WORDS.mistake('say-once/too-early')
+GOES_ON = WORDS.mistake('say-once/goes-on')
+HEARD_BEFORE = WORDS.mistake('say-once/heard-before')
 
 
 class _SaysIt(GraphClause):
     """When somebody listens, the node says the text."""
 
-    text = (
-        f'within {LIFE_SEC:.0f} seconds of the first subscription to `{TOPIC}`, publish `{TEXT}` '
-        f'there (`{STRING}`)'
-    )
+    text = WORDS.clause('says-it')
 
     def find(self, evidence: Evidence) -> None:
         """Look for the publisher."""
@@ -81,7 +57,7 @@ class _SaysIt(GraphClause):
 class _SilentBefore(GraphClause):
     """As long as nobody listens, the node says nothing."""
 
-    text = 'publish nothing before that subscription'
+    text = WORDS.clause('silent-before')
 
     def find(self, evidence: Evidence) -> None:
         """Let time pass while nobody listens, and then listen."""
@@ -134,26 +110,13 @@ def _heard(evidence: Evidence) -> Watch:
 
 
 exercise = Exercise(
-    name='say_once',
-    task=f'Write a node that says "{TEXT}" on {TOPIC} once, when somebody subscribes.',
+    words=WORDS,
     publishes={TOPIC: STRING},
     clauses=(
         _SaysIt(),
-        Runs('the node is spun, and it does not block while it waits', topic=TOPIC),
+        Runs(WORDS.clause('runs'), topic=TOPIC),
         _SilentBefore(),
-        Asked('publish nothing after that message', _silent_after),
-    ),
-    hints=[
-        'The node must look again and again whether somebody is there. What calls a callback '
-        'again and again?',
-        'In the callback of a timer: if self.publisher.get_subscription_count() > 0, publish.',
-        'After publishing, self.timer.cancel() ends the timer. So nothing is said twice.',
-    ],
-    answer=Solution(
-        __file__,
-        'say_once.py',
-        'The timer looks ten times a second, and the processor rests in between. A loop without '
-        'a pause would keep it busy, and no other callback could run.',
+        Asked(WORDS.clause('silent-after'), _silent_after),
     ),
     once=True,
 )
