@@ -4,61 +4,34 @@ from __future__ import annotations
 
 import random
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution
-from labkit.exercises.clauses import WITHIN, Answers, Asked, Evidence, Words
+from labkit.exercises import Exercise, Fail, words_of
+from labkit.exercises.clauses import Answers, Asked, Evidence, Words
 from labkit.exercises.draws import draw_names, in_a_row
 from labkit.exercises.observation import live
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 TOPIC, STRING = '/lobby', 'std_msgs/msg/String'
 ME = 'Ada'
 REPLY = f'{ME}: Salut'
-NOTHING = Words('publish nothing for any other message')
+NOTHING = Words(WORDS.clause('nothing'))
 # How long a node may keep a publisher after its reply, s of its time.
 GONE_SEC = 2.0
 
-_IN = "'Hello' in msg.data tells whether the word is in the text."
 MISTAKES = (
-    Mistake(
-        'greeter/small-letters',
-        'Capital and small letters differ, and the task asks for Hello.',
-        _IN,
-        model=lambda text: REPLY if 'hello' in text.lower() else None,
-        change=[("'Hello' in msg.data", "'hello' in msg.data.lower()")],
+    WORDS.mistake(
+        'greeter/small-letters', lambda text: REPLY if 'hello' in text.lower() else None
     ),
-    Mistake(
-        'greeter/everything',
-        'This message does not say Hello.',
-        _IN,
-        model=lambda text: REPLY,
-        change=[("if 'Hello' in msg.data:", "if msg.data != 'Ada: Salut':")],
+    WORDS.mistake('greeter/everything', lambda text: REPLY),
+    WORDS.mistake(
+        'greeter/nothing-beside', lambda text: REPLY if text in ('Hello', 'Bo: Hello') else None
     ),
-    Mistake(
-        'greeter/nothing-beside',
-        'This message says Hello, too, and something else beside it.',
-        _IN,
-        model=lambda text: REPLY if text in ('Hello', 'Bo: Hello') else None,
-        change=[("'Hello' in msg.data", "msg.data in ('Hello', 'Bo: Hello')")],
-    ),
-    Mistake(
-        'greeter/lost',
-        'Nothing came. Is a publisher made, used, and destroyed only then?',
-        'Make it in the callback, publish, wait_for_all_acked(), and destroy it then.',
-        model=lambda text: None,
-    ),
+    WORDS.mistake('greeter/lost', lambda text: None),
 )
-KEPT = Mistake(
-    'greeter/kept',
-    'A publisher that is kept is used again and again.',
-    'Call create_publisher() when a reply is due, and destroy_publisher() afterwards.',
-)
-LEFT_BEHIND = Mistake(
-    'greeter/left-behind',
-    'Each reply leaves a publisher behind, and they become more and more.',
-    'self.destroy_publisher(publisher), when the reply is on its way.',
-    change=[('            self.destroy_publisher(publisher)\n', '')],
-)
+KEPT = WORDS.mistake('greeter/kept')
+LEFT_BEHIND = WORDS.mistake('greeter/left-behind')
 
 
 def _draw() -> list[str]:
@@ -117,16 +90,14 @@ def _used_once(evidence: Evidence) -> None:
 
 
 exercise = Exercise(
-    name='greeter',
-    task='Reply to Hello on /lobby, each time with a publisher that is made for it.',
+    words=WORDS,
     shared=[TOPIC],
     clauses=(
         Answers(
             TOPIC,
             TOPIC,
             STRING,
-            f'for each message on `{TOPIC}` (`{STRING}`) with the word `Hello` in it, publish '
-            f'`{REPLY}` there, once, {WITHIN}',
+            WORDS.clause('answers'),
             answer=lambda text: REPLY if 'Hello' in text else None,
             draw=_draw,
             mistakes=MISTAKES,
@@ -134,21 +105,8 @@ exercise = Exercise(
         ),
         NOTHING,
         Asked(
-            'each reply comes from a publisher of its own, which is destroyed afterwards',
+            WORDS.clause('used-once'),
             _used_once,
         ),
-    ),
-    hints=[
-        'create_publisher() may be called in a callback, too, and not only in __init__.',
-        'What was published may be on its way when the publisher goes. wait_for_all_acked() waits '
-        'until it has arrived.',
-        'In the callback: make the publisher, publish, publisher.wait_for_all_acked(Duration('
-        'seconds=1)), self.destroy_publisher(publisher)',
-    ],
-    answer=Solution(
-        __file__,
-        'greeter.py',
-        'The publisher lives in a variable of the callback, for one message. In between, the node '
-        'only listens.',
     ),
 )

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Generator, Sequence
 
-from labkit.exercises import Exercise, Mistake, Solution
-from labkit.exercises.clauses import WITHIN, Answers, Words
+from labkit.exercises import Exercise, Mistake, words_of
+from labkit.exercises.clauses import Answers, Words
 from labkit.exercises.draws import draw_names
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 TOPIC, STRING = '/lounge', 'std_msgs/msg/String'
 ME = 'Ada'
-NOTHING = Words(f'publish nothing for any other message, nor for what {ME} herself has said')
+NOTHING = Words(WORDS.clause('nothing'))
 
 
 def _greet(message: str) -> str:
@@ -24,32 +26,13 @@ def _says_hello(message: str) -> bool:
 
 
 MISTAKES = (
-    Mistake(
-        'polite/herself',
-        f'That was said by {ME} herself.',
-        f'Leave out what {ME} has said: who != {ME!r}',
-        model=lambda message: {ME: _greet(ME)}[message.partition(': ')[0]],
+    WORDS.mistake('polite/herself', lambda message: {ME: _greet(ME)}[message.partition(': ')[0]]),
+    WORDS.mistake(
+        'polite/each-time', lambda message: _greet(message) if _says_hello(message) else None
     ),
-    Mistake(
-        'polite/each-time',
-        'The same person was greeted before. Two nodes that always reply never come to an end.',
-        'Keep the names of those whom you have greeted, in a set: self.greeted.add(who)',
-        model=lambda message: _greet(message) if _says_hello(message) else None,
-        change=[('            self.greeted.add(who)\n', '')],
-    ),
-    Mistake(
-        'polite/everything',
-        'This message does not say Hello.',
-        "Reply if 'Hello' in text.",
-        model=_greet,
-        change=[("'Hello' in text and ", 'msg.data != text and ')],
-    ),
+    WORDS.mistake('polite/everything', _greet),
 )
-NOT_YET = Mistake(
-    'polite/not-yet',
-    '{who} says Hello and was not greeted yet.',
-    'Greet each one at the first Hello, and only then put the name into the set.',
-)
+NOT_YET = WORDS.mistake('polite/not-yet')
 
 
 def _politely(_memory: object) -> Generator[str | None, str, None]:
@@ -97,16 +80,14 @@ def _silent(message: str, came: Sequence[str]) -> Mistake | None:
 
 
 exercise = Exercise(
-    name='polite',
-    task='Greet each person on /lounge once, at the first Hello.',
+    words=WORDS,
     shared=[TOPIC],
     clauses=(
         Answers(
             TOPIC,
             TOPIC,
             STRING,
-            f'when somebody says `Hello` for the first time on `{TOPIC}`, publish `{ME}: Hello, ` '
-            f'and their name, {WITHIN}',
+            WORDS.clause('answers'),
             answer=_politely,
             draw=_draw,
             mistakes=MISTAKES,
@@ -115,16 +96,5 @@ exercise = Exercise(
             otherwise=NOTHING.text,
         ),
         NOTHING,
-    ),
-    hints=[
-        'A node hears what it publishes itself, if it subscribes to the same topic.',
-        'A set holds each thing once: greeted = set(), greeted.add(who), who in greeted',
-        "if 'Hello' in text and who not in self.greeted: with {'Ada'} in it from the beginning",
-    ],
-    answer=Solution(
-        __file__,
-        'polite.py',
-        'The set remembers who was greeted. With their own name in it from the beginning, nobody '
-        'greets himself.',
     ),
 )

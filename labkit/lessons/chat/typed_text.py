@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from labkit import stop_button
-from labkit.exercises import Exercise, Fail, Mistake, Solution, anything, expect
+from labkit.exercises import Exercise, Fail, Mistake, anything, expect, words_of
 from labkit.exercises.clauses import Evidence, GraphClause, Words
 from labkit.exercises.draws import draw_texts
 from labkit.exercises.expect.values import text_trouble
@@ -19,73 +19,25 @@ from labkit.exercises.what_is_asked import PUBLISHER, Role
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 TOPIC, STRING, WHO = '/hall', 'std_msgs/msg/String', 'Ada'
 # How long a line may take to arrive, s of real time, as the task says; then the nodes live for a
 # while, since a timer may say more, s of their own time.
 ARRIVES_SEC, AFTER_SEC = 3.0, 5.0
-NOTHING = Words('for a line that is empty, or all spaces, publish nothing')
+NOTHING = Words(WORDS.clause('nothing'))
 
-_ASK = "In ask(): text = input('Your message: '), and then publish."
-NO_FUNCTION = Mistake('typed-text/no-function', 'There is no function called ask.', 'def ask():')
-NOT_ASKED = Mistake(
-    'typed-text/not-asked',
-    'The function ask() came to its end without a question.',
-    _ASK,
-    change=[("input('Your message: ')", "'Hello'")],
-)
-ASKS_AGAIN = Mistake(
-    'typed-text/asks-again',
-    'The function asks again before it ends: does it ask in a loop?',
-    'Ask once in ask(). Who wants to say more calls it again.',
-    change=[
-        (
-            "    text = input('Your message: ').strip()\n    if text:\n        teller.say(text)",
-            "    while text := input('Your message: ').strip():\n        teller.say(text)",
-        )
-    ],
-)
-ELSEWHERE = Mistake(
-    'typed-text/elsewhere',
-    'The check types into this notebook, and sees what its nodes publish.',
-    'End the program, and start the node here with lab.spin().',
-)
-SILENT = Mistake(
-    'typed-text/silent',
-    f'The line was typed, and nothing was published for it within {ARRIVES_SEC:g} s.',
-    _ASK,
-    change=[('        teller.say(text)', '        print(text)')],
-)
-TWICE = Mistake(
-    'typed-text/twice', 'A line is published more than once.', 'Publish each line once.'
-)
-EMPTY_TOO = Mistake(
-    'typed-text/empty-too',
-    'Nothing should be published for the line {line!r}.',
-    'Look whether anything is left of it after strip().',
-    change=[('    if text:\n', '    if text is not None:\n')],
-)
+NO_FUNCTION = WORDS.mistake('typed-text/no-function')
+NOT_ASKED = WORDS.mistake('typed-text/not-asked')
+ASKS_AGAIN = WORDS.mistake('typed-text/asks-again')
+ELSEWHERE = WORDS.mistake('typed-text/elsewhere')
+SILENT = WORDS.mistake('typed-text/silent')
+TWICE = WORDS.mistake('typed-text/twice')
+EMPTY_TOO = WORDS.mistake('typed-text/empty-too')
 MISTAKES = (
-    Mistake(
-        'typed-text/without-a-name',
-        'It does not say who says it.',
-        'Put the name, a colon and a space before the text.',
-        model=lambda line: line.strip() or None,
-        change=[("f'Ada: {text}'", 'text')],
-    ),
-    Mistake(
-        'typed-text/with-the-blanks',
-        'There are spaces at an end of what was typed.',
-        "Use input('...').strip().",
-        model=lambda line: f'{WHO}: {line}',
-        change=[(').strip()', ')'), ('if text:', 'if text.strip():')],
-    ),
-    Mistake(
-        'typed-text/another-text',
-        'What is said is not what was typed.',
-        'Use what input() returns.',
-        model=anything,
-        change=[('teller.say(text)', "teller.say('Hello')")],
-    ),
+    WORDS.mistake('typed-text/without-a-name', lambda line: line.strip() or None),
+    WORDS.mistake('typed-text/with-the-blanks', lambda line: f'{WHO}: {line}'),
+    WORDS.mistake('typed-text/another-text', anything),
 )
 
 
@@ -96,10 +48,7 @@ class _AskedAgain(BaseException):
 class _Typed(GraphClause):
     """A function asks for a line, and its node says it."""
 
-    text = (
-        'a function `ask()` of this notebook asks for a line with `input()`, once each time it '
-        'is called'
-    )
+    text = WORDS.clause('typed')
     own_life = True
 
     def judge(self, evidence: Evidence) -> str:
@@ -128,10 +77,7 @@ class _Typed(GraphClause):
 class _Says(GraphClause):
     """What was typed is published."""
 
-    text = (
-        f'the line is published on `{TOPIC}` (`{STRING}`), without spaces at its ends, as '
-        f'`{WHO}: <text>`, once, within {ARRIVES_SEC:g} s'
-    )
+    text = WORDS.clause('says')
 
     @property
     def roles(self) -> dict[Role, str]:
@@ -239,19 +185,6 @@ def _typing(line: str) -> Iterator[list[object]]:
 
 
 exercise = Exercise(
-    name='typed_text',
-    task=f'A function ask() asks for a line with input(), and a node publishes it on {TOPIC}.',
+    words=WORDS,
     clauses=(_Typed(), _Says(), NOTHING),
-    hints=[
-        'The node needs a publisher, and no timer. Who calls publish()?',
-        'strip() returns a text without the spaces at its two ends. What is left of spaces alone?',
-        "In ask(): text = input('Your message: ').strip(), then if text: and publish "
-        "String(data=f'Ada: {text}') with the publisher of the node.",
-    ],
-    answer=Solution(
-        __file__,
-        'typed_text.py',
-        'A node may publish at any time, not in a callback alone: here, when somebody has typed. '
-        'A text that is empty counts as False, so `if text` leaves out what holds nothing.',
-    ),
 )
