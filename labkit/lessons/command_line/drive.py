@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 
-from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, Solution
-from labkit.exercises.clauses import Asked, in_words
+from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, words_of
+from labkit.exercises.clauses import Asked
 from labkit.exercises.messages_heard import Sample
 from labkit.lessons.command_line.last_command import commanded_rate
 from labkit.lessons.command_line.sent import (
@@ -21,6 +21,8 @@ from labkit.lessons.command_line.sent import (
 )
 
 __all__ = ['exercise']
+
+WORDS = words_of(__file__)
 
 WHERE = OnTopic('/cmd_vel', 'geometry_msgs/msg/Twist')
 WANTED = {'linear.x': 0.2, 'angular.z': 0.5}
@@ -80,34 +82,11 @@ FIELDS = (
         ('0.2}', '0.2, y: 0.1}'),
     ),
 )
-NO_END = Mistake(
-    'drive/without-an-end',
-    'Without --times or --once a command goes on until it is stopped.',
-    'Use --times 5.',
-    change=[('--times 5', '--timeout 0.65')],
-)
-TWO_AT_ONCE = Mistake(
-    'drive/two-at-once',
-    'Two publish at once. The robot would hear both.',
-    'End all but one, and run the command once more.',
-)
-TOO_EARLY = Mistake(
-    'drive/too-early',
-    'The first ones were sent before anybody listened.',
-    'Wait for a subscriber before you publish; --times does so.',
-)
-TOO_FEW = Mistake(
-    'drive/one-message',
-    '--once sends one message. --times says how many are to be sent.',
-    'Use --times 5.',
-    change=[('--times 5', '--once')],
-)
-OTHER_RATE = Mistake(
-    'drive/too-slow',
-    'The option --rate says how many messages are sent in a second. Without it, it is 1.',
-    'Use --rate 10.',
-    change=[('--rate 10', '--rate 5')],
-)
+NO_END = WORDS.mistake('drive/without-an-end')
+TWO_AT_ONCE = WORDS.mistake('drive/two-at-once')
+TOO_EARLY = WORDS.mistake('drive/too-early')
+TOO_FEW = WORDS.mistake('drive/one-message')
+OTHER_RATE = WORDS.mistake('drive/too-slow')
 
 
 def _expect_fields(sent: Sent) -> None:
@@ -165,22 +144,18 @@ def _expect_rate(sent: Sent) -> None:
 
 
 exercise = Exercise(
-    name='drive',
-    task='Let a robot drive, from the command line.',
+    words=WORDS,
     clauses=(
         WHERE,
         Asked(
-            f'in every message, `linear.x` is {WANTED["linear.x"]} (m/s, ahead), `angular.z` is '
-            f'{WANTED["angular.z"]} (rad/s, to the left), and all else is 0',
+            WORDS.clause('expect-fields'),
             _expect_fields,
         ),
         Asked(
-            f'{in_words(COUNT)} messages (`--times {COUNT}`) of one command, no more and no fewer',
+            WORDS.clause('expect-count'),
             _expect_count,
         ),
-        Asked(
-            f'{in_words(HZ)} a second (`--rate {HZ}`); the check allows {ALLOWED}', _expect_rate
-        ),
+        Asked(WORDS.clause('expect-rate'), _expect_rate),
     ),
     shared=[WHERE.topic],
     reliable=[WHERE.topic],
@@ -191,17 +166,5 @@ exercise = Exercise(
         f'{COUNT} messages came, ten a second: forwards, and to the left.',
         is_whole=lambda samples: bool(samples) and len(newest_run(samples)) == COUNT,
         is_too_much=lambda came: len(newest_run(came)) > COUNT or _is_slow(newest_run(came)),
-    ),
-    hints=[
-        'interface show lists the fields of a Twist, and interface proto a message to copy.',
-        'linear and angular are messages themselves, so each gets braces of its own: '
-        '{linear: {x: ...}, angular: {z: ...}}',
-        'The options are --times 5 and --rate 10.',
-    ],
-    answer=Solution(
-        __file__,
-        'drive.ipy',
-        'Fields that are not named stay 0. Inner braces hold the fields of an inner message. '
-        '--times is how many messages are sent, --rate is how many in a second.',
     ),
 )

@@ -10,52 +10,27 @@ import difflib
 import re
 from collections.abc import Collection, Sequence
 
-from labkit.exercises import Fail, Mistake, common_mistakes
+from labkit.exercises import Fail, Mistake, common_mistakes, words_of
 from labkit.rosgraph.refusals import Refusal
 
 __all__ = ['commanded_rate', 'explain_last_command', 'forget_commands', 'other_topic']
+
+WORDS = words_of(__file__)
 
 # How much of two names has to be the same, from 0 to 1.
 NEAR = 0.75
 # What the lesson says to a refusal; the next step is that of the complaint.
 _REFUSED = {
-    Refusal.SPACE_AFTER_COLON: Mistake(
-        'command/space-after-colon', 'In YAML a colon is followed by a space: data: 1'
-    ),
-    Refusal.QUOTES_MISSING: Mistake(
-        'command/quotes',
-        'A space ends a word of a command. Quotation marks around the YAML hold its words '
-        'together.',
-    ),
-    Refusal.LIST_FOR_NUMBER: Mistake(
-        'command/list',
-        'The brackets make a list. A field of this type holds one number, so each number needs a '
-        'message of its own.',
-    ),
-    Refusal.NOT_A_WHOLE_NUMBER: Mistake(
-        'command/whole-number',
-        'An Int16 holds whole numbers from -32768 to 32767, written in digits.',
-    ),
-    Refusal.OUT_OF_RANGE: Mistake(
-        'command/out-of-range', 'An Int16 holds whole numbers from -32768 to 32767.'
-    ),
-    Refusal.UNKNOWN_TYPE: Mistake(
-        'command/type',
-        'The name of a type has three parts: the package, the word msg, and the type.',
-    ),
-    Refusal.OTHER_TYPE: Mistake(
-        'command/other-type',
-        'A topic carries one type of message. Another type is refused, or nobody hears it.',
-    ),
-    Refusal.NO_SUCH_FIELD: Mistake(
-        'command/field',
-        'The message has other fields. Fields that are messages themselves take braces of their '
-        'own.',
-    ),
-    Refusal.FIELDS_WANTED: Mistake(
-        'command/braces', 'Fields that are messages themselves take braces of their own.'
-    ),
-    Refusal.REPEATED_SLASH: Mistake('command/slash', 'One slash at the beginning is enough.'),
+    Refusal.SPACE_AFTER_COLON: WORDS.mistake('command/space-after-colon'),
+    Refusal.QUOTES_MISSING: WORDS.mistake('command/quotes'),
+    Refusal.LIST_FOR_NUMBER: WORDS.mistake('command/list'),
+    Refusal.NOT_A_WHOLE_NUMBER: WORDS.mistake('command/whole-number'),
+    Refusal.OUT_OF_RANGE: WORDS.mistake('command/out-of-range'),
+    Refusal.UNKNOWN_TYPE: WORDS.mistake('command/type'),
+    Refusal.OTHER_TYPE: WORDS.mistake('command/other-type'),
+    Refusal.NO_SUCH_FIELD: WORDS.mistake('command/field'),
+    Refusal.FIELDS_WANTED: WORDS.mistake('command/braces'),
+    Refusal.REPEATED_SLASH: WORDS.mistake('command/slash'),
 }
 
 

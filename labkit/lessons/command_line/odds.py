@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
-from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, Solution
+from labkit.exercises import Exercise, Fail, NotAttempted, words_of
 from labkit.exercises.clauses import Asked
 from labkit.exercises.expect import show
 from labkit.exercises.messages_heard import Sample
@@ -13,36 +13,21 @@ from labkit.lessons.command_line.sent import Commands, OnTopic, Sent
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 INT16 = 'std_msgs/msg/Int16'
 TOPIC = '/odds'
 WANTED = [1, 3, 5]
 EXPECTED = f'the numbers 1, 3 and 5 on {TOPIC}, one message each'
 
-_ONE = '%ros2 topic pub --once /odds std_msgs/msg/Int16 "{data: 1}"\n'
 
 # The next step depends on what is right so far.
-GOES_ON = Mistake(
-    'odds/goes-on',
-    'Without --once a command goes on publishing, as a loop without an end does.',
-    'End it, and publish the three numbers once.',
-)
-REPEATED = Mistake(
-    'odds/twice-each',
-    f'The same number came more than once. {GOES_ON.why}',
-    change=[('--once', '--times 2 --rate 20')],
-)
-EVEN = Mistake(
-    'odds/evens',
-    'These are even numbers. An odd number leaves 1 when it is divided by 2.',
-    change=[('1}', '2}'), ('3}', '4}'), ('5}', '6}')],
-)
-MISSING = Mistake('odds/only-two', 'Still missing: {missing}.', change=[(_ONE, '')])
-OTHER_ORDER = Mistake(
-    'odds/in-another-order',
-    'All three came, but in another order.',
-    change=[('1}', '0}'), ('5}', '1}'), ('0}', '5}')],
-)
-OTHERS_TOO = Mistake('odds/others-too', 'Other numbers came as well, or a number came twice.')
+GOES_ON = WORDS.mistake('odds/goes-on')
+REPEATED = WORDS.mistake('odds/twice-each')
+EVEN = WORDS.mistake('odds/evens')
+MISSING = WORDS.mistake('odds/only-two')
+OTHER_ORDER = WORDS.mistake('odds/in-another-order')
+OTHERS_TOO = WORDS.mistake('odds/others-too')
 
 
 def _values(samples: Sequence[Sample]) -> list[int]:
@@ -121,12 +106,11 @@ def _next_step(sent: Sent) -> str:
 _WHERE = OnTopic(TOPIC, INT16)
 
 exercise = Exercise(
-    name='odds',
-    task='Publish three odd numbers from the command line.',
+    words=WORDS,
     clauses=(
         _WHERE,
-        Asked('one message for each number', _expect_once),
-        Asked(f'{", then ".join(map(str, WANTED))}, and nothing after them', _expect_numbers),
+        Asked(WORDS.clause('expect-once'), _expect_once),
+        Asked(WORDS.clause('expect-numbers'), _expect_numbers),
     ),
     shared=[TOPIC],
     stage=Commands(
@@ -136,18 +120,6 @@ exercise = Exercise(
         is_whole=_is_whole,
         is_too_much=_is_repeated,
         keep=_right_so_far,
-    ),
-    hints=[
-        'One command publishes one message. Which option makes a command end after it?',
-        'The order of the words: ros2 topic pub --once, the topic, the type, and the YAML in '
-        'quotation marks.',
-        'The first of the three: ' + _ONE.strip(),
-    ],
-    answer=Solution(
-        __file__,
-        'odds.ipy',
-        '--once waits for a subscriber, publishes one message, and ends. Each number is a message '
-        'of its own, so there are three commands.',
     ),
     records=[TOPIC],
 )

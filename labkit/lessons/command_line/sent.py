@@ -13,7 +13,15 @@ from itertools import combinations, pairwise
 from statistics import mean, median
 from typing import TYPE_CHECKING, NoReturn
 
-from labkit.exercises import Clause, Fail, Mistake, NotAttempted, Probe, Stage, common_mistakes
+from labkit.exercises import (
+    Clause,
+    Fail,
+    NotAttempted,
+    Probe,
+    Stage,
+    common_mistakes,
+    words_of,
+)
 from labkit.exercises.judging import naming
 from labkit.exercises.messages_heard import Sample
 from labkit.exercises.sent_once import Recording
@@ -38,6 +46,8 @@ __all__ = [
     'period',
 ]
 
+WORDS = words_of(__file__)
+
 Samples = Sequence[Sample]
 
 # Nothing more comes after so long: if all is there, or nobody is who could send it; else, s.
@@ -55,16 +65,8 @@ TOLERANCE, CLOCKS_DIFFER = 0.15, 0.005
 # Gaps that differ by this factor are no longer even.
 EVEN = 1.3
 
-ELSEWHERE_TOO = Mistake(
-    'commands/elsewhere-too',
-    'The task asks for {topic} only.',
-    'End what publishes on {other}, and send the messages to {topic} once more.',
-)
-OTHER_TYPE = Mistake(
-    'commands/other-type',
-    'A topic carries one type of message. Nobody hears messages of another type.',
-    'Stop that command with Ctrl-C, and use {msg_type}.',
-)
+ELSEWHERE_TOO = WORDS.mistake('commands/elsewhere-too')
+OTHER_TYPE = WORDS.mistake('commands/other-type')
 
 
 @dataclass(frozen=True)
