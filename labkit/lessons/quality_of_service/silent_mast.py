@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING
 from labkit.exercises import (
     Exercise,
     Fail,
-    Mistake,
     NotAttempted,
-    Solution,
     common_mistakes,
     expect,
+    words_of,
 )
 from labkit.exercises.clauses import Asked, Evidence, GraphClause
 from labkit.exercises.messages_heard import Watch
@@ -32,64 +31,26 @@ if TYPE_CHECKING:
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 LEVEL, *SAID = TOPICS
 # On these a node of the learner's may take the place of a mast, and these it may hear.
 STANDS_IN, HEARS = TOPICS[1:4], TOPICS[:3]
 # How long the first number may take to go through two processes, s, and so many are looked at.
 FIRST_SEC, SEVERAL = 5.0, 24
 
-_COMPARE = 'Compare what {before} offers with what {node} asks for: lab.doctor() does that.'
-ELSEWHERE = Mistake(
-    'silent-mast/elsewhere',
-    'Nothing comes on {topic}, and none of your nodes publishes there.',
-    f'Look for the first topic that is silent. {_COMPARE}',
-    # The link behind, or the first one: a node right in front of the silent mast may be what that
-    # mast can hear.
-    change=[('return hears, says', 'return LINKS[LINKS.index((hears, says)) - 2]')],
-)
-NO_EAR = Mistake(
-    'silent-mast/no-ear',
-    'Your node publishes on {topic}, and does not hear {hears}, from which the numbers come.',
-    'A mast hears the topic before its own.',
-)
-NOT_SAID = Mistake(
-    'silent-mast/not-said',
-    'Your node hears {hears}, and publishes nothing on {topic}.',
-    'Publish each message in the callback, as it came.',
-    change=[('self.publisher.publish(msg)', 'self.level = msg.data')],
-)
-OTHERS = Mistake(
-    'silent-mast/others',
-    'These are other numbers than those of /gauge.',
-    'A mast passes on each number as it came.',
-    change=[('self.publisher.publish(msg)', 'self.publisher.publish(Int16(data=msg.data + 1))')],
-)
-MISSING = Mistake(
-    'silent-mast/missing',
-    'Not each number is passed on.',
-    'Publish each message in the callback, as it came.',
-    change=[
-        (
-            '        self.publisher.publish(msg)',
-            "        self.turn = not getattr(self, 'turn', False)\n        if self.turn:\n"
-            '            self.publisher.publish(msg)',
-        )
-    ],
-)
-TWICE = Mistake(
-    'silent-mast/twice',
-    'On {topic} the same number comes more than once.',
-    'Stand in for the silent mast alone, and publish each number once.',
-)
+ELSEWHERE = WORDS.mistake('silent-mast/elsewhere')
+NO_EAR = WORDS.mistake('silent-mast/no-ear')
+NOT_SAID = WORDS.mistake('silent-mast/not-said')
+OTHERS = WORDS.mistake('silent-mast/others')
+MISSING = WORDS.mistake('silent-mast/missing')
+TWICE = WORDS.mistake('silent-mast/twice')
 
 
 class _Carries(GraphClause):
     """All numbers come through the chain."""
 
-    text = (
-        f'each number that `{NODES[0]}` publishes on `{LEVEL}` comes on '
-        f'{", ".join(f"`{topic}`" for topic in SAID[:-1])} and `{SAID[-1]}`'
-    )
+    text = WORDS.clause('carries')
     own_life = True
 
     @property
@@ -236,23 +197,7 @@ def _apart(evidence: Evidence, topic: str) -> Iterator[tuple[Endpoint, Endpoint,
 
 
 exercise = Exercise(
-    name='silent_mast',
-    task='One mast of the chain hears nothing. Find it, and let a node of yours stand in for it.',
-    clauses=(_Carries(), Asked('on each of these topics, it comes once', _once)),
+    words=WORDS,
+    clauses=(_Carries(), Asked(WORDS.clause('once'), _once)),
     shared=STANDS_IN,
-    hints=[
-        'Go along the chain: on which topic does nothing come? lab.doctor() names the two ends '
-        'that do not match.',
-        'Your node hears what the silent mast should hear, and asks for no more than is offered '
-        'there: %ros2 topic info --verbose shows it.',
-        'If /mast_b is silent: subscribe to /level_a with qos_profile_sensor_data, and publish '
-        'each message on /level_b with a depth alone, for the next mast asks for reliable.',
-    ],
-    answer=Solution(
-        __file__,
-        'silent_mast.py',
-        'The node looks for the link by itself, with the function that rclpy compares profiles '
-        'with. You may have read it off the graph, and written the two topics down. It asks for '
-        'little, and offers what is usual, so it matches both of its neighbours.',
-    ),
 )

@@ -11,12 +11,11 @@ from labkit.exercises import (
     Clause,
     Exercise,
     Fail,
-    Mistake,
     Probe,
-    Solution,
     Stage,
     common_mistakes,
     expect,
+    words_of,
 )
 from labkit.exercises.clauses import Subscribes, Words
 from labkit.exercises.judging import naming
@@ -25,6 +24,8 @@ if TYPE_CHECKING:
     from labkit.exercises.messages_heard import Watch
 
 __all__ = ['exercise']
+
+WORDS = words_of(__file__)
 
 EMPTY, STRING = 'std_msgs/msg/Empty', 'std_msgs/msg/String'
 HEART, ALARM = '/heartbeat', '/alarm'
@@ -43,50 +44,18 @@ ATTEMPTS = 4
 READY_SEC = 4.0
 ROUNDS = 3
 
+NOISE = WORDS.mistake('watchdog/noise')
+USED_UP = WORDS.mistake('watchdog/used-up')
+NOT_TOLD = WORDS.mistake('watchdog/not-told')
+HASTE = WORDS.mistake('watchdog/haste')
 
-NOISE = Mistake(
-    'watchdog/noise',
-    'The alarm does not depend on whether heartbeats come: a timer or the callback of the '
-    'heartbeat publishes it, or the time is too short.',
-    f'Publish when {SILENCE_SEC} s have passed without a heartbeat, as the event of the deadline '
-    'tells.',
-    change=[('        pass\n', "        self.publisher.publish(String(data='no heartbeat'))\n")],
-)
-USED_UP = Mistake(
-    'watchdog/used-up',
-    'Something is used up by the first alarm: a flag that is never set back, or an event that is '
-    'looked at once.',
-    'Let each missed deadline publish.',
-)
-NOT_TOLD = Mistake(
-    'watchdog/not-told',
-    'Nobody is told in time that heartbeats are missing, or what is told does not publish.',
-    f'Give the subscription a profile with deadline=Duration(seconds={SILENCE_SEC}), and '
-    'event_callbacks=SubscriptionEventCallbacks(deadline=...), where you publish.',
-)
-HASTE = Mistake(
-    'watchdog/haste',
-    'The time is too short: a heart that beats a little late would set it off.',
-    f'Take a deadline of {SILENCE_SEC} s: Duration(seconds={SILENCE_SEC}).',
-    change=[('seconds=0.5', 'seconds=0.25')],
-)
-
-
-ALL_CLEAR = Mistake(
-    'watchdog/all-clear',
-    'It also tells that the heart beats again. Who hears an alarm there stops the robot.',
-    'Publish nothing in the callback of the heartbeat.',
-)
-
+ALL_CLEAR = WORDS.mistake('watchdog/all-clear')
 
 _HEARS = Subscribes(HEART, EMPTY)
-_BARKS = Words(
-    f'after {SILENCE_SEC} s without a heartbeat ({SILENCE_SEC - EARLY_SEC:.1f} s will do), '
-    f'publish a text on `{ALARM}` (`{STRING}`), once or more'
-)
-_IN_TIME = Words(f'the first alarm comes within {WITHIN_SEC:g} s after the last heartbeat')
-_RESTS = Words(f'publish nothing on `{ALARM}` while heartbeats come')
-_AGAIN = Words('do so each time the heart stops')
+_BARKS = Words(WORDS.clause('barks'))
+_IN_TIME = Words(WORDS.clause('in-time'))
+_RESTS = Words(WORDS.clause('rests'))
+_AGAIN = Words(WORDS.clause('again'))
 CLAUSES = (_HEARS, _RESTS, _BARKS, _IN_TIME, _AGAIN)
 
 
@@ -253,23 +222,8 @@ def _refuse_silence(number: int) -> NoReturn:
 
 
 exercise = Exercise(
-    name='watchdog',
-    task='Listen to /heartbeat, and publish a text on /alarm when it is silent.',
+    words=WORDS,
     publishes={ALARM: STRING},
     clauses=CLAUSES,
     stage=_AHeart(),
-    hints=[
-        'A deadline says how much time may pass between two messages. Who tells the node that '
-        'more has passed?',
-        'create_subscription() takes event_callbacks. The callback of the deadline gets an event, '
-        'and may publish.',
-        'QoSProfile(depth=10, deadline=Duration(seconds=0.5)), and '
-        'event_callbacks=SubscriptionEventCallbacks(deadline=self.on_missed).',
-    ],
-    answer=Solution(
-        __file__,
-        'watchdog.py',
-        'The middleware watches the time, and calls on_missed once for each half second without '
-        'a message. So the node needs neither a timer nor a clock.',
-    ),
 )
