@@ -6,13 +6,16 @@ import math
 import random
 from collections.abc import Sequence
 
-from labkit.exercises import Exercise, Probe, Solution
-from labkit.exercises.clauses import OFF, Follows, GraphClause, HasParameter, Named, Refuses
+from labkit.exercises import Exercise, Probe, Solution, words_of
+from labkit.exercises.clauses import Follows, GraphClause, HasParameter, Named, Refuses
 from labkit.exercises.clauses.parameter_client import Values
 from labkit.exercises.draws import draw_float
 from labkit.exercises.variants import varied
+from labkit.exercises.words import Words
 
 __all__ = ['exercise']
+
+WORDS = words_of(__file__)
 
 TOPIC, EMPTY = '/tick', 'std_msgs/msg/Empty'
 NODE = '/metronome'
@@ -42,56 +45,31 @@ def _bad_rates(low: float, high: float) -> tuple[Values, Sequence[Values]]:
     return {'rate': random.choice([low, 2.5, 6.25])}, [{'rate': value} for value in bad]
 
 
-def _clauses(low: float, high: float) -> tuple[GraphClause, ...]:
+def _clauses(words: Words, low: float, high: float) -> tuple[GraphClause, ...]:
     follows = Follows(
         NODE,
         TOPIC,
-        f'publish `{EMPTY}` on `{TOPIC}`, `rate` times a second ({OFF}), also after '
-        'each change of `rate`',
+        words.clause('follows'),
         lambda: _rates(low, high),
         hz=lambda values: float(values['rate']),
     )
     return (
         Named(NODE),
-        HasParameter(
-            NODE,
-            'rate',
-            float,
-            f'its parameter `rate` is a double with a range from {low} to {high} and a '
-            'description',
-            (low, high),
-        ),
+        HasParameter(NODE, 'rate', float, words.clause('has-parameter'), (low, high)),
         follows,
-        Refuses(
-            NODE,
-            'values outside the range, `nan` and values of another type are refused, with a '
-            'reason, and change nothing',
-            lambda: _bad_rates(low, high),
-            follows,
-        ),
+        Refuses(NODE, words.clause('refuses'), lambda: _bad_rates(low, high), follows),
     )
 
 
 def _variant(*, low: float = LIMITS[0], high: float = LIMITS[1]) -> Exercise:
+    words = WORDS.of(low=low, high=high)
     return Exercise(
-        name='metronome',
-        task=f'Publish Empty on {TOPIC} at a rate that is a parameter, from {low} to {high}, and '
-        'changes while the node runs.',
+        words=words,
         publishes={TOPIC: EMPTY},
-        clauses=_clauses(low, high),
-        hints=[
-            'A range in the descriptor is looked at by ROS: what is outside is refused.',
-            'A timer keeps its period. Which callback is called after a parameter was set?',
-            'In the callback of add_post_set_parameters_callback(): destroy_timer(self.timer), '
-            'and make a new one with the period 1.0 / parameter.value.',
-        ],
-        answer=Solution(
-            __file__,
-            'metronome.py',
-            'The range is in the descriptor, so ROS refuses, and anybody can read it. The '
-            'callback after the change makes a new timer. It looks at the name: every parameter '
-            'comes here.',
-        ).changed(('from_value=1.0, to_value=20.0', f'from_value={low}, to_value={high}')),
+        clauses=_clauses(words, low, high),
+        answer=Solution.of(words).changed(
+            ('from_value=1.0, to_value=20.0', f'from_value={low}, to_value={high}')
+        ),
     )
 
 

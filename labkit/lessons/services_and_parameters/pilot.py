@@ -6,37 +6,27 @@ import math
 import random
 from collections.abc import Sequence
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution, expect
+from labkit.exercises import Exercise, Fail, expect, words_of
 from labkit.exercises.clauses import (
-    OFF,
     Follows,
     HasParameter,
     Named,
     Refuses,
     Stream,
-    in_words,
 )
 from labkit.exercises.clauses.parameter_client import Values
 from labkit.exercises.draws import draw_float
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 TOPIC, TWIST = '/cmd_vel', 'geometry_msgs/msg/Twist'
 NODE = '/pilot'
 HZ = 10.0
 
-MORE_FIELDS = Mistake(
-    'pilot/more-fields',
-    'Only linear.x is asked for. Another field makes the robot do something else.',
-    'Leave the other fields as they are in a new message.',
-    change=[('        msg = Twist()\n', '        msg = Twist()\n        msg.angular.z = 0.5\n')],
-)
-AT_THE_LIMIT = Mistake(
-    'pilot/at-the-limit',
-    'That is the limit, and not the speed.',
-    'Put the parameter speed into linear.x.',
-    change=[("self.get_parameter('speed')", "self.get_parameter('limit')")],
-)
+MORE_FIELDS = WORDS.mistake('pilot/more-fields')
+AT_THE_LIMIT = WORDS.mistake('pilot/at-the-limit')
 
 
 def _draw() -> Sequence[Values]:
@@ -87,44 +77,26 @@ def _says_speed(values: Values, stream: Stream) -> None:
 _FOLLOWS = Follows(
     NODE,
     TOPIC,
-    f'publish `{TWIST}` on `{TOPIC}`, {in_words(HZ)} times a second ({OFF}); `linear.x` is '
-    'always `speed`, all else 0.0',
+    WORDS.clause('follows'),
     _draw,
     hz=lambda _: HZ,
     rule=_says_speed,
 )
 
 exercise = Exercise(
-    name='pilot',
-    task='Drive at a speed that is a parameter, and refuse what is above the limit, which is '
-    'another one.',
+    words=WORDS,
     publishes={TOPIC: TWIST},
     reliable=[TOPIC],
     clauses=(
         Named(NODE),
-        HasParameter(NODE, 'speed', float, 'its parameter `speed` is a double with a description'),
-        HasParameter(NODE, 'limit', float, 'its parameter `limit` is a double with a description'),
+        HasParameter(NODE, 'speed', float, WORDS.clause('has-parameter')),
+        HasParameter(NODE, 'limit', float, WORDS.clause('has-parameter-2')),
         _FOLLOWS,
         Refuses(
             NODE,
-            'values that make `speed` negative or more than `limit`, and `nan`, are refused, with '
-            'a reason, and change nothing',
+            WORDS.clause('refuses'),
             _bad,
             _FOLLOWS,
         ),
-    ),
-    hints=[
-        'A range has fixed ends. Here the limit may change, so a callback has to decide.',
-        'The callback of add_on_set_parameters_callback() gets all parameters that are set at '
-        'once. What is not among them keeps its value: self.get_parameter(name).value',
-        'Put both values into a dictionary, the old ones first, then the new ones. Allow them if '
-        '0.0 <= speed <= limit: with nan that is False.',
-    ],
-    answer=Solution(
-        __file__,
-        'pilot.py',
-        'The callback looks at the values as they would be after the change: old ones, and on top '
-        'of them the new ones. It asks what is allowed, and not what is forbidden, so nan does '
-        'not slip through. The timer reads the parameter anew each time.',
     ),
 )

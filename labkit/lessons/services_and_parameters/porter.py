@@ -5,12 +5,14 @@ from __future__ import annotations
 import random
 from typing import Any
 
-from labkit.exercises import Exercise, Mistake, Solution, anything
+from labkit.exercises import Exercise, anything, words_of
 from labkit.exercises.callback_count import find_node
-from labkit.exercises.clauses import WITHIN, Answers, AsksForEach, Named
+from labkit.exercises.clauses import Answers, AsksForEach, Named
 from labkit.exercises.draws import MANY
 
 __all__ = ['exercise']
+
+WORDS = words_of(__file__)
 
 WISH, NEWS, SERVICE = '/wish', '/news', '/move_door'
 BOOL, STRING = 'std_msgs/msg/Bool', 'std_msgs/msg/String'
@@ -23,37 +25,11 @@ def _message(wish: bool) -> str:
     return f'{find_node("/door").keeper} {"opened" if wish else "closed"} the door'
 
 
-OPPOSITE = Mistake(
-    'porter/opposite',
-    'The request says the opposite of the message.',
-    'In the callback of the subscription: SetBool.Request(data=msg.data)',
-    model=lambda wish: not wish,
-    change=[('data=msg.data', 'data=not msg.data')],
-)
+OPPOSITE = WORDS.mistake('porter/opposite', lambda wish: not wish)
 MISTAKES = (
-    Mistake(
-        'porter/no-done-callback',
-        f'{SERVICE} was called, and nothing was published when its response came.',
-        'future.add_done_callback(self.on_response), and publish in on_response.',
-        model=lambda wish: None,
-        change=[
-            ('        future.add_done_callback(self.on_response)\n', ''),
-            ('        future = self.client', '        self.future = self.client'),
-        ],
-    ),
-    Mistake(
-        'porter/other-response',
-        'That is the response to another message.',
-        'Take the message out of the future that belongs to this call.',
-        model=lambda wish: _message(not wish),
-    ),
-    Mistake(
-        'porter/own-text',
-        'The text is not the message of the response. The door may say something else next time.',
-        'Publish future.result().message.',
-        model=anything,
-        change=[('future.result().message', "'Ada opened the door'")],
-    ),
+    WORDS.mistake('porter/no-done-callback', lambda wish: None),
+    WORDS.mistake('porter/other-response', lambda wish: _message(not wish)),
+    WORDS.mistake('porter/own-text', anything),
 )
 
 
@@ -62,9 +38,7 @@ def _change(door: Any) -> None:
 
 
 exercise = Exercise(
-    name='porter',
-    task=f'Call {SERVICE} for each Bool on {WISH}, and publish the message of each response on '
-    f'{NEWS}.',
+    words=WORDS,
     clauses=(
         Named(NODE),
         AsksForEach(
@@ -73,8 +47,7 @@ exercise = Exercise(
             SERVICE,
             partner='/door',
             cell='door = lab.spin(make_door())',
-            words=f'for each message on `{WISH}` (`{BOOL}`), call `{SERVICE}` once, with the '
-            "message's `data` as that of the request",
+            words=WORDS.clause('asks-for-each'),
             request='SetBool.Request(data=msg.data)',
             change=_change,
             mistakes=[OPPOSITE],
@@ -83,7 +56,7 @@ exercise = Exercise(
             WISH,
             NEWS,
             BOOL,
-            f'publish the `message` of each response on `{NEWS}` (`{STRING}`), once, {WITHIN}',
+            WORDS.clause('answers'),
             answer=_message,
             draw=lambda: [True, False, *random.choices([True, False], k=MANY)],
             outer_type=STRING,
@@ -92,17 +65,5 @@ exercise = Exercise(
             # The door gets another keeper in each check.
             lasting=False,
         ),
-    ),
-    hints=[
-        'The callback of the subscription must not wait. Who takes the response then?',
-        'call_async() gives a future. Its add_done_callback() says who gets it when it is done.',
-        'future.add_done_callback(self.on_response), and in on_response(self, future): '
-        'future.result().message',
-    ],
-    answer=Solution(
-        __file__,
-        'porter.py',
-        'The callback of the subscription sends the request and returns. When the response is '
-        'there, on_response is called with the future that holds it.',
     ),
 )
