@@ -6,7 +6,7 @@ import random
 from collections.abc import Sequence
 from itertools import pairwise
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution, anything
+from labkit.exercises import Exercise, Fail, anything, words_of
 from labkit.exercises.clauses import Goal, Pursues, Pursuit, Serves
 from labkit.exercises.expect import apart
 from labkit.lessons.interfaces_and_actions.goals import (
@@ -22,6 +22,8 @@ from labkit.lessons.interfaces_and_actions.goals import (
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 NAME = '/countdown'
 # How long the pause before a number may be, s. A shorter one than the second is none.
 PAUSE_SEC, AT_ONCE_SEC = 1.0, 1e-3
@@ -30,48 +32,12 @@ MORE = 1
 # How long the goals of a clause may take, s.
 LONGEST_SEC = 120.0
 
-NO_FEEDBACK = Mistake(
-    'countdown/no-feedback',
-    'A client sees by them how far the goal is.',
-    'After each number: goal_handle.publish_feedback(...)',
-    model=anything,
-    change=[
-        ('goal_handle.publish_feedback(Fibonacci.Feedback(sequence=numbers))\n', 'pass\n'),
-    ],
-)
-ALL_AT_ONCE = Mistake(
-    'countdown/all-at-once',
-    'All numbers were counted at once.',
-    'Let some time pass before each number: await a Future that a timer completes.',
-    change=[('            self.tick = Future()\n            await self.tick\n', '')],
-)
-TOO_SLOW = Mistake(
-    'countdown/too-slow',
-    'The pauses are too long.',
-    'Take a shorter period for the timer, and wait once for each number.',
-    change=[('create_timer(0.05,', 'create_timer(1.5,')],
-)
-EMPTY_RESULT = Mistake(
-    'countdown/an-empty-result',
-    'A goal that was canceled has a result, too: what was done until then.',
-    'Return the numbers as the result, after goal_handle.canceled().',
-    change=[
-        (
-            'canceled()\n                return Fibonacci.Result(sequence=numbers)',
-            'canceled()\n                return Fibonacci.Result()',
-        ),
-    ],
-)
-LATE = Mistake(
-    'countdown/late',
-    'It goes on to count for a while, though the request to cancel was accepted.',
-    'Look at goal_handle.is_cancel_requested before each number.',
-)
-OTHERS = Mistake(
-    'countdown/other-numbers',
-    'Those are not the numbers that it had counted when it was canceled.',
-    'Return the list that the feedback had last.',
-)
+NO_FEEDBACK = WORDS.mistake('countdown/no-feedback', anything)
+ALL_AT_ONCE = WORDS.mistake('countdown/all-at-once')
+TOO_SLOW = WORDS.mistake('countdown/too-slow')
+EMPTY_RESULT = WORDS.mistake('countdown/an-empty-result')
+LATE = WORDS.mistake('countdown/late')
+OTHERS = WORDS.mistake('countdown/other-numbers')
 
 
 def _right(order: int) -> list[int]:
@@ -146,43 +112,29 @@ def _is_canceled(pursuit: Pursuit) -> None:
 
 
 exercise = Exercise(
-    name='countdown',
-    task='Serve the action /countdown, whose goals can be canceled.',
+    words=WORDS,
     clauses=(
         Serves(NAME, ACTION),
         Pursues(
             NAME,
-            'each goal succeeds, and its result is the numbers from `order` down to 0',
+            WORDS.clause('pursues'),
             _draw,
             _counts,
             LONGEST_SEC,
         ),
         Pursues(
             NAME,
-            'one feedback for each number, with all numbers so far, each after a pause of up to '
-            f'{PAUSE_SEC:g} s',
+            WORDS.clause('pursues-2'),
             _draw,
             _feeds_back,
             LONGEST_SEC,
         ),
         Pursues(
             NAME,
-            f'a canceled goal ends as canceled, after at most {MORE} more number, with the '
-            'numbers so far; the next succeeds',
+            WORDS.clause('pursues-3'),
             _draw_canceled,
             _cancels,
             LONGEST_SEC,
         ),
-    ),
-    hints=[
-        'The server of this lesson awaits a tick before each number. So can yours.',
-        'cancel_callback accepts the request. Who ends the goal? The loop, which has to look.',
-        'if goal_handle.is_cancel_requested: goal_handle.canceled() and return the result so far',
-    ],
-    answer=Solution(
-        __file__,
-        'countdown.py',
-        'While execute awaits the tick, other callbacks run: also the one that accepts the '
-        'request to cancel. After each tick the loop looks whether somebody wants an end.',
     ),
 )

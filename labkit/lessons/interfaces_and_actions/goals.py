@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from labkit.exercises import Fail, Mistake
+from labkit.exercises import Fail, Mistake, words_of
 from labkit.exercises.clauses import Goal, Pursuit
 from labkit.exercises.expect import apart
 
@@ -19,62 +19,25 @@ __all__ = [
     'results',
 ]
 
+WORDS = words_of(__file__)
+
 ACTION = 'test_msgs/action/Fibonacci'
 # A goal with a larger order may take long.
 LONG = 6
 Numbers = list[int]
 Rule = Callable[[Sequence[Pursuit]], None]
 
-NOT_SAID = Mistake(
-    'goals/aborted',
-    'execute_callback returned without saying how the goal ended, so it was aborted.',
-    'Call goal_handle.{method}() before return.',
-)
-RAISED = Mistake(
-    'goals/raised',
-    'execute_callback raised an error, so the goal was aborted.',
-    'Look at the output of its program: the error is there.',
-)
-SAID_ABORT = Mistake(
-    'goals/said-abort',
-    'execute_callback said abort(): that is for a goal that can not be reached.',
-    'Call goal_handle.{method}() in its place.',
-)
-REJECTED = Mistake(
-    'goals/rejected',
-    'goal_callback did not return GoalResponse.ACCEPT for it.',
-    'Return GoalResponse.ACCEPT or GoalResponse.REJECT, from rclpy.action.',
-)
-CANCEL_REJECTED = Mistake(
-    'goals/cancel-rejected',
-    'The request to cancel was rejected, as it is without a cancel_callback.',
-    'ActionServer(..., cancel_callback=...) that returns CancelResponse.ACCEPT',
-)
-_LOOK = 'In its loop: if goal_handle.is_cancel_requested, goal_handle.canceled() and return.'
-GOES_ON = Mistake(
-    'goals/goes-on',
-    'Accepting a request to cancel does not end the goal. execute_callback has to look.',
-    _LOOK,
-)
-SAID_SUCCEED = Mistake(
-    'goals/said-succeed',
-    'It stopped on its way, and said succeed(). A goal that was called off ends otherwise.',
-    'Call goal_handle.canceled() before return.',
-)
-OTHER_ENDING = Mistake(
-    'goals/other-ending', 'A goal with order = {order} has to be {wanted}.', 'Compare the limits.'
-)
-EMPTY = Mistake(
-    'goals/empty', 'The result is empty.', 'Put the numbers in: Fibonacci.Result(sequence=...)'
-)
-STILL_THERE = Mistake(
-    'goals/still-there',
-    'The numbers of the goal before are still there.',
-    'Begin with a new list in execute_callback, and not in __init__.',
-)
-OTHERS = Mistake(
-    'goals/others', 'The numbers are not those of the task.', 'Compare them one by one.'
-)
+NOT_SAID = WORDS.mistake('goals/aborted')
+RAISED = WORDS.mistake('goals/raised')
+SAID_ABORT = WORDS.mistake('goals/said-abort')
+REJECTED = WORDS.mistake('goals/rejected')
+CANCEL_REJECTED = WORDS.mistake('goals/cancel-rejected')
+GOES_ON = WORDS.mistake('goals/goes-on')
+SAID_SUCCEED = WORDS.mistake('goals/said-succeed')
+OTHER_ENDING = WORDS.mistake('goals/other-ending')
+EMPTY = WORDS.mistake('goals/empty')
+STILL_THERE = WORDS.mistake('goals/still-there')
+OTHERS = WORDS.mistake('goals/others')
 
 
 def fibonacci_goals(*orders: int) -> list[Goal]:

@@ -6,11 +6,13 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, Solution, anything
-from labkit.exercises.clauses import WITHIN, Answers, Evidence, GraphClause, Named
+from labkit.exercises import Exercise, Fail, NotAttempted, anything, words_of
+from labkit.exercises.clauses import Answers, Evidence, GraphClause, Named
 from labkit.exercises.draws import MANY, draw_float, in_a_row
 
 __all__ = ['exercise', 'fields_of']
+
+WORDS = words_of(__file__)
 
 NODE, TOPIC, COMMANDS = '/walker', '/leg', '/cmd_vel'
 PACKAGE, TYPE, TWIST = 'legs_lab', 'legs_lab/msg/Leg', 'geometry_msgs/msg/Twist'
@@ -18,52 +20,20 @@ FIELDS = {'speed': 'float64', 'turn': 'float64'}
 # A line of a type: a field, with its type first. A constant has = behind its name.
 _FIELD = re.compile(r'^\s*(\S+)[ \t]+(\w+)\b[ \t]*(?:$|[^\s=])', re.MULTILINE)
 
-OTHER_TYPE = Mistake(
-    'leg/other-type',
-    'A type is called like its file, and capital letters count.',
-    'Name the file msg/Leg.msg, also in CMakeLists.txt. Build it, and restart the kernel.',
-)
-OTHER_FIELDS = Mistake(
-    'leg/other-fields',
-    'A line of a type is a field: its type, a space, its name.',
-    'Correct msg/Leg.msg and build it; a program loads a type once, so restart the kernel.',
-)
+OTHER_TYPE = WORDS.mistake('leg/other-type')
+OTHER_FIELDS = WORDS.mistake('leg/other-fields')
 _SPEED, _TURN = 'command.linear.x = msg.speed', 'command.angular.z = msg.turn'
-ALWAYS_THE_SAME = Mistake(
-    'leg/always-the-same',
-    'The speed is not that of the leg that has come.',
-    _SPEED,
-    model=anything,
-    change=[(_SPEED, 'command.linear.x = 0.2')],
-)
-TO_THE_RIGHT = Mistake(
-    'leg/to-the-right',
-    'The sign is the other one: a positive angular.z turns to the left.',
-    _TURN,
-    model=lambda turn: -turn,
-    change=[(_TURN, 'command.angular.z = -msg.turn')],
-)
-DOES_NOT_TURN = Mistake(
-    'leg/does-not-turn',
-    'The robot turns about its axis z, which points up.',
-    _TURN,
-    model=lambda turn: 0.0,
-    change=[(_TURN, 'command.angular.x = msg.turn')],
-)
-OTHER_TURN = Mistake(
-    'leg/other-turn',
-    'The turn is not that of the leg that has come.',
-    _TURN,
-    model=anything,
-    change=[(_TURN, 'command.angular.z = msg.speed')],
-)
+ALWAYS_THE_SAME = WORDS.mistake('leg/always-the-same', anything)
+TO_THE_RIGHT = WORDS.mistake('leg/to-the-right', lambda turn: -turn)
+DOES_NOT_TURN = WORDS.mistake('leg/does-not-turn', lambda turn: 0.0)
+OTHER_TURN = WORDS.mistake('leg/other-turn', anything)
 
 
 @dataclass(frozen=True)
 class _HasType(GraphClause):
     """This notebook knows the type, with its fields."""
 
-    text = f'the type `{TYPE}` has the fields `speed` and `turn`, both `float64`'
+    text = WORDS.clause('has-type')
 
     def find(self, evidence: Evidence) -> None:
         from labkit.rosgraph.interfaces import names_in, path_of
@@ -98,8 +68,7 @@ def _draw() -> Sequence[float]:
 
 
 exercise = Exercise(
-    name='leg',
-    task=f'Make the type {TYPE}, and a node that drives the robot by such messages on {TOPIC}.',
+    words=WORDS,
     clauses=(
         _HasType(),
         Named(NODE),
@@ -107,8 +76,7 @@ exercise = Exercise(
             TOPIC,
             COMMANDS,
             TYPE,
-            f'each leg on `{TOPIC}` leads to one command on `{COMMANDS}` (`{TWIST}`) {WITHIN}, '
-            'with `speed` as its speed ahead',
+            WORDS.clause('answers'),
             answer=lambda speed: speed,
             draw=_draw,
             outer_type=TWIST,
@@ -121,7 +89,7 @@ exercise = Exercise(
             TOPIC,
             COMMANDS,
             TYPE,
-            'and with `turn` as its turn to the left',
+            WORDS.clause('answers-2'),
             answer=lambda turn: turn,
             draw=_draw,
             outer_type=TWIST,
@@ -132,17 +100,4 @@ exercise = Exercise(
         ),
     ),
     reliable=(COMMANDS,),
-    hints=[
-        'The package needs three files, as lab_interfaces does, with the other names in them.',
-        'msg/Leg.msg has a line for each field. In CMakeLists.txt: msg/Leg.msg. Then '
-        "lab.build('legs_ws').",
-        'from legs_lab.msg import Leg; in the callback a Twist with linear.x = msg.speed and '
-        'angular.z = msg.turn',
-    ],
-    answer=Solution(
-        __file__,
-        'leg.ipy',
-        'The two files are those of lab_interfaces, with other names in them. The node does not '
-        'care who has made a type: it imports and uses it like all others.',
-    ),
 )

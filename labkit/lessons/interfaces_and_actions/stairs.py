@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution
+from labkit.exercises import Exercise, Fail, words_of
 from labkit.exercises.clauses import Goal, Pursues, Pursuit, Serves
 from labkit.lessons.interfaces_and_actions.goals import (
     ACTION,
@@ -17,26 +17,15 @@ from labkit.lessons.interfaces_and_actions.goals import (
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 NAME = '/stairs'
 LEAST, MOST = 1, 20
 ALLOWED = range(LEAST, MOST + 1)
 
-
-NONE_REJECTED = Mistake(
-    'stairs/none-rejected',
-    'No goal at all was rejected: there is no goal_callback, or it accepts each goal.',
-    'ActionServer(..., goal_callback=self.on_goal), which returns GoalResponse.REJECT for some',
-)
-SOME_REJECTED = Mistake(
-    'stairs/some-rejected',
-    'Others were rejected, and this one was not.',
-    'Compare the limits in goal_callback with those of the task.',
-)
-TOO_LATE = Mistake(
-    'stairs/too-late',
-    'It was accepted first. What execute_callback does comes too late to reject a goal.',
-    'ActionServer(..., goal_callback=self.on_goal), which returns GoalResponse.REJECT for some',
-)
+NONE_REJECTED = WORDS.mistake('stairs/none-rejected')
+SOME_REJECTED = WORDS.mistake('stairs/some-rejected')
+TOO_LATE = WORDS.mistake('stairs/too-late')
 
 
 def _draw() -> list[Goal]:
@@ -70,33 +59,20 @@ def _accepts(pursuits: Sequence[Pursuit]) -> None:
 
 
 exercise = Exercise(
-    name='stairs',
-    task='Serve the action /stairs, which rejects some goals.',
+    words=WORDS,
     clauses=(
         Serves(NAME, ACTION),
         Pursues(
             NAME,
-            f'a goal whose `order` is from {LEAST} to {MOST} is accepted, any other one is '
-            'rejected',
+            WORDS.clause('pursues'),
             _draw,
             _accepts,
         ),
         Pursues(
             NAME,
-            f'an accepted goal succeeds, and its result is the numbers from {LEAST} to `order`',
+            WORDS.clause('pursues-2'),
             lambda: fibonacci_goals(random.randint(5, 9), random.randint(2, 4), LEAST, MOST),
             results(lambda order: list(range(LEAST, order + 1))),
         ),
-    ),
-    hints=[
-        'A callback of its own is asked before a goal is accepted.',
-        'ActionServer(..., goal_callback=self.on_goal); it gets the goal, and no handle.',
-        'return GoalResponse.ACCEPT or GoalResponse.REJECT, from rclpy.action',
-    ],
-    answer=Solution(
-        __file__,
-        'stairs.py',
-        'goal_callback is asked before anything is done. A client that is rejected learns it at '
-        'once, and execute is not called.',
     ),
 )
