@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping, Sequence
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution
+from labkit.exercises import Exercise, Fail, words_of
 from labkit.exercises.clauses import Asked
 from labkit.lessons.names_and_launch.launch_clauses import (
     HasParameters,
@@ -18,6 +18,8 @@ from labkit.lessons.names_and_launch.system import DECLARED
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 DEFAULTS = {'robot': 'robot1', 'speed': '0.1', 'talk': 'false'}
 _NAMES = ('amy', 'bo', 'rover7', 'tina')
 
@@ -28,18 +30,8 @@ def _draw() -> Sequence[Mapping[str, str]]:
     return [{}, {'robot': random.choice(_NAMES), 'speed': speed, 'talk': 'true'}]
 
 
-ALWAYS = Mistake(
-    'arguments/always',
-    'It is there whether it is wanted or not: nothing asks the argument.',
-    'if="$(var talk)" in the node',
-    change=[(' if="$(var talk)"', '')],
-)
-NEVER = Mistake(
-    'arguments/never',
-    'The argument says true, and it is not there.',
-    'if="$(var talk)" in the node',
-    change=[('if="$(var talk)"', 'if="false"')],
-)
+ALWAYS = WORDS.mistake('arguments/always')
+NEVER = WORDS.mistake('arguments/never')
 
 
 def _talks_if_wanted(system: System) -> None:
@@ -61,36 +53,24 @@ class _NothingElse(OnlyNodes):
 
 
 exercise = Exercise(
-    name='arguments',
-    task='Write a launch file with the arguments robot, speed and talk.',
+    words=WORDS,
     clauses=(
         Launches('arguments'),
         RunsNode(
             '/{robot}/driver',
-            'a driver runs in the namespace that `robot` says, by default `robot1`',
+            WORDS.clause('runs-node'),
         ),
         HasParameters(
             '/{robot}/driver',
             {'speed': '{speed}'},
-            'the argument `speed` is that of the driver, by default 0.1',
+            WORDS.clause('has-parameters'),
             DECLARED,
         ),
         Asked(
-            '`talk`, `true` or `false` (the default), says whether a talker runs there, too',
+            WORDS.clause('talks-if-wanted'),
             _talks_if_wanted,
         ),
-        _NothingElse(('/{robot}/driver',), 'no other node is started'),
+        _NothingElse(('/{robot}/driver',), WORDS.clause('nothing-else')),
     ),
     stage=Launched('arguments', arguments=_draw, defaults=DEFAULTS),
-    hints=[
-        'Three tags <arg>, each with a default.',
-        '$(var robot) stands for the value of an argument, wherever the file takes a value.',
-        'if="$(var talk)" in a node starts it only if the argument is true.',
-    ],
-    answer=Solution(
-        __file__,
-        'arguments.ipy',
-        'What may differ is an argument, and its default makes it optional. One group puts both '
-        'nodes into the namespace.',
-    ),
 )

@@ -2,45 +2,22 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution
+from labkit.exercises import Exercise, Fail, words_of
 from labkit.exercises.clauses import Asked
 from labkit.lessons.names_and_launch.launch_clauses import Launches, OnlyNodes
 from labkit.lessons.names_and_launch.learner_launch import Launched, System
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 DRIVER, TALKER, LISTENER = '/robot1/driver', '/robot1/talker', '/robot1/listener'
 
-NO_RESPAWN = Mistake(
-    'ending/no-respawn',
-    'A program that has died stays dead, unless its node says respawn.',
-    'respawn="true" in the talker',
-    change=[(' respawn="true"', '')],
-)
-ALL_RESPAWN = Mistake(
-    'ending/all-respawn',
-    'It comes again, since its node says respawn.',
-    'respawn="true" in the talker, and nowhere else',
-    change=[('exec="listener"/>', 'exec="listener" respawn="true"/>')],
-)
-ALL_END = Mistake(
-    'ending/all-end',
-    'Its end has ended all of them.',
-    'on_exit="shutdown" in the driver, and nowhere else',
-    change=[('exec="listener"/>', 'exec="listener" on_exit="shutdown"/>')],
-)
-LIMITED = Mistake(
-    'ending/limited',
-    'It was started again before, and not this time.',
-    'respawn="true" alone, without respawn_max_retries',
-    change=[(' respawn="true"', ' respawn="true" respawn_max_retries="1"')],
-)
-GOES_ON = Mistake(
-    'ending/goes-on',
-    'A launch goes on as long as one program of it runs, unless a node says on_exit.',
-    'on_exit="shutdown" in the driver',
-    change=[(' on_exit="shutdown"', '')],
-)
+NO_RESPAWN = WORDS.mistake('ending/no-respawn')
+ALL_RESPAWN = WORDS.mistake('ending/all-respawn')
+ALL_END = WORDS.mistake('ending/all-end')
+LIMITED = WORDS.mistake('ending/limited')
+GOES_ON = WORDS.mistake('ending/goes-on')
 
 
 def _refuse_second(system: System, node: str) -> None:
@@ -85,28 +62,16 @@ def _driver_ends_all(system: System) -> None:
 
 
 exercise = Exercise(
-    name='ending',
-    task='Write a launch file that says what happens when a program ends.',
+    words=WORDS,
     clauses=(
         Launches('ending'),
         OnlyNodes(
             (DRIVER, TALKER, LISTENER),
-            f'`{DRIVER}`, `{TALKER}` and `{LISTENER}` run, and no other node',
+            WORDS.clause('only-nodes'),
         ),
-        Asked('when the talker dies, it is started again', _talker_comes_again),
-        Asked('when the listener dies, it stays dead, and the others go on', _listener_stays_dead),
-        Asked('when the driver ends, all of them end', _driver_ends_all),
+        Asked(WORDS.clause('talker-comes-again'), _talker_comes_again),
+        Asked(WORDS.clause('listener-stays-dead'), _listener_stays_dead),
+        Asked(WORDS.clause('driver-ends-all'), _driver_ends_all),
     ),
     stage=Launched('ending'),
-    hints=[
-        'Two attributes of a node say what happens at its end: respawn and on_exit.',
-        'One node says respawn="true", another on_exit="shutdown", and the third one nothing.',
-        'The talker is to be started again, and the driver is required.',
-    ],
-    answer=Solution(
-        __file__,
-        'ending.ipy',
-        'respawn is for a program without which the others can wait a moment. on_exit="shutdown" '
-        'is for one without which they are of no use, as required was in ROS 1.',
-    ),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Exercise, Solution
+from labkit.exercises import Exercise, Solution, words_of
 from labkit.lessons.names_and_launch.launch_clauses import (
     HasParameters,
     Launches,
@@ -14,6 +14,8 @@ from labkit.lessons.names_and_launch.system import DECLARED
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 FAULTS = (
     ('$(var robot)', '$(var name)'),
     ('exec="driver"', 'exec="drive"'),
@@ -24,36 +26,22 @@ _SAYS = ('A robot with a driver and a talker', 'A robot with a driver, a talker 
 GIVEN = Solution(__file__, 'faults.ipy', '', (*FAULTS, _SAYS)).code.partition('\n')[2]
 
 exercise = Exercise(
-    name='faults',
-    task='Mend faults.launch.xml, which has five faults.',
+    words=WORDS,
     clauses=(
         Launches('faults'),
         HasParameters(
             '/{robot}/driver',
             {'speed': 0.2, 'turn': -0.5},
-            '`/amy/driver` runs, with a `speed` of 0.2 and a `turn` of -0.5',
+            WORDS.clause('has-parameters'),
             DECLARED,
         ),
         Publishes(
             '/{robot}/talker',
             '/{robot}/news',
             'chatter',
-            '`/amy/talker` runs, and publishes on `/amy/news`',
+            WORDS.clause('publishes'),
         ),
-        OnlyNodes(('/{robot}/driver', '/{robot}/talker'), 'no other node is started'),
+        OnlyNodes(('/{robot}/driver', '/{robot}/talker'), WORDS.clause('only-nodes')),
     ),
     stage=Launched('faults', GIVEN, defaults={'robot': 'amy'}),
-    hints=[
-        'Launch it, read the line of the error, mend that line, and launch it again.',
-        'Two faults raise no error. Compare ros2 param list and ros2 topic list with the file.',
-        'The argument is called robot, the program driver, the tag remap, the parameter speed, '
-        'and the topic in the code chatter.',
-    ],
-    answer=Solution(
-        __file__,
-        'faults.ipy',
-        'Launch knows tags, arguments and programs, and tells what is wrong with them before it '
-        'starts anything. It does not know the names in the code of a node: a parameter or a '
-        'topic that is misspelt is silent.',
-    ),
 )

@@ -2,51 +2,23 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution
+from labkit.exercises import Exercise, Fail, Solution, words_of
 from labkit.exercises.clauses import Asked
 from labkit.lessons.names_and_launch.launch_clauses import Launches, OnlyNodes
 from labkit.lessons.names_and_launch.learner_launch import Launched, System
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 # The robots, and whom each of them is to hear.
 PAIRS = {'robot1': 'robot2', 'robot2': 'robot1'}
 
-HEARS_ITSELF = Mistake(
-    'hearing/itself',
-    'chatter is relative, so each robot has a chatter of its own: its listener hears that one.',
-    '<remap from="chatter" to="/{other}/chatter"/>',
-    change=[('<remap from="chatter" to="/robot2/chatter"/>', '')],
-)
-ABSOLUTE_FROM = Mistake(
-    'hearing/absolute-from',
-    'It hears its own robot: the remap matches nothing. In the namespace {robot} the name chatter '
-    'is /{robot}/chatter, and not /chatter.',
-    'from="chatter"',
-    change=[('from="chatter" to="/robot2', 'from="/chatter" to="/robot2')],
-)
-RELATIVE_TO = Mistake(
-    'hearing/relative-to',
-    'A name without / in front is relative: the namespace of the listener is put before it.',
-    'to="/{other}/chatter"',
-    change=[('to="/robot1/chatter"', 'to="robot1/chatter"')],
-)
-HEARS_BOTH = Mistake(
-    'hearing/both',
-    'If all use one topic, everybody hears everybody, and itself.',
-    'Remap the listeners only, each to the topic of the other robot.',
-    change=[
-        ('exec="talker"/>', 'exec="talker"><remap from="chatter" to="/chatter"/></node>'),
-        ('to="/robot2/chatter"', 'to="/chatter"'),
-        ('to="/robot1/chatter"', 'to="/chatter"'),
-    ],
-)
-HEARS_NOBODY = Mistake(
-    'hearing/nobody',
-    'Nobody publishes there. Two names that differ in one letter are two topics.',
-    'ros2 topic list shows what there is.',
-    change=[('to="/robot1/chatter"', 'to="/robot1/chater"')],
-)
+HEARS_ITSELF = WORDS.mistake('hearing/itself')
+ABSOLUTE_FROM = WORDS.mistake('hearing/absolute-from')
+RELATIVE_TO = WORDS.mistake('hearing/relative-to')
+HEARS_BOTH = WORDS.mistake('hearing/both')
+HEARS_NOBODY = WORDS.mistake('hearing/nobody')
 
 
 def _hears_the_other(robot: str) -> Asked[System]:
@@ -75,7 +47,7 @@ def _hears_the_other(robot: str) -> Asked[System]:
             mistake.of(robot=robot, other=other),
         )
 
-    return Asked(f'`/{robot}/listener` receives from the talker of {other}, and no other', look)
+    return Asked(WORDS.of(robot=robot, other=other).clause('hears-the-other'), look)
 
 
 GIVEN = Solution(
@@ -90,30 +62,15 @@ GIVEN = Solution(
 ).code.partition('\n')[2]
 
 exercise = Exercise(
-    name='hearing',
-    task='Mend hearing.launch.xml: each robot is to hear the other one.',
+    words=WORDS,
     clauses=(
         Launches('hearing'),
         OnlyNodes(
             [f'/{robot}/{node}' for robot in PAIRS for node in ('talker', 'listener')],
-            'each of `robot1` and `robot2` has a `talker` and a `listener`, and there is no '
-            'other node',
+            WORDS.clause('only-nodes'),
         ),
         _hears_the_other('robot1'),
         _hears_the_other('robot2'),
     ),
     stage=Launched('hearing', GIVEN),
-    hints=[
-        'Launch it, and look at ros2 topic list. Which names are there that nobody meant?',
-        'from is read as a name in the namespace of the node, and so is to. What does a / in '
-        'front do to each?',
-        'from="chatter" is relative, and meets the name in the code. to="/robot1/chatter" is '
-        'absolute, and leaves the namespace.',
-    ],
-    answer=Solution(
-        __file__,
-        'hearing.ipy',
-        'The code says chatter, without a slash, so from has none either. The other robot is '
-        'outside of the own namespace, so to begins with a slash.',
-    ),
 )

@@ -5,64 +5,29 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from labkit.exercises import Clause, Fail, Mistake
+from labkit.exercises import Clause, Fail, Mistake, words_of
 from labkit.lessons.names_and_launch.learner_launch import System
 
 __all__ = ['HasParameters', 'Hears', 'Launches', 'OnlyNodes', 'Publishes', 'RunsNode']
 
+WORDS = words_of(__file__)
+
 # Topics that every node has.
 _COMMON = {'/rosout', '/parameter_events'}
 
-FAULT = Mistake(
-    'launch/fault',
-    'A fault in the file, and so nothing was started.',
-    'Look at that line of the file. Run its cell again, and check again.',
-)
-NAMESPACE = Mistake(
-    'launch/namespace',
-    'The name is right, and the namespace is not.',
-    'namespace="{space}" in the node, or push_ros_namespace in a group around it.',
-)
-NODE_NAME = Mistake(
-    'launch/node-name',
-    'The namespace is right. Without name="..." a node has the name of its code.',
-    'name="{base}"',
-)
-NO_NODE = Mistake(
-    'launch/no-node', 'The file starts no node of such a name.', 'Add a <node>, with its name.'
-)
-TOO_MANY = Mistake('launch/too-many', 'The file starts more than the task asks for.')
-TWICE = Mistake(
-    'launch/twice', 'Two nodes have one name, and nobody can tell them apart.', 'Rename one.'
-)
-NO_REMAP = Mistake(
-    'launch/no-remap',
-    'It is still the name in the code: the node was given no remap.',
-    '<remap from="{code}" to="..."/> in the node',
-)
-NO_MATCH = Mistake(
-    'launch/no-match',
-    'It is still the name in the code: the remap from {given} matches nothing. from has to be '
-    'that name, and one without / stands in the namespace of the node.',
-    '<remap from="{code}" to="..."/>',
-)
-ABSOLUTE = Mistake(
-    'launch/absolute',
-    'A name that begins with / is absolute: no namespace is put before it.',
-    'Leave the / away, and the namespace of the node is put before the name.',
-)
-WITHIN = Mistake(
-    'launch/within',
-    'A name without / in front is relative: the namespace of the node is put before it.',
-    'Write the whole name, with / in front.',
-)
-OTHER_TOPIC = Mistake('launch/other-topic', 'The topic has another name.', 'It is {topic}.')
-DEFAULT_VALUE = Mistake(
-    'launch/default-value',
-    'That is the value of its declaration: the file gives it none, or by another name.',
-    '<param name="{name}" value="..."/> in the node',
-)
-OTHER_VALUE = Mistake('launch/other-value', 'The file gives it another value.')
+FAULT = WORDS.mistake('launch/fault')
+NAMESPACE = WORDS.mistake('launch/namespace')
+NODE_NAME = WORDS.mistake('launch/node-name')
+NO_NODE = WORDS.mistake('launch/no-node')
+TOO_MANY = WORDS.mistake('launch/too-many')
+TWICE = WORDS.mistake('launch/twice')
+NO_REMAP = WORDS.mistake('launch/no-remap')
+NO_MATCH = WORDS.mistake('launch/no-match')
+ABSOLUTE = WORDS.mistake('launch/absolute')
+WITHIN = WORDS.mistake('launch/within')
+OTHER_TOPIC = WORDS.mistake('launch/other-topic')
+DEFAULT_VALUE = WORDS.mistake('launch/default-value')
+OTHER_VALUE = WORDS.mistake('launch/other-value')
 
 
 class Launches(Clause[System]):

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from labkit import stop_button
 from labkit.errors import LabError
-from labkit.exercises import Clause, Fail, Mistake, NotAttempted, Probe, Stage
+from labkit.exercises import Clause, Fail, NotAttempted, Probe, Stage, words_of
 from labkit.exercises.exercise import NOTHING_YET
 from labkit.exercises.machine_faults import refuse_machine_fault
 from labkit.lessons.package.learner_workspace import workspace
@@ -25,24 +25,14 @@ if TYPE_CHECKING:
 
 __all__ = ['EMPTY', 'Launched', 'System']
 
+WORDS = words_of(__file__)
+
 EMPTY = '<launch>\n  <!-- ... -->\n</launch>'
 _FORMS = ('xml', 'yaml', 'py')
 
-RUNS_ALREADY = Mistake(
-    'launch/runs-already',
-    '',
-    'End it: lab.processes().stop(), and lab.remove for a node of a cell.',
-)
-DIED = Mistake(
-    'launch/died',
-    'The program has ended by itself. Its last line says why.',
-    'Correct the launch file, and check again.',
-)
-HANGS = Mistake(
-    'launch/hangs',
-    'It is in the graph, and does not answer: nothing spins it.',
-    'A program of a package spins its node in main(). Name one that does.',
-)
+RUNS_ALREADY = WORDS.mistake('launch/runs-already')
+DIED = WORDS.mistake('launch/died')
+HANGS = WORDS.mistake('launch/hangs')
 
 
 @dataclass
