@@ -6,14 +6,12 @@ import math
 import random
 from collections.abc import Sequence
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution
+from labkit.exercises import Exercise, Fail, words_of
 from labkit.exercises.clauses import Asked
 from labkit.exercises.expect import digits
 from labkit.lessons.turtlebot.drive import EMPTY, ODOMETRY, SAME, STEP_SEC, Drive, Trial
 from labkit.lessons.turtlebot.drive_clauses import (
-    MANY,
     NAN,
-    PER_SECOND,
     STOPS,
     Begins,
     Hears,
@@ -23,51 +21,19 @@ from labkit.lessons.turtlebot.stage import Drives
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 SIGN = ('/go_home', EMPTY)
 STEPS = 20
 
-_PLACE = 'self.x = msg.pose.pose.position.x'
-SPEED_FOR_PLACE = Mistake(
-    'bot/speed-for-place',
-    'A robot that stands has the speed 0.0, and twist.twist in an Odometry is the speed. The '
-    'place is in pose.pose.',
-    _PLACE,
-    change=[('msg.pose.pose.position.x', 'msg.twist.twist.linear.x')],
-)
-Y_FOR_X = Mistake(
-    'bot/y-for-x', 'That is y. Home is where x = 0.', _PLACE, change=[('position.x', 'position.y')]
-)
-WRONG_SIGN = Mistake(
-    'bot/wrong-sign',
-    'The sign is wrong. Where x is below 0 the robot has to drive forwards, where it is above 0 '
-    'backwards.',
-    'v = -x',
-    change=[('= -self.x', '= self.x')],
-)
-TURNS = Mistake(
-    'bot/turns',
-    'The bot drives straight on: home is where x = 0, whatever y is.',
-    'Set msg.linear.x alone.',
-    change=[('linear.x = -self.x\n', 'linear.x = -self.x\n            msg.angular.z = 0.1\n')],
-)
+SPEED_FOR_PLACE = WORDS.mistake('bot/speed-for-place')
+Y_FOR_X = WORDS.mistake('bot/y-for-x')
+WRONG_SIGN = WORDS.mistake('bot/wrong-sign')
+TURNS = WORDS.mistake('bot/turns')
 _ANEW = 'Let the callback keep x, and read it anew at each step.'
-GAIN = Mistake(
-    'bot/gain',
-    'The gain is 1 here: v = -1.0 * x. This is {gain:.5g} * x, the other way.',
-    _ANEW,
-    change=[('= -self.x', '= -1.1 * self.x')],
-)
-AS_AT_START = Mistake(
-    'bot/as-at-start',
-    'The command does not follow the newest odometry: it stays as it was at the start.',
-    _ANEW,
-)
-NOT_COUNTED = Mistake(
-    'bot/not-counted',
-    'The steps are not counted, or not to the right number.',
-    f'Count each step, and stop when {STEPS} are done.',
-    change=[('        self.steps -= 1\n', '')],
-)
+GAIN = WORDS.mistake('bot/gain')
+AS_AT_START = WORDS.mistake('bot/as-at-start')
+NOT_COUNTED = WORDS.mistake('bot/not-counted')
 
 
 def _steps(drive: Drive) -> None:
@@ -128,35 +94,19 @@ def _tell(drives: Sequence[Drive]) -> str:
 
 
 exercise = Exercise(
-    name='bot',
-    task=f'On /go_home a node drives v = -x for {STEPS} steps at 10 Hz, by its odometry, and '
-    'stops.',
+    words=WORDS,
     shared=['/cmd_vel'],
     reliable=['/cmd_vel'],
     clauses=(
         Begins(*SIGN),
         Hears('/odom', ODOMETRY, SIGN[0]),
-        Asked(f'publish {STEPS} steps on `/cmd_vel` (`Twist`), {MANY} {PER_SECOND}', _steps),
+        Asked(WORDS.clause('steps'), _steps),
         Asked(
-            '`linear.x` = -x with the newest odometry (or that of a step before), all else 0.0',
+            WORDS.clause('gain'),
             _gain,
         ),
         STOPS,
     ),
     # A right drive takes 2 s.
     stage=Drives(SIGN, _draw, _tell, seconds=5.0),
-    hints=[
-        'Three callbacks: the odometry keeps x, the message on /go_home sets a counter, the timer '
-        'does one step.',
-        'In the timer: nothing if the counter is 0. Else count down, make a Twist, set '
-        'msg.linear.x = -self.x, publish.',
-        f'The stop command is one more step, with an empty Twist(): begin the counter with '
-        f'{STEPS + 1}.',
-    ],
-    answer=Solution(
-        __file__,
-        'bot.py',
-        'The callbacks only keep what is new. The timer alone decides when a command is sent, so '
-        'the rate is 10 Hz, however often the odometry comes.',
-    ),
 )

@@ -7,7 +7,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from functools import partial
 
-from labkit.exercises import Clause, Fail, Mistake
+from labkit.exercises import Clause, Fail, words_of
 from labkit.exercises.clauses import Asked, in_words
 from labkit.exercises.clauses.publishing import OFF, TOLERANCE
 from labkit.exercises.what_is_asked import PUBLISHER, SUBSCRIPTION, Role
@@ -32,6 +32,8 @@ __all__ = [
     'short',
 ]
 
+WORDS = words_of(__file__)
+
 # How soon after the sign the first command has to come, s.
 BEGIN_SEC = 0.5
 # How far one gap between two commands may be off, as a part of it.
@@ -45,101 +47,28 @@ MANY = in_words(1 / STEP_SEC)
 PER_SECOND = f'a second ({OFF})'
 RATE = f'publish on `/cmd_vel` (`Twist`) {MANY} times {PER_SECOND}'
 
-_START = 'Let the callback set what the timer looks at, and publish in the timer.'
-USED_UP = Mistake(
-    'turtlebot/used-up',
-    'Something is used up by the first drive: a counter, a plan, a flag that is never set back.',
-    'Set in the callback of the message all that a drive needs.',
-)
-NOT_STARTED = Mistake(
-    'turtlebot/not-started',
-    'The callback of the sign does not start anything, or the timer does not publish.',
-    _START,
-)
-UNASKED = Mistake(
-    'turtlebot/unasked',
-    'It publishes without being asked to.',
-    'Begin when a message comes, and return in the timer as long as there is nothing to do.',
-)
-LATE = Mistake(
-    'turtlebot/late', 'Something waits before the drive begins, or the period is too long.', _START
-)
-_ONE = f'One command each time that the timer of {STEP_SEC} s calls.'
-AT_ONCE = Mistake(
-    'turtlebot/at-once',
-    'A loop publishes them without a pause. The robot obeys the last one.',
-    _ONE,
-)
-BY_SENSOR = Mistake(
-    'turtlebot/by-sensor',
-    'The odometry comes 30 times a second, and its callback sends a command each time. So the '
-    'sensor sets the rate of the control.',
-    f'Let the callback only keep the newest value, and publish in a timer of {STEP_SEC} s.',
-)
-_TIMER = f'create_timer({STEP_SEC}, self.on_timer)'
-TWICE = Mistake(
-    'turtlebot/twice',
-    'Twice as many: is publish() called twice, or the period half as long?',
-    _TIMER,
-)
-PERIOD = Mistake(
-    'turtlebot/period', 'The rate is set by the period of the timer, in seconds.', _TIMER
-)
-STOP_AT_ONCE = Mistake(
-    'turtlebot/stop-at-once',
-    'The last step ends before it has begun: the robot obeys the newest command.',
-    'Let the stop command be one more step of the timer.',
-)
-ELSE = Mistake('turtlebot/something-else', 'Something other than the timer publishes, too.', _ONE)
-PAUSES = Mistake(
-    'turtlebot/pauses',
-    'A robot obeys a command for one second only, and turns and drives on in a pause.',
-    'Let the timer go on publishing, also while the robot rests.',
-)
+USED_UP = WORDS.mistake('turtlebot/used-up')
+NOT_STARTED = WORDS.mistake('turtlebot/not-started')
+UNASKED = WORDS.mistake('turtlebot/unasked')
+LATE = WORDS.mistake('turtlebot/late')
+AT_ONCE = WORDS.mistake('turtlebot/at-once')
+BY_SENSOR = WORDS.mistake('turtlebot/by-sensor')
+TWICE = WORDS.mistake('turtlebot/twice')
+PERIOD = WORDS.mistake('turtlebot/period')
+STOP_AT_ONCE = WORDS.mistake('turtlebot/stop-at-once')
+ELSE = WORDS.mistake('turtlebot/something-else')
+PAUSES = WORDS.mistake('turtlebot/pauses')
 
-WHEELS = Mistake(
-    'turtlebot/wheels', 'The robot has two wheels: it obeys linear.x and angular.z alone.'
-)
-IMPOSSIBLE = Mistake(
-    'turtlebot/impossible',
-    'No robot can drive like that. This one ignores the command and stops, or drives as fast as '
-    'it can.',
-)
-DEGREES = Mistake(
-    'turtlebot/degrees',
-    'Its angles are degrees. ROS measures angles in radians, and turning rates in radians a '
-    'second. This robot can turn at 2.84 rad/s at most.',
-    'math.pi / 2 is a right angle. math.atan2() gives radians as well.',
-)
-NAN = Mistake('turtlebot/nan', 'A nan is no number: a division or a root had no result.')
+WHEELS = WORDS.mistake('turtlebot/wheels')
+IMPOSSIBLE = WORDS.mistake('turtlebot/impossible')
+DEGREES = WORDS.mistake('turtlebot/degrees')
+NAN = WORDS.mistake('turtlebot/nan')
 
-ENDLESS = Mistake(
-    'turtlebot/endless',
-    'It does not end: it goes on to send commands that move the robot.',
-    'When it is there: publish an empty Twist() once, and then nothing more.',
-)
-NO_STOP = Mistake(
-    'turtlebot/no-stop',
-    'A robot obeys the last command that it heard. A node that ends without a stop command '
-    'leaves it driving.',
-    'At the end publish an empty Twist(): all of its fields are 0.0.',
-)
-ON_ITS_WAY = Mistake(
-    'turtlebot/on-its-way',
-    'It stops on its way.',
-    'Say stop when the drive is over, and only then.',
-)
-STILL_TALKS = Mistake(
-    'turtlebot/still-talks',
-    'It stands, and still publishes. So nobody else can drive the robot, such as a person with '
-    'the keys.',
-    'Forget the drive when it is over, and return in the timer until the next message comes.',
-)
-SLOW = Mistake(
-    'turtlebot/slow',
-    'It drives or turns too slowly, or goes on and on.',
-    'Let it drive at 0.2 m/s, and turn at about 1.5 rad/s.',
-)
+ENDLESS = WORDS.mistake('turtlebot/endless')
+NO_STOP = WORDS.mistake('turtlebot/no-stop')
+ON_ITS_WAY = WORDS.mistake('turtlebot/on-its-way')
+STILL_TALKS = WORDS.mistake('turtlebot/still-talks')
+SLOW = WORDS.mistake('turtlebot/slow')
 
 
 def short(msg_type: str) -> str:
@@ -321,9 +250,9 @@ def look_at_time(drive: Drive, seconds: float) -> None:
         raise Fail(expected, f'it still moves after {taken:.1f} s', SLOW)
 
 
-SENSIBLE = Asked(f'ask for no more than {TOO_FAST:g} m/s and {TOO_ROUND:g} rad/s', look_at_numbers)
-STOPS = Asked('end with one stop command (all 0.0), then nothing more', look_at_end)
+SENSIBLE = Asked(WORDS.clause('sensible'), look_at_numbers)
+STOPS = Asked(WORDS.clause('stops'), look_at_end)
 RESTS = Asked(
-    f'end with stop commands (all 0.0) for up to {REST_SEC:g} s, then nothing more',
+    WORDS.clause('rests'),
     partial(look_at_end, may_rest=True),
 )

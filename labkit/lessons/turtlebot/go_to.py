@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import pairwise
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution
+from labkit.exercises import Exercise, Fail, Mistake, words_of
 from labkit.exercises.clauses import Asked
 from labkit.lessons.turtlebot.drive import ODOMETRY, STEP_SEC, Command, Drive, Point, Trial
 from labkit.lessons.turtlebot.drive_clauses import (
@@ -26,6 +26,8 @@ from labkit.sim.kinematics import wrap_angle
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 SIGN = ('/goal', 'geometry_msgs/msg/Pose2D')
 # How near it has to come, and how much further off it may stand after braking, m.
 NEAR, BRAKING = 0.05, 0.01
@@ -35,55 +37,14 @@ WAY = (0.5, 1.0)
 # Turning by less than this from the start is no decision, rad.
 TURNED = 0.15
 
-NOT_WRAPPED = Mistake(
-    'go_to/not-wrapped',
-    'Two angles were subtracted, and the difference was not wrapped: {bearing:.2f} - {yaw:.2f} = '
-    '{difference:.2f} rad is nearly a full turn.',
-    'error = math.atan2(math.sin(error), math.cos(error))',
-)
-WRONG_SIGN = Mistake(
-    'go_to/wrong-sign',
-    'The sign is wrong: the error is the direction of the goal minus the heading, and a positive '
-    'angular.z turns to the left.',
-    'error = math.atan2(dy, dx) - self.yaw',
-    change=[('1.5 * error', '-1.5 * error')],
-)
-EXCHANGED = Mistake(
-    'go_to/exchanged',
-    'x and y are exchanged in the direction of the goal.',
-    'math.atan2(dy, dx): first y, then x.',
-    change=[('math.atan2(dy, dx)', 'math.atan2(dx, dy)')],
-)
-MIXED = Mistake(
-    'go_to/mixed',
-    'Degrees and radians are mixed. math.atan2() gives radians, and math.sin(), math.cos() and '
-    'angular.z take radians.',
-    'Turn nothing into degrees. 2 * math.atan2(q.z, q.w) is in radians as well.',
-)
-HALF = Mistake(
-    'go_to/half-heading',
-    'The heading is taken for half of what it is: math.atan2(q.z, q.w) is half of the yaw.',
-    'self.yaw = 2 * math.atan2(q.z, q.w)',
-    change=[('2 * math.atan2', 'math.atan2')],
-)
-_ANEW = 'At each step: distance and direction of the goal, seen from the newest odometry.'
-TOO_EARLY = Mistake(
-    'go_to/too-early',
-    f'It stops too early: {NEAR} m are asked for.',
-    _ANEW,
-    change=[('< 0.05', '< 0.15')],
-)
-DRIVES_ON = Mistake(
-    'go_to/drives-on',
-    'It was near enough, and drove on.',
-    f'Nearer than {NEAR} m: stop, and forget the goal.',
-    change=[('< 0.05', '< 0.0')],
-)
-ASTRAY = Mistake(
-    'go_to/astray',
-    'It drives past the goal, or turns elsewhere, to and fro or round and round.',
-    _ANEW,
-)
+NOT_WRAPPED = WORDS.mistake('go_to/not-wrapped')
+WRONG_SIGN = WORDS.mistake('go_to/wrong-sign')
+EXCHANGED = WORDS.mistake('go_to/exchanged')
+MIXED = WORDS.mistake('go_to/mixed')
+HALF = WORDS.mistake('go_to/half-heading')
+TOO_EARLY = WORDS.mistake('go_to/too-early')
+DRIVES_ON = WORDS.mistake('go_to/drives-on')
+ASTRAY = WORDS.mistake('go_to/astray')
 
 
 def _turns(drive: Drive) -> None:
@@ -212,39 +173,23 @@ def _tell(drives: Sequence[Drive]) -> str:
 
 
 exercise = Exercise(
-    name='go_to',
-    task='For each Pose2D on /goal a node drives the robot to that x and y, and stops there.',
+    words=WORDS,
     shared=['/cmd_vel'],
     reliable=['/cmd_vel'],
     clauses=(
         Begins(*SIGN),
         Hears('/odom', ODOMETRY, SIGN[0]),
         SENSIBLE,
-        Asked('turn towards its `x` and `y` on the shorter way', _turns),
+        Asked(WORDS.clause('turns'), _turns),
         Asked(RATE, look_at_rate),
         Asked(
-            f'stop within {SECONDS:.0f} s, at most {NEAR} m from it ({BRAKING} m more '
-            'for braking)',
+            WORDS.clause('arrives'),
             _arrives,
         ),
         Asked(
-            'end with one stop command (all 0.0), then nothing more; on its way it may rest',
+            WORDS.clause('partial'),
             partial(look_at_end, may_pause=True),
         ),
     ),
     stage=Drives(SIGN, _draw, _tell, seconds=SECONDS),
-    hints=[
-        'dx and dy lead from the robot to the goal. math.hypot(dx, dy) is how far it is, '
-        'math.atan2(dy, dx) is its direction.',
-        'The error of the heading is the direction minus the yaw. Wrap it: '
-        'math.atan2(math.sin(error), math.cos(error)).',
-        'angular.z = 1.5 * error. Drive with linear.x = 0.2 only while the error is small. Nearer '
-        f'than {NEAR} m: stop, and forget the goal.',
-    ],
-    answer=Solution(
-        __file__,
-        'go_to.py',
-        'Each step looks anew at where the robot is, so that no mistake of an earlier step '
-        'remains. This is feedback.',
-    ),
 )

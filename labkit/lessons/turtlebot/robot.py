@@ -10,7 +10,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from labkit.errors import LabError
-from labkit.exercises import Fail, Mistake, Probe
+from labkit.exercises import Fail, Probe, words_of
 from labkit.lessons.turtlebot.drive import Point, Trial
 from labkit.sim.kinematics import Pose
 from labkit.sim.robots import BURGER
@@ -30,36 +30,17 @@ __all__ = [
     'walls_near',
 ]
 
+WORDS = words_of(__file__)
+
 # Walls are drawn that are nearer to the end of a drive than this, m.
 NEAR_WALL = 0.8
 # As far as a short-sighted scanner sees, m.
 SHORT_SIGHT = 1.0
-_END = 'End it, such as lab.remove({name!r}), or where it runs. Then check again.'
-NO_ROBOT = Mistake(
-    'robot/none',
-    'The check puts the robot of this lesson somewhere, in its room and in real time, and watches '
-    'it drive.',
-    'Run the cell again that says: robot = lab.spin(lab.Turtlebot())',
-)
-TWO_ROBOTS = Mistake(
-    'robot/two',
-    'Two robots hear the same commands, and nobody can tell their odometry apart.',
-    _END,
-)
-SECOND_CLOCK = Mistake(
-    'robot/second-clock', 'Nodes that follow /clock would hear two times.', _END
-)
-COPIES = Mistake(
-    'robot/copies',
-    'Each of them drives the robot when the message comes.',
-    'End those that you do not mean: lab.remove({name!r}), or the other process or notebook.',
-)
-OTHERS = Mistake(
-    'robot/others',
-    'The robot obeys whatever command came last. Commands that say stop count, too.',
-    'Let go of the keys of a teleop. End another node, such as lab.remove({name!r}), or where it '
-    'runs. Then check again.',
-)
+NO_ROBOT = WORDS.mistake('robot/none')
+TWO_ROBOTS = WORDS.mistake('robot/two')
+SECOND_CLOCK = WORDS.mistake('robot/second-clock')
+COPIES = WORDS.mistake('robot/copies')
+OTHERS = WORDS.mistake('robot/others')
 
 
 def find_robot(probe: Probe) -> Any:

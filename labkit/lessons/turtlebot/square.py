@@ -5,17 +5,16 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise, starmap
 from typing import Any
 
-from labkit.exercises import Clause, Exercise, Fail, Mistake, Probe, Solution
+from labkit.exercises import Clause, Exercise, Fail, Probe, Solution, words_of
 from labkit.exercises.clauses import Asked, Evidence
 from labkit.exercises.variants import varied
 from labkit.lessons.turtlebot.drive import EMPTY, STEP_SEC, Drive, Point, Trial
 from labkit.lessons.turtlebot.drive_clauses import (
-    RATE,
     REST_SEC,
     RESTS,
     SENSIBLE,
@@ -29,6 +28,8 @@ from labkit.views.arena_picture import two
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 SIGN = ('/go_square', EMPTY)
 # Sides of variants, m. The corner opposite to the start is in none near that of another.
 SIDES = (0.24, 0.4, 0.56, 0.72)
@@ -39,41 +40,12 @@ DRIVES, CURVED = 0.05, 180.0
 # An unhurried drive: m/s along a side, and s for each turn with its pauses.
 UNHURRIED, TURN_SEC = 0.2, 3.5
 
-OFF_THE_SIDES = Mistake(
-    'square/off-the-sides',
-    'It drives a curve, or a side is longer than it should be.',
-    'A command for a side has angular.z = 0.0, one for a turn linear.x = 0.0.',
-)
-FIVE_SIDES = Mistake(
-    'square/five-sides',
-    'It goes on after the fourth side.',
-    'After the fourth side publish an empty Twist().',
-    change=[('4 *', '5 *')],
-)
-OTHER_WAY = Mistake(
-    'square/other-way',
-    'It turns to the {other}. A positive angular.z turns to the left, a negative one to the '
-    'right.',
-    'Change the sign of angular.z.',
-)
-FIRST_SIDE = Mistake(
-    'square/first-side',
-    'The first side has another length, or it did not drive straight on.',
-    f'Way = speed times time: {UNHURRIED} m/s for {STEP_SEC} s, one step, are '
-    f'{UNHURRIED * STEP_SEC:g} m.',
-)
-LAST_SIDE = Mistake(
-    'square/last-side',
-    'The fourth side is missing, or the corners are no right angles.',
-    'Four times the same: a side, then a turn.',
-    change=[('4 *', '3 *')],
-)
-NO_RIGHT_ANGLE = Mistake(
-    'square/no-right-angle',
-    'The turn is no right angle, or the side has another length. A right angle is 1.57 rad.',
-    f'Angle = turning rate times time: 1.57 rad/s for 1 s, which is 10 steps of {STEP_SEC} s.',
-    change=[('1.5708', '1.0')],
-)
+OFF_THE_SIDES = WORDS.mistake('square/off-the-sides')
+FIVE_SIDES = WORDS.mistake('square/five-sides')
+OTHER_WAY = WORDS.mistake('square/other-way')
+FIRST_SIDE = WORDS.mistake('square/first-side')
+LAST_SIDE = WORDS.mistake('square/last-side')
+NO_RIGHT_ANGLE = WORDS.mistake('square/no-right-angle')
 
 
 @dataclass(frozen=True)
@@ -178,65 +150,42 @@ def _tell(drives: Sequence[Drive]) -> str:
     return f'A square of {drive.way():.2f} m, closed to {away:.2f} m, in {drive.duration:.0f} s.'
 
 
-def _task(outline: Outline) -> dict[str, Any]:
-    """Return what depends on the outline."""
-    side, turn = outline.side, outline.turn
-    sign = '' if turn == 'left' else '-'
+def _variant(*, outline: tuple[float, str] = (0.4, 'left')) -> Exercise:
+    wanted = Outline(*outline)
+    side, turn = outline
+    seconds = side / UNHURRIED
+    words = WORDS.of(
+        side=side,
+        turn=turn,
+        sign='' if turn == 'left' else '-',
+        near=NEAR,
+        within=f'{wanted.seconds:.0f}',
+        speed=UNHURRIED,
+        seconds=f'{seconds:g}',
+        steps=f'{seconds / STEP_SEC:.0f}',
+        step=STEP_SEC,
+    )
     clauses: tuple[Clause[Drive], ...] = (
         Begins(*SIGN),
         SENSIBLE,
-        Asked(
-            f'{RATE}, with pauses of up to {REST_SEC:g} s',
-            partial(look_at_rate, pause=REST_SEC, pauses=8),
-        ),
-        Asked(
-            f'drive four straight sides of {side} m, turning 90° {turn} on the spot (corners up '
-            f'to {NEAR} m off)',
-            partial(_sides, outline),
-        ),
+        Asked(words.clause('rate'), partial(look_at_rate, pause=REST_SEC, pauses=8)),
+        Asked(words.clause('sides'), partial(_sides, wanted)),
         RESTS,
-        Asked(
-            f'stop where you began (up to {NEAR} m off), within {outline.seconds:.0f} s',
-            partial(_closes, outline),
-        ),
+        Asked(words.clause('closes'), partial(_closes, wanted)),
     )
-    return {
-        'task': f'On /go_square a node drives a square of {side} m to the {turn}, and stops where '
-        'it began.',
-        'clauses': clauses,
-        'stage': Drives(SIGN, partial(_draw, outline), _tell, seconds=outline.seconds),
-        'hints': [
-            f'A square is four times the same: a side, then a turn of 90 degrees to the {turn}.',
-            f'Way = speed * time. {UNHURRIED} m/s for {side / UNHURRIED:g} s are {side} m: '
-            f'{side / UNHURRIED / STEP_SEC:.0f} steps of {STEP_SEC} s. Angle = turning rate * '
-            f'time. {sign}1.57 rad/s for 1 s are 90 degrees to the {turn}: 10 steps.',
-            'Make a list of (v, w), one for each step, and let the timer take one at a time. '
-            'Let it rest for some steps, (0.0, 0.0), after each side and each turn.',
-        ],
-    }
-
-
-_USUAL = Exercise(
-    name='square',
-    shared=['/cmd_vel'],
-    reliable=['/cmd_vel'],
-    answer=Solution(
-        __file__,
-        'square.py',
-        'Nothing is measured here: it relies on speed and time. By odometry it would be more '
-        'exact, as in the exercise before.',
-    ),
-    **_task(Outline()),
-)
-
-
-def _variant(*, outline: tuple[float, str]) -> Exercise:
-    wanted = Outline(*outline)
-    steps = f'{wanted.side / UNHURRIED / STEP_SEC:.0f} * [({UNHURRIED}, 0.0)]'
-    answer = _USUAL.answer.changed(('20 * [(0.2, 0.0)]', steps))
-    if wanted.turn == 'right':
+    answer = Solution.of(words).changed(
+        ('20 * [(0.2, 0.0)]', f'{seconds / STEP_SEC:.0f} * [({UNHURRIED}, 0.0)]')
+    )
+    if turn == 'right':
         answer = answer.changed(('1.5708', '-1.5708'))
-    return replace(_USUAL, answer=answer, **_task(wanted))
+    return Exercise(
+        words=words,
+        shared=['/cmd_vel'],
+        reliable=['/cmd_vel'],
+        clauses=clauses,
+        stage=Drives(SIGN, partial(_draw, wanted), _tell, seconds=wanted.seconds),
+        answer=answer,
+    )
 
 
 def _guess(probe: Probe) -> dict[str, Any] | None:
@@ -252,7 +201,7 @@ def _guess(probe: Probe) -> dict[str, Any] | None:
 
 
 exercise = varied(
-    _USUAL,
+    _variant(),
     _variant,
     _guess,
     outline=[

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from labkit.exercises import Clause, Fail, Mistake, Probe, Stage, expect
+from labkit.exercises import Clause, Fail, Probe, Stage, expect, words_of
 from labkit.exercises.clauses import Evidence
 from labkit.exercises.judging import find, naming
 from labkit.exercises.observation import Life, Stimulus, live
@@ -47,6 +47,8 @@ if TYPE_CHECKING:
 
 __all__ = ['Drives', 'Trials']
 
+WORDS = words_of(__file__)
+
 # The sign is given when time has passed for so long, s; no timer of a node ticks just then.
 SIGN_SEC = 0.25
 # How long a drive may take longer than the task allows, until it is cut, s.
@@ -56,12 +58,7 @@ TICK_SEC = STEP_SEC / 2
 # More commands a second than this are a loop without a pause.
 FLOOD_HZ = 200.0
 
-DEAF = Mistake(
-    'turtlebot/deaf',
-    'A check lets the time of ROS pass quickly. A node that is not spun, or is at work for long, '
-    'does not hear of it.',
-    'Spin it, and let a timer send the commands. Then run this cell again.',
-)
+DEAF = WORDS.mistake('turtlebot/deaf')
 OWN_TIME = (
     ' In a process of its own let a timer send the commands: how a loop drives that sleeps by '
     'itself, a check can tell in this notebook only.'

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import signal
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
-from labkit.exercises import Exercise, Fail, Mistake, Probe, Solution, expect
+from labkit.exercises import Exercise, Fail, Probe, Solution, expect, words_of
 from labkit.exercises.clauses import (
     Asked,
     Evidence,
@@ -24,6 +22,8 @@ from labkit.lessons.turtlebot.drive import SAME, TWIST, command_of
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 NODE = '/cruiser'
 SPEED, HZ = 0.1, 10.0
 # How long the last command of another process may be on its way, s.
@@ -32,45 +32,12 @@ LATE_SEC = 0.3
 # second.
 GOES_ON_SEC = 0.5
 
-_SPEED = 'msg.linear.x = {wanted}'
-OTHER_SPEED = Mistake(
-    'stop/other-speed',
-    'The task asks for another speed.',
-    _SPEED,
-    change=[('= 0.1\n', '= 0.15\n')],
-)
-STANDS = Mistake(
-    'stop/stands',
-    'A robot that does not move need not be stopped.',
-    _SPEED,
-    change=[('= 0.1\n', '= 0.0\n')],
-)
-TURNS = Mistake(
-    'stop/turns',
-    'linear.x is the speed ahead. The other numbers stay 0.0.',
-    _SPEED,
-    change=[('= 0.1\n', '= 0.1\n        msg.angular.z = 0.1\n')],
-)
-HANDLERS = Mistake(
-    'stop/handlers',
-    'With Ctrl-C this handler shuts ROS down while your code is about to publish. Mostly it comes '
-    'first, and the last command is lost.',
-    'rclpy.init(signal_handler_options=SignalHandlerOptions.NO), from rclpy.signals; after the '
-    'last publish(): publisher.wait_for_all_acked()',
-)
-NO_STOP = Mistake(
-    'stop/no-stop',
-    'The node ends without a word. The robot goes on with the last command until it gives up '
-    'waiting, one second later.',
-    'destroy_node() is called whatever ends the node. Publish an empty Twist() there, then call '
-    'super().destroy_node().',
-    change=[('        self.publisher.publish(Twist())\n', '')],
-)
-ANOTHER = Mistake(
-    'stop/another',
-    'The robot does what the newest command says, whichever node has sent it.',
-    'End what does not belong here: lab.remove({name!r})',
-)
+OTHER_SPEED = WORDS.mistake('stop/other-speed')
+STANDS = WORDS.mistake('stop/stands')
+TURNS = WORDS.mistake('stop/turns')
+HANDLERS = WORDS.mistake('stop/handlers')
+NO_STOP = WORDS.mistake('stop/no-stop')
+ANOTHER = WORDS.mistake('stop/another')
 
 
 def _cruises(stream: Stream, wanted: float) -> None:
@@ -143,52 +110,27 @@ def _ends_ros_first(gid: bytes) -> bool:
     return False
 
 
-def _task(speed: float, hz: float) -> dict[str, Any]:
-    """Return what depends on the numbers."""
-    said = f', says so {often(hz).partition(" (")[0]}' if (speed, hz) != (SPEED, HZ) else ''
-    return {
-        'task': f'A node `cruiser` drives at {speed} m/s{said}, and its last command says stop, '
-        'whatever ends it.',
-        'clauses': (
+def _variant(*, speed: float = SPEED, hz: float = HZ) -> Exercise:
+    rate = WORDS.of(rate=often(hz).partition(' (')[0]).clause('rate')
+    words = WORDS.of(speed=speed, rate=rate if (speed, hz) != (SPEED, HZ) else '')
+    return Exercise(
+        words=words,
+        shared=['/cmd_vel'],
+        reliable=['/cmd_vel'],
+        once=True,
+        clauses=(
             Named(NODE),
             Publishes('/cmd_vel', hz, TWIST, by=NODE),
             Messages(
-                '/cmd_vel',
-                f'each command says `linear.x` = {speed}, all else 0.0',
-                partial(_cruises, wanted=speed),
-                by=NODE,
+                '/cmd_vel', words.clause('cruises'), partial(_cruises, wanted=speed), by=NODE
             ),
-            Asked('the last command says stop (all 0.0), however the node ends', _says_stop),
+            Asked(words.clause('says-stop'), _says_stop),
         ),
-    }
-
-
-_USUAL = Exercise(
-    name='stop',
-    shared=['/cmd_vel'],
-    reliable=['/cmd_vel'],
-    hints=[
-        'Which method of a node is called when it is removed? You can write your own version.',
-        'A new Twist() has 0.0 in all of its fields: it says stop.',
-        'def destroy_node(self): publish Twist(), then super().destroy_node()',
-    ],
-    answer=Solution(
-        __file__,
-        'stop.py',
-        'lab.remove(), lab.stop() and the end of the kernel all call destroy_node(). In a script, '
-        '`try: rclpy.spin(node)` with `finally:` does the same.',
-    ),
-    once=True,
-    **_task(SPEED, HZ),
-)
-
-
-def _variant(*, speed: float, hz: float) -> Exercise:
-    answer = _USUAL.answer.changed(
-        ('create_timer(0.1,', f'create_timer({1 / hz:g},'),
-        ('msg.linear.x = 0.1', f'msg.linear.x = {speed}'),
+        answer=Solution.of(words).changed(
+            ('create_timer(0.1,', f'create_timer({1 / hz:g},'),
+            ('msg.linear.x = 0.1', f'msg.linear.x = {speed}'),
+        ),
     )
-    return replace(_USUAL, answer=answer, **_task(speed, hz))
 
 
 def _guess(probe: Probe) -> dict[str, float] | None:
@@ -201,7 +143,7 @@ def _guess(probe: Probe) -> dict[str, float] | None:
 
 
 exercise = varied(
-    _USUAL,
+    _variant(),
     _variant,
     _guess,
     speed=[centimetres / 100 for centimetres in (5, 6, 7, 8, 9, *range(11, 22))],

@@ -6,14 +6,16 @@ import math
 import random
 from collections.abc import Sequence
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution
+from labkit.exercises import Exercise, Fail, words_of
 from labkit.exercises.clauses import Asked
-from labkit.lessons.turtlebot.drive import EMPTY, SAME, SCAN, STEP_SEC, Drive, Trial
+from labkit.lessons.turtlebot.drive import EMPTY, SAME, SCAN, Drive, Trial
 from labkit.lessons.turtlebot.drive_clauses import STOPS, Begins, Hears
 from labkit.lessons.turtlebot.stage import Drives
 from labkit.sim.robots import BURGER
 
 __all__ = ['exercise']
+
+WORDS = words_of(__file__)
 
 SIGN = ('/go_wall', EMPTY)
 # The walls of the robot's room stand so far from the origin, m.
@@ -29,59 +31,16 @@ ROD = 0.0035
 # The fewest commands a second, and how late the stop command may be, s.
 FEWEST_HZ, LATE_SEC = 5, 0.2
 
-RELIABLE = Mistake(
-    'wall/reliable',
-    'A sensor sends without waiting for receipts: best effort. A subscription that asks for '
-    'receipts does not match it, and never hears it.',
-    'Pass qos_profile_sensor_data in the place of the depth.',
-    change=[('self.on_scan, qos_profile_sensor_data', 'self.on_scan, 10')],
-)
-_SPEED = f'msg.linear.x = {SPEED}'
-BACKWARDS = Mistake('wall/backwards', 'It drives backwards.', _SPEED, change=[('= 0.2', '= -0.2')])
-OTHER_SPEED = Mistake(
-    'wall/other-speed', 'It has another speed.', _SPEED, change=[('= 0.2', '= 0.22')]
-)
-TURNS = Mistake('wall/turns', 'It turns, so the beams look elsewhere than it goes.', _SPEED)
-SAID_ONCE = Mistake(
-    'wall/said-once',
-    'A robot obeys a command for one second only, and then stops. For it to drive on you have to '
-    'say so again and again.',
-    f'Publish in a timer of {STEP_SEC} s.',
-    change=[('create_timer(0.1,', 'create_timer(0.5,')],
-)
-TOO_NEAR = Mistake(
-    'wall/too-near',
-    'It saw the wall too late, or looked elsewhere: ranges[0] looks ahead, ranges[180] back.',
-    f'Compare the nearest of the beams ahead with {NEAR} m at each step.',
-    change=[('> 0.5', '> 0.4')],
-)
-_BEAMS = f'msg.ranges[:{AHEAD}] and msg.ranges[-{AHEAD}:]'
-ZERO = Mistake(
-    'wall/zero',
-    '0.0 m was taken for a wall. A real scanner says 0.0 where a beam met nothing.',
-    'Leave out what is less than range_min before you look for the nearest one.',
-    change=[('msg.range_min <=', '0.0 <=')],
-)
-NO_NUMBER = Mistake(
-    'wall/no-number',
-    'nan was taken for a wall. A comparison with nan is always False, and min() may return it.',
-    'Keep only range_min <= distance <= range_max before you look for the nearest one.',
-    change=[('if msg.range_min <= way <= msg.range_max', 'if not way <= 0.0')],
-)
-BESIDE = Mistake(
-    'wall/beside',
-    'Something beside or behind the robot was taken for the wall ahead. ranges[0] looks ahead, '
-    'and the next beams go round to the left.',
-    f'Look at the beams around index 0 only: {_BEAMS}',
-    change=[('msg.ranges[:10] + msg.ranges[-10:]', 'msg.ranges')],
-)
-_COMPARE = f'Compare {_BEAMS} with {NEAR} m.'
-TOO_EARLY = Mistake(
-    'wall/too-early',
-    'It stopped too early: by its odometry, or at another distance.',
-    _COMPARE,
-    change=[('self.ahead > 0.5', 'self.ahead > 1.0')],
-)
+RELIABLE = WORDS.mistake('wall/reliable')
+BACKWARDS = WORDS.mistake('wall/backwards')
+OTHER_SPEED = WORDS.mistake('wall/other-speed')
+TURNS = WORDS.mistake('wall/turns')
+SAID_ONCE = WORDS.mistake('wall/said-once')
+TOO_NEAR = WORDS.mistake('wall/too-near')
+ZERO = WORDS.mistake('wall/zero')
+NO_NUMBER = WORDS.mistake('wall/no-number')
+BESIDE = WORDS.mistake('wall/beside')
+TOO_EARLY = WORDS.mistake('wall/too-early')
 
 
 class _Scans(Hears):
@@ -230,41 +189,23 @@ def _tell(drives: Sequence[Drive]) -> str:
 
 
 exercise = Exercise(
-    name='wall',
-    task=f'On /go_wall a node drives ahead and stops when the scan sees a wall nearer than {NEAR} '
-    'm.',
+    words=WORDS,
     shared=['/cmd_vel'],
     reliable=['/cmd_vel'],
     clauses=(
         Begins(*SIGN),
         _Scans('/scan', SCAN, SIGN[0]),
         Asked(
-            f'publish `linear.x` = {SPEED}, all else 0.0, on `/cmd_vel` (`Twist`), at least '
-            f'{FEWEST_HZ} times a second',
+            WORDS.clause('speed'),
             _speed,
         ),
         Asked(
-            f'stop within {LATE_SEC} s after the first scan with something ahead nearer than '
-            f'{NEAR} m',
+            WORDS.clause('stops-in-time'),
             _stops_in_time,
         ),
-        Asked(
-            'nothing beside or behind stops it, nor a distance of `inf`, `nan` or 0.0', _drives_on
-        ),
+        Asked(WORDS.clause('drives-on'), _drives_on),
         STOPS,
     ),
     # The longest drive is 1 m, which takes 5 s.
     stage=Drives(SIGN, _draw, _tell, seconds=9.0),
-    hints=[
-        'The scan has 360 distances. Number 0 looks ahead, number 90 to the left, 180 back.',
-        f'{_BEAMS} are the beams ahead. min() finds the nearest. A beam that meets nothing is '
-        'inf, and that is far.',
-        '/scan is best effort: subscribe with qos_profile_sensor_data.',
-    ],
-    answer=Solution(
-        __file__,
-        'wall.py',
-        'The callback of the scan keeps one number, the timer decides ten times a second, and '
-        'the last command says stop.',
-    ),
 )
