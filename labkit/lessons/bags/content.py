@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from labkit.errors import LabError, nearest
-from labkit.exercises import Clause, Fail, Mistake, NotAttempted, Probe, Stage
+from labkit.exercises import Clause, Fail, NotAttempted, Probe, Stage, words_of
 from labkit.exercises.learner_errors import last_cell
 
 if TYPE_CHECKING:
@@ -18,54 +18,24 @@ if TYPE_CHECKING:
 
 __all__ = ['Found', 'InABag', 'IsThere', 'OnlyTopic']
 
+WORDS = words_of(__file__)
+
 # Topics that every node has, and that are recorded where all are.
 _OF_EVERY_NODE = ('/parameter_events', '/rosout')
 
 # Path of a bag -> when the bag was written that was judged last.
 _judged: dict[str, float] = {}
 
-NOTHING = Mistake(
-    'bag/nothing',
-    'What nobody publishes while it is recorded is not in a bag.',
-    'Record {topic!r}, while a node publishes on it.',
-)
-OTHER_TOPIC = Mistake('bag/other-topic', 'Another topic was recorded.', 'Record {topic!r}.')
-ALL_TOPICS = Mistake(
-    'bag/all-topics',
-    'All that is published was recorded: every node publishes on some topics besides its own.',
-    'Name the topic: lab.record(..., {topic!r}, ...)',
-)
-MORE_TOPICS = Mistake(
-    'bag/more-topics',
-    'More than one topic was chosen.',
-    'Name the topic: lab.record(..., {topic!r}, ...)',
-)
-OTHER_TYPE = Mistake(
-    'bag/other-type',
-    'The node that publishes there takes another type.',
-    'Compare the type with that of the task, letter by letter.',
-)
-NO_MESSAGE = Mistake(
-    'bag/no-message',
-    'The recording had ended before the first message came.',
-    'Wait for messages before you stop it: recording.wait_for(count)',
-)
-ELSEWHERE = Mistake(
-    'bag/elsewhere',
-    'A bag is in the folder that the recording is given, from the folder of this notebook on.',
-    'Write {path!r}, letter by letter.',
-)
-UNREADABLE = Mistake('bag/unreadable', 'It cannot be read.')
-CUT_OFF = Mistake(
-    'bag/cut-off',
-    'The recording was cut off, before it could write metadata.yaml.',
-    'Record it once more, and end the recording with stop().',
-)
-GOES_ON = Mistake(
-    'bag/goes-on',
-    'A recording goes on until it is ended: what comes now is recorded, too.',
-    'Call its stop() when enough was recorded, or record in a with block.',
-)
+NOTHING = WORDS.mistake('bag/nothing')
+OTHER_TOPIC = WORDS.mistake('bag/other-topic')
+ALL_TOPICS = WORDS.mistake('bag/all-topics')
+MORE_TOPICS = WORDS.mistake('bag/more-topics')
+OTHER_TYPE = WORDS.mistake('bag/other-type')
+NO_MESSAGE = WORDS.mistake('bag/no-message')
+ELSEWHERE = WORDS.mistake('bag/elsewhere')
+UNREADABLE = WORDS.mistake('bag/unreadable')
+CUT_OFF = WORDS.mistake('bag/cut-off')
+GOES_ON = WORDS.mistake('bag/goes-on')
 
 
 @dataclass

@@ -8,10 +8,12 @@ from collections.abc import Callable, Generator
 from functools import partial
 from typing import Any
 
-from labkit.exercises import Exercise, Mistake, Solution, anything
+from labkit.exercises import Exercise, anything, words_of
 from labkit.exercises.clauses import Answers, Subscribes
 
 __all__ = ['exercise']
+
+WORDS = words_of(__file__)
 
 ODOMETRY, FLOAT64 = 'nav_msgs/msg/Odometry', 'std_msgs/msg/Float64'
 JUMP = 0.5
@@ -55,113 +57,40 @@ def _begins_otherwise(begun: float | None) -> Generator[Any, Place, None]:
         yield None
 
 
-_STEP = 'math.dist(self.last, place)'
-_ADD = '            if step < 0.5:\n                self.total += step\n'
-_RENEW = '        self.last = place\n'
-_DIAGONAL = 'The step is math.dist(last, place), with x and y of the two messages.'
-_PLACE = 'Keep the place of the message before: self.last = place'
-_SUM = 'Add each step to what was there: self.total += step'
 MISTAKES = (
-    Mistake(
-        'distance/a-limit-that-is-too-low',
-        'Steps before this one were counted, and this one is not.',
-        f'Each step that is shorter than {JUMP} m counts.',
-        model=partial(_sums, below=0.4),
-        change=[('step < 0.5', 'step < 0.4')],
+    WORDS.mistake('distance/a-limit-that-is-too-low', partial(_sums, below=0.4)),
+    WORDS.mistake(
+        'distance/the-last-step-alone', partial(_sums, add=lambda total, length: length)
     ),
-    Mistake(
-        'distance/the-last-step-alone',
-        'What is published is the last step alone, not the sum of all steps.',
-        _SUM,
-        model=partial(_sums, add=lambda total, length: length),
-        change=[('self.total += step', 'self.total = step')],
+    WORDS.mistake(
+        'distance/x-alone', partial(_sums, step=lambda last, place: abs(place[0] - last[0]))
     ),
-    Mistake(
-        'distance/x-alone',
-        'Only x is counted.',
-        _DIAGONAL,
-        model=partial(_sums, step=lambda last, place: abs(place[0] - last[0])),
-        change=[(_STEP, 'abs(place[0] - self.last[0])')],
-    ),
-    Mistake(
+    WORDS.mistake(
         'distance/x-and-y-added',
-        'The steps in x and in y are added. The robot drives the diagonal of the two.',
-        _DIAGONAL,
-        model=partial(
-            _sums, step=lambda last, place: abs(place[0] - last[0]) + abs(place[1] - last[1])
-        ),
-        change=[(_STEP, 'abs(place[0] - self.last[0]) + abs(place[1] - self.last[1])')],
+        partial(_sums, step=lambda last, place: abs(place[0] - last[0]) + abs(place[1] - last[1])),
     ),
-    Mistake(
-        'distance/no-root',
-        'The root is missing.',
-        _DIAGONAL,
-        model=partial(_sums, step=lambda last, place: math.dist(last, place) ** 2),
-        change=[(_STEP, f'{_STEP} ** 2')],
+    WORDS.mistake(
+        'distance/no-root', partial(_sums, step=lambda last, place: math.dist(last, place) ** 2)
     ),
-    Mistake(
-        'distance/counted-twice',
-        'Each step is counted twice.',
-        'Add it once.',
-        model=partial(_sums, add=lambda total, length: total + 2 * length),
-        change=[('self.total += step', 'self.total += 2 * step')],
+    WORDS.mistake(
+        'distance/counted-twice', partial(_sums, add=lambda total, length: total + 2 * length)
     ),
-    Mistake(
+    WORDS.mistake(
         'distance/from-the-origin',
-        'The way from (0, 0) is added each time.',
-        _PLACE,
-        model=partial(_sums, step=lambda last, place: math.hypot(*place), below=math.inf),
-        change=[(_RENEW, '        self.last = (0.0, 0.0)\n'), ('step < 0.5', 'step < 50')],
+        partial(_sums, step=lambda last, place: math.hypot(*place), below=math.inf),
     ),
-    Mistake(
-        'distance/never-renews-the-last-place',
-        'The way from the first place is added each time: the last place is never renewed.',
-        _PLACE,
-        model=partial(_sums, below=math.inf, renews=False),
-        change=[(_RENEW, f'        else:\n    {_RENEW}'), ('step < 0.5', 'step < 5')],
+    WORDS.mistake(
+        'distance/never-renews-the-last-place', partial(_sums, below=math.inf, renews=False)
     ),
-    Mistake(
+    WORDS.mistake(
         'distance/straight-line',
-        'It is the straight line to where the robot is now. A robot that drives round and comes '
-        'back has driven, too.',
-        'Add up the steps from message to message.',
-        model=partial(_sums, add=lambda total, length: length, below=math.inf, renews=False),
-        change=[
-            (_ADD, '            self.total = step\n'),
-            (_RENEW, f'        else:\n    {_RENEW}'),
-        ],
+        partial(_sums, add=lambda total, length: length, below=math.inf, renews=False),
     ),
-    Mistake(
-        'distance/counts-jumps',
-        'The jump was counted as if the robot had driven it.',
-        f'Add a step only if it is shorter than {JUMP} m. Keep the new place in any case.',
-        model=partial(_sums, below=math.inf),
-        change=[(_ADD, '            self.total += step\n')],
-    ),
-    Mistake(
-        'distance/begins-anew-at-a-jump',
-        'The sum begins anew at the jump.',
-        'What was driven before has been driven: leave the sum as it is.',
-        model=partial(_sums, jump=lambda total: 0.0),
-        change=[(_ADD, f'{_ADD}            else:\n                self.total = 0.0\n')],
-    ),
-    Mistake(
-        'distance/first-place',
-        'The way from (0, 0) to the first place was counted. Nobody knows whether it was driven.',
-        'Begin with self.last = None, and add nothing at the first message.',
-        model=_from_zero,
-        change=[('self.last = None', 'self.last = (0.0, 0.0)')],
-    ),
-    Mistake(
-        'distance/begins-at-1',
-        'The sum does not begin at 0.0.',
-        'Begin with self.total = 0.0 and self.last = None.',
-        model=_begins_otherwise,
-        change=[('self.total = 0.0', 'self.total = 1.0')],
-    ),
-    Mistake(
-        'distance/other-length', 'That is not the length of this step.', _DIAGONAL, model=anything
-    ),
+    WORDS.mistake('distance/counts-jumps', partial(_sums, below=math.inf)),
+    WORDS.mistake('distance/begins-anew-at-a-jump', partial(_sums, jump=lambda total: 0.0)),
+    WORDS.mistake('distance/first-place', _from_zero),
+    WORDS.mistake('distance/begins-at-1', _begins_otherwise),
+    WORDS.mistake('distance/other-length', anything),
 )
 
 
@@ -187,16 +116,14 @@ def _drive(middle: float) -> list[Place]:
 
 
 exercise = Exercise(
-    name='distance',
-    task='Tell how far a robot has driven, from its odometry or from a bag of it.',
+    words=WORDS,
     clauses=(
         Subscribes('/odom', ODOMETRY),
         Answers(
             '/odom',
             '/distance',
             ODOMETRY,
-            f'answer each message with a `{FLOAT64}` on `/distance`: the sum of all steps '
-            f'(straight lines) shorter than {JUMP} m',
+            WORDS.clause('answers'),
             answer=_sums,
             draw=lambda: [*_drive(0.0), *_drive(-10.0)],
             outer_type=FLOAT64,
@@ -206,17 +133,5 @@ exercise = Exercise(
             resume=lambda place, said: [max(said, 0.0)],
             answers_all=True,
         ),
-    ),
-    hints=[
-        'Keep two things in the node: the place of the last message, and the sum.',
-        'At the first message there is no last place yet: begin with self.last = None.',
-        'math.dist((x1, y1), (x2, y2)) is the length of a step. Compare it with 0.5 before you '
-        'add it.',
-    ],
-    answer=Solution(
-        __file__,
-        'distance.py',
-        'The node keeps the last place, adds each step, and leaves out jumps. It need not know '
-        'whether a robot publishes, or a bag.',
     ),
 )

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution, anything
+from labkit.exercises import Exercise, Fail, Mistake, anything, words_of
 from labkit.exercises.clauses import Asked
 from labkit.exercises.expect import digits
 from labkit.exercises.mistakes import recognise
@@ -18,69 +18,21 @@ if TYPE_CHECKING:
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 SOURCE, PATH = 'bags/commands', 'bags/slow'
 INNER, OUTER, TWIST = '/cmd_vel', '/slow/cmd_vel', 'geometry_msgs/msg/Twist'
 
-TOO_FEW = Mistake(
-    'half_speed/begins-in-the-middle',
-    'The recording was not there from the first message to the last one.',
-    'Begin to record, then play to the end, then stop.',
-    change=[('wait=True', 'start_offset=0.8, wait=True'), ('wait_for(30)', 'wait_for(5)')],
-)
-TOO_MANY = Mistake(
-    'half_speed/played-twice',
-    'Commands came more than once: from a second node, or a second playing.',
-    'Let one node publish, and play the bag once from its beginning.',
-    change=[
-        (
-            '    recording.wait_for(30)\n',
-            "    lab.play('bags/commands', '/cmd_vel', wait=True)\n    recording.wait_for(60)\n",
-        ),
-    ],
-)
-_HALVE = 'Publish new messages in the callback, with half of each speed.'
-OTHER = Mistake(
-    'half_speed/other',
-    'That is not half of the command at this place.',
-    'Halve each command, and publish it in the callback, so that the order stays.',
-    model=anything,
-)
+TOO_FEW = WORDS.mistake('half_speed/begins-in-the-middle')
+TOO_MANY = WORDS.mistake('half_speed/played-twice')
+OTHER = WORDS.mistake('half_speed/other', anything)
 # The models return linear.x and angular.z from those of the command.
 VALUES = (
-    Mistake(
-        'half_speed/passed-on',
-        'The commands are in the bag as they were.',
-        _HALVE,
-        model=lambda x, z: (x, z),
-    ),
-    Mistake(
-        'half_speed/a-quarter',
-        'The speeds were halved twice.',
-        'Let one node halve them, and once.',
-        model=lambda x, z: (x / 4, z / 4),
-        change=[('msg.linear.x / 2', 'msg.linear.x / 4'), ('z / 2', 'z / 4')],
-    ),
-    Mistake(
-        'half_speed/doubled',
-        'The speeds were doubled.',
-        'Divide by 2, or multiply by 0.5.',
-        model=lambda x, z: (2 * x, 2 * z),
-        change=[('msg.linear.x / 2', 'msg.linear.x * 2'), ('z / 2', 'z * 2')],
-    ),
-    Mistake(
-        'half_speed/linear-alone',
-        'linear.x is half of what it was, angular.z is not.',
-        'Halve both: a robot that turns as fast as before drives another path.',
-        model=lambda x, z: (x / 2, z),
-        change=[('msg.angular.z / 2', 'msg.angular.z')],
-    ),
-    Mistake(
-        'half_speed/angular-alone',
-        'angular.z is half of what it was, linear.x is not.',
-        _HALVE,
-        model=lambda x, z: (x, z / 2),
-        change=[('msg.linear.x / 2', 'msg.linear.x')],
-    ),
+    WORDS.mistake('half_speed/passed-on', lambda x, z: (x, z)),
+    WORDS.mistake('half_speed/a-quarter', lambda x, z: (x / 4, z / 4)),
+    WORDS.mistake('half_speed/doubled', lambda x, z: (2 * x, 2 * z)),
+    WORDS.mistake('half_speed/linear-alone', lambda x, z: (x / 2, z)),
+    WORDS.mistake('half_speed/angular-alone', lambda x, z: (x, z / 2)),
     OTHER,
 )
 
@@ -152,30 +104,17 @@ def _recognised(
 
 
 exercise = Exercise(
-    name='half_speed',
-    task='Make a bag with the commands of bags/commands at half the speed.',
+    words=WORDS,
     clauses=(
         IsThere(PATH, SOURCE),
         OnlyTopic(OUTER, TWIST),
-        Asked(f'it has one message for each one on `{INNER}` in `{SOURCE}`', _count),
+        Asked(WORDS.clause('count'), _count),
         Asked(
-            '`linear.x` and `angular.z` are half of what they were there, in the same order',
+            WORDS.clause('values'),
             _values,
         ),
     ),
     stage=InABag(PATH, OUTER),
     publishes={OUTER: TWIST},
     subscribes={INNER: TWIST},
-    hints=[
-        'Three things work together: something plays the old bag, a node hears it and publishes, '
-        'and something records the new bag.',
-        'Begin the recording before the playing, so that it hears the first message.',
-        "with lab.record('bags/slow', '/slow/cmd_vel', overwrite=True) as recording: and inside, "
-        "lab.play('bags/commands', wait=True) and recording.wait_for(30)",
-    ],
-    answer=Solution(
-        __file__,
-        'half_speed.py',
-        'The node does not know that a bag plays. The recording begins first and ends last.',
-    ),
 )
