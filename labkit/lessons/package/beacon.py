@@ -2,36 +2,20 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution
+from labkit.exercises import Exercise, Fail, words_of
 from labkit.exercises.clauses import Asked
 from labkit.lessons.package.content import TESTED, Built, InAWorkspace, Work
 from labkit.lessons.package.running import Running
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 PACKAGE, TOPIC, BOOL = 'beacon_lab', '/lit', 'std_msgs/msg/Bool'
 
-VOLATILE = Mistake(
-    'beacon/a-depth-alone',
-    'What is published before somebody subscribes is gone, unless the publisher keeps it.',
-    'QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)',
-    change=[
-        ('QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)', '10'),
-        ('from rclpy.qos import DurabilityPolicy, QoSProfile\n', ''),
-    ],
-)
-NOTHING = Mistake(
-    'beacon/publishes-nothing',
-    'The publisher keeps what it has published, and it has published nothing.',
-    'self.publisher.publish(Bool(data=True)) in __init__',
-    change=[('        self.publisher.publish(Bool(data=True))\n', '')],
-)
-FALSE = Mistake(
-    'beacon/false',
-    'A new message begins with False.',
-    'Bool(data=True)',
-    change=[('Bool(data=True)', 'Bool()')],
-)
+VOLATILE = WORDS.mistake('beacon/a-depth-alone')
+NOTHING = WORDS.mistake('beacon/publishes-nothing')
+FALSE = WORDS.mistake('beacon/false')
 
 
 def _is_heard_late(work: Work) -> None:
@@ -46,30 +30,15 @@ def _is_heard_late(work: Work) -> None:
 
 
 exercise = Exercise(
-    name='beacon',
-    task='Make the package beacon_lab, whose node says once that it is lit, and test it.',
+    words=WORDS,
     clauses=(
         Built(PACKAGE),
         Running('beacon', 'beacon', PACKAGE),
         Asked(
-            'a subscriber that comes late to `/lit` (`std_msgs/msg/Bool`), with durability '
-            'transient local, gets `True`',
+            WORDS.clause('is-heard-late'),
             _is_heard_late,
         ),
         TESTED,
     ),
     stage=InAWorkspace(PACKAGE),
-    hints=[
-        'Lesson 08 has the profile: QoSProfile with a depth and a durability.',
-        'The node publishes once, in its __init__. A publisher that is TRANSIENT_LOCAL keeps it.',
-        'Take the three tests away that ros2 pkg create has made, and write test/test_beacon.py, '
-        'as in this lesson. Build first, then colcon test --packages-select beacon_lab',
-    ],
-    answer=Solution(
-        __file__,
-        'beacon.sh',
-        'The publisher keeps its one message for those who come late. The test makes the node, '
-        'and looks at its name. This cell does it all at once: cat writes a file, and & stands '
-        'for a second terminal.',
-    ),
 )

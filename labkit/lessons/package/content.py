@@ -15,7 +15,16 @@ from typing import TYPE_CHECKING, NoReturn
 
 from labkit import stop_button
 from labkit.errors import nearest
-from labkit.exercises import Clause, Fail, Mistake, NotAttempted, Probe, Stage, common_mistakes
+from labkit.exercises import (
+    Clause,
+    Fail,
+    Mistake,
+    NotAttempted,
+    Probe,
+    Stage,
+    common_mistakes,
+    words_of,
+)
 from labkit.exercises.clauses import Asked
 from labkit.exercises.expect.timing import FOUND_SEC
 from labkit.exercises.machine_faults import refuse_machine_fault
@@ -39,6 +48,8 @@ __all__ = [
     'refuse_program',
 ]
 
+WORDS = words_of(__file__)
+
 APPEAR_SEC = 15.0
 # How long a node is watched that keeps a time of its own, s of real time.
 WATCH_SEC = 8.0
@@ -47,98 +58,26 @@ PACKAGES = ('beacon_lab', 'broken_lab', 'counter_lab', 'ears_lab', 'odds_lab', '
 _SOURCES = ('.py', '.xml', '.cfg')
 _NOT_YET = 'Not attempted yet. {} Do what the task says, then run this cell again.'
 
-NO_PACKAGE = Mistake(
-    'package/none',
-    'A node of a notebook ends with the notebook.',
-    "lab.export(..., package='{package}', folder='ros2_ws/src', overwrite=True)",
-)
-_CREATE = (
-    'In ros2_ws/src: ros2 pkg create {package} ... Or, in a cell: '
-    "lab.export(..., package='{package}', folder='ros2_ws/src')"
-)
-BESIDE_SRC = Mistake(
-    'package/beside-src', 'Packages lie in the folder src of a workspace.', _CREATE
-)
-OTHER_NAME = Mistake('package/other-name', 'The name is close, and it is another one.', _CREATE)
-NOT_BUILT = Mistake(
-    'package/not-built',
-    'colcon build has not been run since.',
-    'Run colcon build in the workspace.',
-)
-FAILED_BUILD = Mistake(
-    'package/failed-build',
-    'Its last build has failed.',
-    'Run colcon build in the workspace, and read what it says under stderr.',
-)
-OLD_BUILD = Mistake(
-    'package/old-build',
-    'A change in src reaches install only with the next build that succeeds.',
-    'Run colcon build once more, and read what it says.',
-)
-NO_TEST_SINCE = Mistake(
-    'package/no-test-since',
-    'colcon build does not run tests.',
-    'In the workspace: colcon test --packages-select {package}',
-)
-TEST_FAILED = Mistake(
-    'package/test-failed',
-    'A test says that something is not as it should be.',
-    'In the workspace: colcon test-result --verbose shows which one, and why.',
-)
-NO_TEST = Mistake(
-    'package/no-test',
-    'Tests are the functions test_... in the files test_... of the folder test.',
-    'Write one: a function test_... with an assert, in test/test_....py',
-)
-_ENTRY = "In console_scripts: '{program} = {package}.MODULE:main', then build again."
-NEW_ENTRY = Mistake(
-    'package/new-entry',
-    'It stands in setup.py, but was not there when the package was built.',
-    _ENTRY,
-)
-OTHER_ENTRY = Mistake(
-    'package/other-entry',
-    '{near} is close. What stands before = in setup.py is the name for ros2 run.',
-    _ENTRY,
-)
-NO_ENTRY = Mistake(
-    'package/no-entry', 'A module alone cannot be run: setup.py needs an entry for it.', _ENTRY
-)
-RUNS_ALREADY = Mistake(
-    'package/runs-already',
-    '',
-    'End it: Ctrl-C in its terminal, lab.processes().stop(), or lab.remove for a node of a cell.',
-)
-_CORRECT = 'Correct the file in src, build again, and check again.'
-NO_FUNCTION = Mistake(
-    'package/no-function',
-    'The entry in setup.py names a function that the module does not have.',
-    _CORRECT,
-)
-NO_MODULE = Mistake(
-    'package/no-module',
-    'The entry in setup.py, or an import, names a module that is not there.',
-    _CORRECT,
-)
-RETURNED = Mistake(
-    'package/returned', 'main() returned at once: nothing in it spins the node.', _CORRECT
-)
-RAISED = Mistake('package/raised', 'The program has raised. The last line says what.', _CORRECT)
-NOT_XML = Mistake(
-    'package/not-xml',
-    'colcon builds it by its setup.py. rosdep can not read what the package needs.',
-    'Look at that line of package.xml: each <tag> has its </tag>, all inside of <package>.',
-)
-NODE_NAME = Mistake(
-    'package/node-name',
-    'The name of the node is what super().__init__() gets.',
-    'super().__init__({node!r})',
-)
-NO_NODE = Mistake(
-    'package/no-node',
-    'main() does not make a node, or waits before that.',
-    'Make it in main(), and spin it.',
-)
+NO_PACKAGE = WORDS.mistake('package/none')
+BESIDE_SRC = WORDS.mistake('package/beside-src')
+OTHER_NAME = WORDS.mistake('package/other-name')
+NOT_BUILT = WORDS.mistake('package/not-built')
+FAILED_BUILD = WORDS.mistake('package/failed-build')
+OLD_BUILD = WORDS.mistake('package/old-build')
+NO_TEST_SINCE = WORDS.mistake('package/no-test-since')
+TEST_FAILED = WORDS.mistake('package/test-failed')
+NO_TEST = WORDS.mistake('package/no-test')
+NEW_ENTRY = WORDS.mistake('package/new-entry')
+OTHER_ENTRY = WORDS.mistake('package/other-entry')
+NO_ENTRY = WORDS.mistake('package/no-entry')
+RUNS_ALREADY = WORDS.mistake('package/runs-already')
+NO_FUNCTION = WORDS.mistake('package/no-function')
+NO_MODULE = WORDS.mistake('package/no-module')
+RETURNED = WORDS.mistake('package/returned')
+RAISED = WORDS.mistake('package/raised')
+NOT_XML = WORDS.mistake('package/not-xml')
+NODE_NAME = WORDS.mistake('package/node-name')
+NO_NODE = WORDS.mistake('package/no-node')
 
 
 @dataclass
@@ -389,9 +328,7 @@ def _tested(work: Work) -> None:
         raise Fail(wanted, 'no test that has run', NO_TEST)
 
 
-TESTED = Asked(
-    '`colcon test` has run after the build, at least one test, and none has failed', _tested
-)
+TESTED = Asked(WORDS.clause('tested'), _tested)
 
 
 @dataclass(frozen=True)

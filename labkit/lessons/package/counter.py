@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution, common_mistakes
+from labkit.exercises import Exercise, Fail, common_mistakes, words_of
 from labkit.exercises.clauses import Asked
 from labkit.exercises.messages_heard import Lived
 from labkit.exercises.observation import Life
 from labkit.lessons.package.content import Built, InAWorkspace, Runs, Work
 
 __all__ = ['exercise']
+
+WORDS = words_of(__file__)
 
 PACKAGE = 'counter_lab'
 TYPES = {'/count': 'std_msgs/msg/Int16', '/half': 'std_msgs/msg/Float64'}
@@ -20,32 +22,11 @@ LEAST, MOST, OFF = 2, 20, 0.02
 # What may be missing at the beginning of the numbers, and of their halves.
 _SKIPS = ((0, 0), (1, 0), (0, 1))
 
-_TIMER = 'self.create_timer(0.2, self.on_timer)'
-TOO_FEW = Mistake(
-    'counter/ms-for-s',
-    'No timer calls publish() again and again, or its period is in seconds.',
-    _TIMER,
-    change=[('create_timer(0.2', 'create_timer(200')],
-)
-TOO_OFTEN = Mistake(
-    'counter/without-a-rest',
-    'The node hardly rests. A listener cannot keep up with it.',
-    _TIMER,
-    change=[('create_timer(0.2', 'create_timer(0.001')],
-)
-OTHER_STEP = Mistake(
-    'counter/by-two',
-    'The number that is published has to rise by one each time.',
-    'self.count += 1, once each time the timer calls.',
-    change=[('self.count += 1', 'self.count += 2')],
-)
-CUT_OFF = Mistake(
-    'counter/cut-off',
-    'It is not half of the count: // cuts off what stands behind the point.',
-    'self.count / 2',
-    change=[('self.count / 2', 'float(self.count // 2)')],
-)
-NOT_HALF = Mistake('counter/not-half', 'It is not half of the count.', 'self.count / 2')
+TOO_FEW = WORDS.mistake('counter/ms-for-s')
+TOO_OFTEN = WORDS.mistake('counter/without-a-rest')
+OTHER_STEP = WORDS.mistake('counter/by-two')
+CUT_OFF = WORDS.mistake('counter/cut-off')
+NOT_HALF = WORDS.mistake('counter/not-half')
 
 
 def _counts(work: Work) -> None:
@@ -118,27 +99,15 @@ def _seen(work: Work) -> tuple[Life, list[Lived]]:
 
 
 exercise = Exercise(
-    name='counter',
-    task='Make the package counter_lab, whose node counts, and publishes on two topics.',
+    words=WORDS,
     clauses=(
         Built(PACKAGE),
         Runs('counter', 'counter', PACKAGE),
         Asked(
-            'the node publishes whole numbers on `/count` (`std_msgs/msg/Int16`), '
-            f'{LEAST} to {MOST} a second, each one more than the one before',
+            WORDS.clause('counts'),
             _counts,
         ),
-        Asked('it publishes half of each of them on `/half` (`std_msgs/msg/Float64`)', _halves),
+        Asked(WORDS.clause('halves'), _halves),
     ),
     stage=InAWorkspace(PACKAGE),
-    hints=[
-        'A node may have as many publishers as it likes, each with a type and a topic.',
-        'First write the class, as in the lessons before. One timer may publish on both topics.',
-        "lab.export(Counter, package='counter_lab', folder='src', overwrite=True), then build.",
-    ],
-    answer=Solution(
-        __file__,
-        'counter.ipy',
-        'The class is that of a notebook. lab.export adds main(), setup.py and package.xml.',
-    ),
 )

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Exercise, Fail, Mistake, Solution
+from labkit.exercises import Exercise, Fail, words_of
 from labkit.exercises.clauses import Asked, Evidence, Logs
 from labkit.lessons.package.content import Built, InAWorkspace, Work, dependencies
 from labkit.lessons.package.running import Running
 
 __all__ = ['exercise']
 
+WORDS = words_of(__file__)
+
 PACKAGE, TOPIC, STRING = 'ears_lab', '/chatter', 'std_msgs/msg/String'
 
-NO_DEPENDENCIES = Mistake(
-    'listener/no-dependencies',
-    'It builds here, because this machine has them. On another machine nobody would know what to '
-    'install.',
-    '<depend>{missing}</depend>, or --dependencies when the package is made.',
-    change=[(' \\\n    --dependencies rclpy std_msgs', '')],
-)
+NO_DEPENDENCIES = WORDS.mistake('listener/no-dependencies')
 
 
 def _needs(work: Work) -> None:
@@ -34,7 +30,7 @@ def _needs(work: Work) -> None:
 LOGS = Logs(
     TOPIC,
     STRING,
-    'the node logs each text that comes on `/chatter` (`std_msgs/msg/String`), once',
+    WORDS.clause('logs'),
 )
 
 
@@ -47,28 +43,13 @@ def _logs(work: Work) -> None:
 
 
 exercise = Exercise(
-    name='listener',
-    task='Make the package ears_lab with a listener, build it, and run it in a terminal.',
+    words=WORDS,
     clauses=(
         Built(PACKAGE),
-        Asked('its package.xml names `rclpy` and `std_msgs` as dependencies', _needs),
+        Asked(WORDS.clause('needs'), _needs),
         Running('listener', 'listener', PACKAGE),
-        Asked(LOGS.text, _logs),
+        Asked(WORDS.clause('logs-2'), _logs),
     ),
     stage=InAWorkspace(PACKAGE),
     subscribes={TOPIC: STRING},
-    hints=[
-        'ros2 pkg create with --node-name listener makes the module and its entry in setup.py.',
-        '--dependencies rclpy std_msgs goes into package.xml. Give --build-type ament_python, '
-        'and be in ros2_ws/src.',
-        'Then put your own listener into ears_lab/ears_lab/listener.py, with main(). In ros2_ws: '
-        'colcon build --packages-select ears_lab, source install/setup.bash, and ros2 run.',
-    ],
-    answer=Solution(
-        __file__,
-        'listener.sh',
-        'The command makes the files, with an entry for listener. The module is replaced by one '
-        'with a node, and main() spins it until Ctrl-C. This cell does it all at once: cat writes '
-        'a file, and & stands for a second terminal.',
-    ),
 )

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Exercise, Solution
+from labkit.exercises import Exercise, words_of
 from labkit.lessons.package.content import Built, InAWorkspace, Work
 from labkit.lessons.package.made import BROKEN
 from labkit.lessons.package.running import Running
 
 __all__ = ['exercise']
+
+WORDS = words_of(__file__)
 
 
 def _is_untouched(work: Work) -> bool:
@@ -19,25 +21,11 @@ def _is_untouched(work: Work) -> bool:
 
 
 exercise = Exercise(
-    name='repair',
-    task='Repair the package broken_lab, build it, and run both of its programs in terminals.',
+    words=WORDS,
     clauses=(
         Built(BROKEN),
         Running('teller', 'teller', BROKEN),
         Running('hearer', 'hearer', BROKEN),
     ),
     stage=InAWorkspace(BROKEN, _is_untouched),
-    hints=[
-        'Build it, and look at the lines under stderr. What is Python not content with?',
-        'Two pieces of text without a comma between them become one piece.',
-        'The first fault is a comma that is missing after the teller. The second one: a function '
-        'main is called mian. Then, in each of two terminals: cd ros2_ws, '
-        'source install/setup.bash, and ros2 run.',
-    ],
-    answer=Solution(
-        __file__,
-        'repair.sh',
-        'Without the comma Python makes one entry of the two. The wrong name of a function is '
-        'found only when the program runs.',
-    ),
 )

@@ -9,52 +9,25 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, NoReturn
 
-from labkit.exercises import Fail, Mistake
+from labkit.exercises import Fail, Mistake, words_of
 from labkit.lessons.package.content import APPEAR_SEC, NODE_NAME, Runs, Work, refuse_program
 
 __all__ = ['Running']
+
+WORDS = words_of(__file__)
 
 # In so many seconds a new client finds a node also on a busy machine.
 ANSWER_SEC = 4.0
 # The start of a process is known to a second.
 _OFF_SEC = 1.5
 
-NOT_RUNNING = Mistake(
-    'package/not-running',
-    'No program of that name runs on this machine just now.',
-    'In a terminal, in ros2_ws: source install/setup.bash, then ros2 run {package} {program}. If '
-    'it ends at once, read there why.',
-)
-OTHER_DOMAIN = Mistake(
-    'package/other-domain',
-    'Nodes find each other only within one domain.',
-    'In its terminal: Ctrl-C, then export ROS_DOMAIN_ID={domain}, and start it again.',
-)
-NOT_FOUND = Mistake(
-    'package/not-found',
-    'main() does not make a node, or waits before that.',
-    'Read what its terminal says. Then correct the file in src, build, and start it again.',
-)
-OTHER_PROGRAM = Mistake(
-    'package/other-program',
-    'A node of that name is there, of another program.',
-    'End it (a node of a cell by lab.remove). Then, in a terminal: ros2 run {package} {program}',
-)
-TWICE = Mistake(
-    'package/twice',
-    'Nobody can tell which of them answers.',
-    'End all but one, by Ctrl-C in its terminal.',
-)
-OLD_RUN = Mistake(
-    'package/old-run',
-    'A program keeps the code with which it was started.',
-    'In its terminal: Ctrl-C, and start it again.',
-)
-NOT_SPUN = Mistake(
-    'package/not-spun',
-    'Nothing in main() spins the node, or a callback does not return.',
-    'Correct the file in src, build again, and start it again.',
-)
+NOT_RUNNING = WORDS.mistake('package/not-running')
+OTHER_DOMAIN = WORDS.mistake('package/other-domain')
+NOT_FOUND = WORDS.mistake('package/not-found')
+OTHER_PROGRAM = WORDS.mistake('package/other-program')
+TWICE = WORDS.mistake('package/twice')
+OLD_RUN = WORDS.mistake('package/old-run')
+NOT_SPUN = WORDS.mistake('package/not-spun')
 
 
 @dataclass(frozen=True)
