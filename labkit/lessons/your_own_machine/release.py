@@ -8,46 +8,25 @@ import subprocess
 import tarfile
 from collections.abc import Sequence
 
-from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, Solution
+from labkit.exercises import Exercise, Fail, NotAttempted, words_of
 from labkit.exercises.clauses import Asked
 from labkit.lessons.package.content import InAWorkspace, Work
 from labkit.lessons.your_own_machine.made import COURIER
 
 __all__ = ['exercise']
 
-VERSION, ARCHIVE, MADE = '1.0.0', 'courier.tar.gz', ('build', 'install', 'log')
-_COMMIT = 'git add, git commit, then git tag -f ' + VERSION
+WORDS = words_of(__file__)
 
-TWO_VERSIONS = Mistake(
-    'release/two-versions',
-    'The version stands in package.xml and in setup.py.',
-    'Write it into both, then commit and tag again.',
-)
-ELSEWHERE = Mistake(
-    'release/elsewhere',
-    'The repository is where git init was run.',
-    'Run git init in the workspace, the folder in which src is.',
-)
-NO_TAG = Mistake(
-    'release/no-tag',
-    'A commit has no name of a version. git tag gives it one.',
-    f'git tag {VERSION}',
-)
-NOT_ADDED = Mistake('release/not-added', 'A commit holds what git add has named before.', _COMMIT)
-LATER = Mistake('release/later', 'A tag stays at its commit, whatever is changed later.', _COMMIT)
-MADE_BY_COLCON = Mistake(
-    'release/made-by-colcon',
-    'colcon makes these folders anew on each machine, with the paths of that machine.',
-    'Put build/, install/ and log/ into .gitignore, then git rm -r --cached, commit and tag -f.',
-)
-NO_ARCHIVE = Mistake(
-    'release/no-archive', 'The tag alone makes no file.', f'git archive -o {ARCHIVE} {VERSION}'
-)
-OTHER_FILES = Mistake(
-    'release/other-files',
-    'It was made of another commit, or of the folder itself.',
-    f'git archive -o {ARCHIVE} {VERSION}',
-)
+VERSION, ARCHIVE, MADE = '1.0.0', 'courier.tar.gz', ('build', 'install', 'log')
+
+TWO_VERSIONS = WORDS.mistake('release/two-versions')
+ELSEWHERE = WORDS.mistake('release/elsewhere')
+NO_TAG = WORDS.mistake('release/no-tag')
+NOT_ADDED = WORDS.mistake('release/not-added')
+LATER = WORDS.mistake('release/later')
+MADE_BY_COLCON = WORDS.mistake('release/made-by-colcon')
+NO_ARCHIVE = WORDS.mistake('release/no-archive')
+OTHER_FILES = WORDS.mistake('release/other-files')
 
 
 def _git(work: Work, *words: str) -> str:
@@ -147,26 +126,15 @@ class InARepository(InAWorkspace):
 
 
 exercise = Exercise(
-    name='release',
-    task='Give courier_lab a version, a commit, a tag and an archive.',
+    words=WORDS,
     clauses=(
-        Asked(f'package.xml and setup.py of `{COURIER}` say version `{VERSION}`', _says_version),
+        Asked(WORDS.clause('says-version'), _says_version),
         Asked(
-            f'the tag `{VERSION}` of the workspace has the files of `src/{COURIER}`, as they are',
+            WORDS.clause('has-files'),
             _has_files,
         ),
-        Asked(f'it has no file of `{"`, `".join(MADE)}`', _has_sources_alone),
-        Asked(f'`{ARCHIVE}` in the workspace is the archive of that tag', _is_archived),
+        Asked(WORDS.clause('has-sources-alone'), _has_sources_alone),
+        Asked(WORDS.clause('is-archived'), _is_archived),
     ),
     stage=InARepository(COURIER, _is_untouched),
-    hints=[
-        'First the version in both files, then the commit, then the tag, and last the archive.',
-        'A cell or a terminal in the workspace does: git add .gitignore src, and git commit.',
-        f'git tag {VERSION}, then git archive -o {ARCHIVE} {VERSION}',
-    ],
-    answer=Solution(
-        __file__,
-        'release.ipy',
-        'git archive asks the tag and not the folder, so what is not committed is not in it.',
-    ),
 )
