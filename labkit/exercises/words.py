@@ -17,8 +17,22 @@ teacher reads, mends and translates without writing any. All keys may be left ou
           msg.data + 1: msg.data
 
 A name in braces is a value that the module gives, as `str.format` has it, and a brace to be read
-is doubled; but not in `change` and `raises`, which are code, and what Python says. Every value is
-a text: `no` and `1.0` are letters. `Mistake` tells what its parts mean.
+is doubled; but not in `change` and `raises`, which are code, and what Python says, nor in quizzes.
+Every value is a text: `no` and `1.0` are letters. `Mistake` and `Question` tell what their parts
+mean. A quiz is a list of questions::
+
+    quizzes:
+      odds:
+        - choice: What does msg + 1 give?
+          options:
+            - right: an error
+              why: A message is not a number.
+            - wrong: a number
+              why: The number is msg.data + 1.
+        - number: How many nodes publish on /odds at this moment?
+          id: publishers
+          why: The graph says so.
+          otherwise: Ask the graph.
 """
 
 from __future__ import annotations
@@ -43,12 +57,20 @@ MAX_DEPTH = 20
 # ones.
 _TEXT, _RAW = 'text', 'raw'
 _MISTAKE = {'why': _TEXT, 'todo': _TEXT, 'change': {'': _RAW}, 'raises': _RAW}
+# Its kind, with the text; see `Question`.
+_QUESTION = {
+    **dict.fromkeys(('choice', 'several', 'number', 'word'), _RAW),
+    'options': [dict.fromkeys(('right', 'wrong', 'why'), _RAW)],
+    **dict.fromkeys(('id', 'answer', 'unit', 'tolerance', 'how', 'why', 'otherwise'), _RAW),
+    'wrong': {'': _RAW},
+}
 _FILE = {
     'task': _TEXT,
     'clauses': {'': _TEXT},
     'hints': [_TEXT],
     'reason': _TEXT,
     'mistakes': {'': _MISTAKE},
+    'quizzes': {'': [_QUESTION]},
 }
 # What braces may hold: a name, and how its value is written; nothing is looked up or computed.
 _FIELD = re.compile(r'\{\{|\}\}|\{[a-z]\w*(![rs])?(:[^{}]*)?\}')

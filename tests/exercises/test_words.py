@@ -123,6 +123,7 @@ def test_all_that_is_written_is_used(path: Path) -> None:
     # A program that raises an error is told by the error: no judge looks for it.
     written = [name for name, mistake in words.mistakes.items() if not mistake.raises]
     written += words.data.get('clauses', {})
+    written += words.data.get('quizzes', {})
     assert [name for name in written if name not in literals] == []
     if {'task', 'hints', 'reason'} & words.data.keys():
         assert re.search(r'\bExercise\(\s*words=', module.read_text())

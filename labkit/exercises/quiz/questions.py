@@ -23,6 +23,7 @@ __all__ = [
     'Question',
     'Several',
     'Word',
+    'question_of',
     'right',
     'wrong',
 ]
@@ -288,6 +289,46 @@ class Word(Question):
         known = {self.form(one): why for one, why in self.wrong.items()}
         why = known.get(word) or self.explain(word) or _nearly(word, rights) or self.otherwise
         return Feedback(False, [('why', why)])
+
+
+def question_of(told: Mapping[str, Any], **live: Any) -> Question:
+    """Return a question as a file of words has it.
+
+    Args:
+        told: Its parts: the kind with the text, `options` of `right` or `wrong` and `why`, or what
+            a `Number` or a `Word` has.
+        live: What the graph tells, and other functions; it goes before the parts.
+
+    Raises:
+        ValueError: It is no question.
+    """
+    kinds: dict[str, Any] = {'choice': Choice, 'several': Several, 'number': Number, 'word': Word}
+    kind = next((kind for kind in kinds if kind in told), '')
+    if not kind:
+        raise ValueError(f'a question is a {", ".join(kinds)}, and one has {", ".join(told)}')
+    if kind in ('choice', 'several'):
+        options = [
+            Option(each.get('right', each.get('wrong', '')), each.get('why', ''), 'right' in each)
+            for each in told.get('options', ())
+        ]
+        rights = sum(option.is_right for option in options)
+        if rights < 1 or (kind == 'choice' and rights > 1):
+            raise ValueError(f'{told[kind]!r} has {rights} right options')
+        return kinds[kind](told[kind], *options)  # type: ignore[no-any-return]
+    parts = {name: part for name, part in told.items() if name not in (kind, 'id')}
+    if kind == 'number':
+        for name in {'answer', 'tolerance'} & parts.keys():
+            parts[name] = _read_number(parts[name])
+        parts['wrong'] = {_read_number(n): why for n, why in parts.get('wrong', {}).items()}
+    parts = {'text': told[kind], **parts, **live}
+    for name in ('answer', 'why', 'otherwise'):
+        if name not in parts:
+            raise ValueError(f'{told[kind]!r} has no {name!r}')
+    return kinds[kind](**parts)  # type: ignore[no-any-return]
+
+
+def _read_number(text: str) -> float:
+    return float(text) if set('.en') & set(text) else int(text)
 
 
 def _nearly(word: str, rights: Collection[str]) -> str:

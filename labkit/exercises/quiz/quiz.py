@@ -7,13 +7,15 @@ In a notebook a quiz is a form; elsewhere, and where a program runs the notebook
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from labkit import settings
 from labkit.errors import LabError
 from labkit.exercises.learner_errors import last_cell
-from labkit.exercises.quiz.questions import LETTERS, Question
+from labkit.exercises.quiz.questions import LETTERS, Question, question_of
 from labkit.exercises.record.progress_store import progress_store
+from labkit.exercises.words import Words
 from labkit.views.card import Card
 
 __all__ = ['Quiz']
@@ -34,6 +36,35 @@ class Quiz:
         self.questions = questions
         self.lesson = ''
         self._form: Any = None
+
+    @staticmethod
+    def of(
+        words: Words, name: str, cell_id: str = 'quiz', **live: Mapping[str, Callable[..., Any]]
+    ) -> Quiz:
+        """Return a quiz as a file of words has it.
+
+        Args:
+            words: The words of the module.
+            name: The quiz.
+            cell_id: As for `Quiz`.
+            live: What the graph tells of a question, by the question's `id`: the `answer`, how to
+                `explain` another one, the `form` in which a word is compared.
+
+        Raises:
+            LabError: The file does not have such a quiz, or such questions.
+        """
+        told = words.data.get('quizzes', {}).get(name, ())
+        ids = [each['id'] for each in told if 'id' in each]
+        if not told or sorted(ids) != sorted(live):
+            raise LabError(
+                f'A quiz {name!r} with questions of the ids {sorted(live)} is expected in '
+                f'{words.path}, and {sorted(ids) if told else "no such quiz"} is there.'
+            )
+        try:
+            questions = [question_of(each, **live.get(each.get('id', ''), {})) for each in told]
+        except ValueError as error:
+            raise LabError(f'In the quiz {name!r} of {words.path} {error}.') from error
+        return Quiz(name, *questions, cell_id=cell_id)
 
     def __len__(self) -> int:
         return len(self.questions)

@@ -9,7 +9,7 @@ from statistics import median
 from typing import TYPE_CHECKING
 
 from labkit.errors import LabError
-from labkit.exercises import Number, Probe, Quiz, Word
+from labkit.exercises import Probe, Quiz, words_of
 from labkit.exercises.quiz import spelling
 from labkit.lessons.command_line.harbour import (
     BOATS,
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['HARBOUR']
+
+WORDS = words_of(__file__)
 
 LIGHTHOUSE = '/lighthouse'
 MEASURE_SEC = 4.0
@@ -201,83 +203,28 @@ def _no_service_type(word: str) -> str:
     return _explain_type(word, _service_type()[0], 'srv')
 
 
-HARBOUR = Quiz(
+HARBOUR = Quiz.of(
+    WORDS,
     'harbour',
-    Word(
-        'Which node publishes on /tide?',
-        _node_of_tide,
-        'topic info --verbose names the node behind each publisher.',
-        'Use ros2 topic info --verbose /tide, and look for "Node name".',
-        explain=_no_node_of_tide,
-    ),
-    Word(
-        'Which type do the messages on /water have?',
-        _type_of_water,
-        'topic type, topic info and topic list -t all say so.',
-        'Use ros2 topic type /water, and copy what it says.',
-        explain=_no_type_of_water,
-        form=spelling.type_name('msg'),
-    ),
-    Word(
-        'Which field of the messages on /water holds the measured number 12.5?',
-        _field_of_water,
-        'topic echo shows the fields with their values; interface show lists them.',
-        'Use ros2 topic echo --once /water, and look for 12.5.',
-        wrong={
-            'data': 'The types of std_msgs have a field data. This one has a field with a name '
-            'that says what is measured.',
-            'header': 'The header says when and where something was measured, not what.',
-            'stamp': 'The stamp says when something was measured, not what.',
-            'variance': 'The variance says how sure the measurement is.',
-            '12.5': 'That is the value. What is the field called?',
-        },
-        explain=_no_field_of_water,
-        form=spelling.field_name,
-    ),
-    Number(
-        'How many messages a second come on /beacon?',
-        _rate_of_beacon,
-        'topic hz counts the messages that come, and divides by the time.',
-        'Use ros2 topic hz --count 2 /beacon: the average rate, rounded.',
-        explain=_no_rate_of_beacon,
-        tolerance=0.15,
-        unit='Hz',
-    ),
-    Number(
-        'How many subscriptions does /radio have?',
-        _listeners,
-        'topic info counts publishers and subscriptions. Each subscription here is one boat.',
-        'Use ros2 topic info /radio.',
-        explain=_no_listeners,
-    ),
-    Number(
-        'What is the value of the parameter range_km of /lighthouse?',
-        lambda: _parameter('range_km'),
-        'param get asks the node itself: each node holds its own parameters.',
-        'Use ros2 param get /lighthouse range_km.',
-        explain=_no_range,
-    ),
-    Word(
-        'Which reliability does the publisher of /camera offer?',
-        _reliability,
-        'topic info --verbose shows the QoS profile of each publisher and subscription.',
-        'It is one of two words, RELIABLE and BEST_EFFORT. Use ros2 topic info --verbose /camera.',
-        wrong={
-            'VOLATILE': 'That is the durability. The reliability stands two lines above it.',
-            'UNKNOWN': 'That is the history, which is not sent. Reliability stands above it.',
-            'TRANSIENT_LOCAL': 'That is a durability. The reliability stands above it.',
-            'AUTOMATIC': 'That is the liveliness. Reliability is the first line of the profile.',
-        },
-        explain=_no_reliability,
-        form=spelling.constant,
-    ),
-    Word(
-        'Which type does the service /foghorn have?',
-        _service_type,
-        'service type and service list -t say so. A service has a type, as a topic has.',
-        'Use ros2 service type /foghorn, and copy what it says.',
-        explain=_no_service_type,
-        form=spelling.type_name('srv'),
-    ),
     cell_id='look-around',
+    node_of_tide={'answer': _node_of_tide, 'explain': _no_node_of_tide},
+    type_of_water={
+        'answer': _type_of_water,
+        'explain': _no_type_of_water,
+        'form': spelling.type_name('msg'),
+    },
+    field_of_water={
+        'answer': _field_of_water,
+        'explain': _no_field_of_water,
+        'form': spelling.field_name,
+    },
+    rate_of_beacon={'answer': _rate_of_beacon, 'explain': _no_rate_of_beacon},
+    listeners={'answer': _listeners, 'explain': _no_listeners},
+    range_km={'answer': lambda: _parameter('range_km'), 'explain': _no_range},
+    reliability={'answer': _reliability, 'explain': _no_reliability, 'form': spelling.constant},
+    service_type={
+        'answer': _service_type,
+        'explain': _no_service_type,
+        'form': spelling.type_name('srv'),
+    },
 )

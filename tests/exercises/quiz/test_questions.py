@@ -6,7 +6,7 @@ from types import ModuleType
 import pytest
 
 from labkit.errors import LabError
-from labkit.exercises import Choice, Number, Quiz, Several, Word, right, wrong
+from labkit.exercises import Choice, Number, Quiz, Several, Word, right, words_of, wrong
 from labkit.exercises.found_lessons import all_lessons, load
 from labkit.exercises.quiz import spelling
 from labkit.exercises.quiz.questions import Feedback, Question
@@ -344,3 +344,62 @@ def test_harbour_question_after_stop_says_which_cell_to_run(number: int, lab: Mo
     lab.stop()
     with pytest.raises(LabError, match=r'(?s)The harbour is closed.*open_harbour\(\)'):
         asked('command_line', 'harbour', number).judge('4')
+
+
+QUESTIONS = """
+quizzes:
+  odds:
+    - several: Which are odd?
+      options:
+        - right: 1
+          why: It has a rest.
+        - wrong: 2
+          why: It has none.
+        - right: 3
+          why: It has one.
+    - number: How many are there?
+      id: count
+      why: Count them.
+      otherwise: Count.
+      wrong:
+        -2: It is below zero.
+        0.5: That is a half.
+    - word: What is /odds?
+      answer: topic
+      how: one word
+      why: It carries messages.
+      otherwise: Look.
+"""
+
+
+def quiz_of(folder, text, **live):
+    (folder / 'quiz.yaml').write_text(text)
+    return Quiz.of(words_of(str(folder / 'quiz.py')), 'odds', **live)
+
+
+def test_questions_are_written_as_words(tmp_path):
+    quiz = quiz_of(tmp_path, QUESTIONS, count={'answer': lambda: 3})
+    several, number, word = quiz.questions
+    assert {option.text for option in several.options if option.is_right} == {'1', '3'}
+    assert number.judge('3').is_right and dict(number.judge('-2').lines) == {
+        'why': 'It is below zero.'
+    }
+    assert number.wrong == {-2: 'It is below zero.', 0.5: 'That is a half.'}
+    assert word.judge('topic').is_right and word.how == 'one word'
+
+
+@pytest.mark.parametrize(
+    ('text', 'said'),
+    [
+        (QUESTIONS.replace('id: count', 'id: number'), r"\['count'\] is expected .*\['number'\]"),
+        (QUESTIONS.replace('  odds:', '  even:'), 'no such quiz'),
+        (QUESTIONS.replace('word: What', 'unit: What'), 'a question is a choice, several'),
+        (QUESTIONS.replace('several:', 'choice:'), "'Which are odd\\?' has 2 right options"),
+        (QUESTIONS.replace('      answer: topic\n', ''), "'What is /odds\\?' has no 'answer'"),
+        (QUESTIONS.replace('-2: It', 'two: It'), 'two'),
+        (QUESTIONS.replace('several:', 'seveal:'), "line 4: odds has no 'seveal'"),
+    ],
+)
+def test_what_is_no_question_is_refused(tmp_path, text, said):
+    with pytest.raises(LabError, match=said):
+        quiz_of(tmp_path, text, count={'answer': lambda: 3})
