@@ -7,6 +7,7 @@ before or for the numbers of the last check is found out. How close together the
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import count
@@ -14,11 +15,16 @@ from typing import Any, TypeVar
 
 __all__ = [
     'INT16',
+    'INT32',
+    'KNOWN',
     'MANY',
+    'MORE',
     'draw_float',
     'draw_for',
     'draw_int16s',
     'draw_names',
+    'draw_outside',
+    'draw_size',
     'draw_texts',
     'filled',
     'in_a_row',
@@ -28,11 +34,15 @@ T = TypeVar('T')
 
 _WORDS = ('boat', 'harbour', 'Wind', 'NORTH', 'grün', 'Öl', 'señor', 'çay', 'λάμδα', 'Żuk', '日本')
 _NAMES = ('Bo', 'Eva María', 'Çağla', '李娜', 'Dr. O', 'van  der Berg', 'Ödön', "O'Neill", 'JO')
+# The people of the lessons, and what their cells say: a node may treat its own like no other's.
+KNOWN = ('Ada', 'Bo', 'Chidi')
+_SAID = ('Hello', 'Hello World: 1', 'My name is Ada', 'news')
 INT16 = (-32768, 32767)
+INT32 = (-(2**31), 2**31 - 1)
 # Each name gets a number of its own: who is known from the last check is nobody new.
 _numbers = count(random.randint(100, 999), random.choice((3, 7, 11)))
-# So many are sent at least: a node may stop after twenty.
-MANY = 24
+# So many are sent at least, and how many more at most, is drawn: a node may stop after thirty.
+MANY, MORE = 32, 8
 # A plain value is first: what is wrong with any value is not to look like a matter of a trap.
 PLAIN = 2
 
@@ -54,7 +64,10 @@ def draw_texts(*, empty: bool = True) -> list[str]:
         '0',
         word('aZ9é'),
         f'{word(_WORDS).title()} "{word(_WORDS)}" {{{word("abcXYZ")}}} \\{word("nt")} %s <b>',
-        ' '.join(word(_WORDS) for _ in range(number(60, 90))),
+        ' '.join(word(_WORDS) for _ in range(number(900, 1200))),
+        *(f'{name}: {word(_WORDS)} {number(2, 99)}' for name in KNOWN),
+        *_SAID,
+        f'{word(_WORDS)}\t{word(_WORDS)}',
         f'  {word(_WORDS)} ',
         f'{word(_WORDS)}  {word(_WORDS)}   {number(2, 99)}',
         f'{word(_WORDS)}: {word(_WORDS)}: {number(2, 99)}',
@@ -63,7 +76,7 @@ def draw_texts(*, empty: bool = True) -> list[str]:
         f'{word(_WORDS).swapcase()} {word("🤖🚲")}',
     ]
     nothing = ['', ' ' * number(1, 3)] if empty else []
-    more = [f'{word(_WORDS)} {i}' for i in range(100, 100 + MANY)]
+    more = [f'{word(_WORDS)} {i}' for i in range(100, 100 + MANY + MORE)]
     return in_a_row(plain, [*traps, *nothing], more)
 
 
@@ -89,9 +102,31 @@ def draw_int16s(low: int = INT16[0], high: int = INT16[1], step: int = 1) -> lis
     allowed = range(low, high + 1, step)
     near_zero = [n for n in (-2 * step, -step, -1, 0, 1, step, 2 * step) if n in allowed]
     middle = range(len(allowed) // 4, 3 * len(allowed) // 4)
-    drawn = [allowed[i] for i in random.sample(middle, min(len(middle), MANY))]
+    drawn = [allowed[i] for i in random.sample(middle, min(len(middle), MANY + MORE))]
     edges = [allowed[i] for i in (0, 1, -2, -1)]
     return in_a_row(drawn[:PLAIN], [*near_zero, *edges], drawn[PLAIN:])
+
+
+def draw_outside(low: int, high: int, limits: tuple[int, int] = INT32) -> list[int]:
+    """Return numbers that lie outside of a range, the nearest first: next to it, and far away.
+
+    Some of these are one of the range by their last digits or bytes, or without their sign.
+
+    Args:
+        low: The smallest number of the range.
+        high: The largest one.
+        limits: The smallest and the largest number of the type.
+    """
+    inside = random.randint(low, high)
+    far = [sign * (inside + 10**power) for power in (2, 3, 4, 6) for sign in (1, -1)]
+    far += [inside + 2**power for power in (8, 16)]
+    found = {low - 1, high + 1, -inside, random.randint(high + 2, high + 79), *far, *limits}
+    return sorted((n for n in found if not low <= n <= high), key=lambda n: (abs(n), n))
+
+
+def draw_size(least: float, most: float) -> float:
+    """Return a number whose size is drawn, of two that are far apart: 0.01, 0.1, 1 or 10."""
+    return round(math.exp(random.uniform(math.log(least), math.log(most))), 3)
 
 
 def draw_float(low: float, high: float) -> float:
@@ -108,7 +143,8 @@ def in_a_row(plain: Sequence[T], traps: Iterable[T], more: Iterable[T] = ()) -> 
         more: What is sent until there are many.
     """
     rest = list(traps)
-    rest += list(more)[: max(0, MANY - len(plain) - len(rest))]
+    many = MANY + random.randint(0, MORE)
+    rest += list(more)[: max(0, many - len(plain) - len(rest))]
     random.shuffle(rest)
     # The first one comes again when it may be forgotten.
     twice = random.randrange(len(rest))

@@ -1,195 +1,37 @@
 """The draws of each exercise find out the programs that are wrong in the usual ways.
 
-A program is a function here: it gets the tests with the times at which they are sent, and returns
-what it says. So hundreds of checks take a second, and no node is needed.
+A program is a function here, see `wrong_programs`. So hundreds of checks take a second, and no
+node is needed.
 """
 
 from __future__ import annotations
 
-import inspect
 import random
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable
 from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
+from wrong_programs import CLAUSES, Program, Rule, Timed, by_a_timer, each, rule_of, table
 
 from labkit.exercises import Fail
 from labkit.exercises.clauses import Answers, Evidence, Logs, answering, base, logs
 from labkit.exercises.draws import (
+    KNOWN,
     draw_int16s,
     draw_names,
+    draw_outside,
+    draw_size,
     draw_texts,
     filled,
 )
-from labkit.exercises.found_lessons import all_lessons
 from labkit.exercises.messages_heard import Lived, build
 from labkit.exercises.observation import Life, Sent
 from labkit.exercises.what_is_asked import Scope
 
-Timed = list[tuple[float, Any]]
-Rule = Callable[[Any], Any]
-Program = Callable[[Timed, Callable[[], Rule]], Timed]
-
 NODE = '/node'
 SEEDS = range(12)
-# Answers of these take time of their own, or belong to a service.
-OTHERWISE = ('asker', 'porter')
-
-CLAUSES: dict[str, Answers | Logs] = {
-    exercise.name: clause
-    for lesson in all_lessons()
-    for exercise in lesson.exercises
-    for clause in exercise.clauses
-    if isinstance(clause, (Answers, Logs)) and exercise.name not in OTHERWISE
-}
-# The learner makes its type; here stands one for it that is there.
-CLAUSES['leg'] = replace(
-    cast(Answers, CLAUSES['leg']), msg_type='geometry_msgs/msg/Vector3', field='x'
-)
-
-
-def rule_of(clause: Answers | Logs) -> Rule:
-    """Return what a right program says for a value; one with a memory begins anew."""
-    if isinstance(clause, Logs):
-        return clause.line or str
-    if not inspect.isgeneratorfunction(clause.answer):
-        return clause.answer
-    node = clause.answer(None)
-    next(node)
-    return node.send
-
-
-def each(heard: Timed, fresh: Callable[[], Rule]) -> Timed:
-    rule = fresh()
-    return [(at, rule(value)) for at, value in heard]
-
-
-def by_a_timer(heard: Timed, fresh: Callable[[], Rule]) -> Timed:
-    return [(at + 0.1 - at % 0.1, said) for at, said in each(heard, fresh)]
-
-
-def those(keep: Callable[[int, Timed], bool]) -> Program:
-    """Return a program that leaves messages out: `keep` gets which one it is, and all of them."""
-    return lambda heard, fresh: each([p for i, p in enumerate(heard) if keep(i, heard)], fresh)
-
-
-def leaves_out(number: int) -> Program:
-    """Return a program that leaves out every `number`-th answer."""
-
-    def program(heard: Timed, fresh: Callable[[], Rule]) -> Timed:
-        said = [pair for pair in each(heard, fresh) if pair[1] is not None]
-        return [pair for i, pair in enumerate(said, start=1) if i % number]
-
-    return program
-
-
-def changed(change: Callable[[Any], Any]) -> Program:
-    """Return a program that does not take a message as it is."""
-    return lambda heard, fresh: each([(at, change(value)) for at, value in heard], fresh)
-
-
-def limited(heard: Timed, fresh: Callable[[], Rule]) -> Timed:
-    kept: Timed = []
-    for at, value in heard:
-        if not kept or at - kept[-1][0] >= 0.3:
-            kept.append((at, value))
-    return each(kept, fresh)
-
-
-def newest(heard: Timed, fresh: Callable[[], Rule]) -> Timed:
-    """Answer the newest only, every 0.4 s."""
-    ticks = [0.4 * i + 0.123 for i in range(200)]
-    kept = [
-        (end, [value for at, value in heard if begin < at <= end][-1])
-        for begin, end in pairwise(ticks)
-        if any(begin < at <= end for at, _ in heard)
-    ]
-    return each(kept, fresh)
-
-
-def forgetful(heard: Timed, fresh: Callable[[], Rule]) -> Timed:
-    """Begin anew after ten messages."""
-    return [pair for i in range(0, len(heard), 10) for pair in each(heard[i : i + 10], fresh)]
-
-
-def twice(heard: Timed, fresh: Callable[[], Rule]) -> Timed:
-    return [pair for pair in each(heard, fresh) for _ in range(2)]
-
-
-WRONG: dict[str, Program] = {
-    'not the same again': those(lambda i, heard: not i or heard[i][1] != heard[i - 1][1]),
-    'not what came before': those(lambda i, heard: heard[i][1] not in [v for _, v in heard[:i]]),
-    'not the same within 10 ms': those(
-        lambda i, heard: (
-            not i or heard[i][1] != heard[i - 1][1] or heard[i][0] > heard[i - 1][0] + 0.01
-        )
-    ),
-    'the rate is limited': limited,
-    'the newest every 0.4 s': newest,
-    'the first one only': those(lambda i, heard: i < 1),
-    'the first ten only': those(lambda i, heard: i < 10),
-    'the first twenty only': those(lambda i, heard: i < 20),
-    'not the first': those(lambda i, heard: i > 0),
-    'every other': leaves_out(2),
-    'all but every fifth': leaves_out(5),
-    'nothing for nothing': those(lambda i, heard: bool(heard[i][1])),
-    'twice': twice,
-}
-TEXTS: dict[str, Program] = {
-    'one blank between two words': changed(lambda text: ' '.join(text.split())),
-    'no blanks at the ends': changed(str.strip),
-    'small letters': changed(str.lower),
-    'the first 20 letters': changed(lambda text: text[:20]),
-    'letters of English': changed(lambda text: text.encode('ascii', 'ignore').decode()),
-    'the last part': changed(lambda text: text.rpartition(': ')[2]),
-}
-NUMBERS: dict[str, Program] = {
-    'not the least': those(lambda i, heard: heard[i][1] != min(v for _, v in heard)),
-    'not the largest': those(lambda i, heard: heard[i][1] != max(v for _, v in heard)),
-    'no sign': changed(lambda n: -n if -9999 < n < 0 else n),
-    'small numbers': changed(lambda n: max(-9999, min(9999, n))),
-    'off by one at the lower edge': changed(lambda n: n + 1 if n < -32760 or n == 0 else n),
-}
-# What makes no difference in a task: it is none of the wrong ones there.
-SAME = {
-    'evens': {'nothing for nothing'},
-    'two_stages': {'it forgets after ten'},
-    'mouth': {'small letters'},
-    'greeter': {
-        'nothing for nothing',
-        'one blank between two words',
-        'no blanks at the ends',
-        'letters of English',
-    },
-    'polite': {
-        'nothing for nothing',
-        'no blanks at the ends',
-        'not the same again',
-        'not what came before',
-        'not the same within 10 ms',
-    },
-    'distance': {'nothing for nothing'},
-}
-MEMORY: dict[str, Program] = {'it forgets after ten': forgetful}
-
-
-def table(name: str, clause: Answers | Logs) -> dict[str, Program]:
-    first = drawn(clause)[0]
-    found = dict(WRONG)
-    if isinstance(first, str):
-        found.update(TEXTS)
-    if isinstance(first, int):
-        found.update(NUMBERS)
-    if isinstance(clause, Answers) and inspect.isgeneratorfunction(clause.answer):
-        found.update(MEMORY)
-    return {what: program for what, program in found.items() if what not in SAME.get(name, ())}
-
-
-def drawn(clause: Answers | Logs) -> Sequence[Any]:
-    return clause.draw() if isinstance(clause, Logs) else clause._drawn()
 
 
 @pytest.fixture
@@ -279,7 +121,8 @@ def test_traps_are_drawn_each_time(seed: int) -> None:
     assert any(text.count(': ') > 1 for text in texts)
     assert any(text != text.strip() for text in texts)
     assert any('  ' in text.strip() for text in texts)
-    assert max(map(len, texts)) > 200
+    assert max(map(len, texts)) > 2000
+    assert any(text.startswith(KNOWN) for text in texts)
     assert not all(map(str.isascii, texts))
     assert all(text.strip() for text in draw_texts(empty=False))
     for values in (numbers, texts):
@@ -288,6 +131,20 @@ def test_traps_are_drawn_each_time(seed: int) -> None:
     names = draw_names(12)
     assert len({*names, *draw_names()}) == 21
     assert any(a != b and a.lower() == b.lower() for a in names for b in names)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_what_lies_outside_of_a_range_is_near_and_far(seed: int) -> None:
+    random.seed(seed)
+    outside = draw_outside(1, 20)
+    assert {0, 21, -(2**31), 2**31 - 1} <= {*outside}
+    assert not any(1 <= n <= 20 for n in outside)
+    assert outside == sorted(outside, key=abs)
+    for size in (100, 256, 1000, 65536):
+        assert any(1 <= n % size <= 20 for n in outside)
+    assert any(1 <= abs(n) <= 20 for n in outside)
+    assert any(n < 0 for n in draw_outside(0, 5))
+    assert all(0.01 <= draw_size(0.01, 10) <= 10 for _ in range(50))
 
 
 def test_each_field_that_no_task_names_is_filled() -> None:

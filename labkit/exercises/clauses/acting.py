@@ -42,11 +42,14 @@ class Goal:
         cancel_after: After so many feedbacks it is canceled; 0 for never.
         is_long: Whether it may take long. A server of another process does not get it: its time
             is real.
+        after_rejection: Whether it is sent only if the one before it was rejected: who has
+            accepted that one would accept it, too, and work on it for too long.
     """
 
     fields: Mapping[str, Any]
     cancel_after: int = 0
     is_long: bool = False
+    after_rejection: bool = False
 
 
 @dataclass
@@ -277,6 +280,8 @@ class _Asking:
     def _pursue(self) -> Generator[bool, None, None]:
         """Give True each time that something was sent, and False while it waits."""
         for goal in self._goals:
+            if goal.after_rejection and any(p.accepted for p in self.pursuits[-1:]):
+                continue
             pursuit = Pursuit(goal)
             self.pursuits.append(pursuit)
             self._ids.append(None)

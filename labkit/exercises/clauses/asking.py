@@ -27,6 +27,7 @@ DEADLOCK = WORDS.mistake('asks/deadlock')
 NOTHING = WORDS.mistake('asks/nothing')
 MORE = WORDS.mistake('asks/more')
 SOME = WORDS.mistake('asks/some')
+CANCELED = WORDS.mistake('asks/canceled')
 SAME = WORDS.mistake('asks/same')
 OTHER = WORDS.mistake('asks/other')
 
@@ -40,7 +41,7 @@ class AsksForEach(GraphClause):
         by: Full name of the node.
         service: Full name of the service or the action.
         partner: Full name of the node of the lesson that serves it. Its list `asked` has the field
-            of each request or goal that has come.
+            of each request or goal that has come, `canceled` that of each goal called off.
         cell: The line of the lesson that makes and spins it.
         words: What is asked for, in words of the task.
         request: How the request or goal is made of the message.
@@ -76,7 +77,10 @@ class AsksForEach(GraphClause):
 
     def tests(self, evidence: Evidence) -> Sequence[Any]:
         """Count from now on. The tests are those of the answers."""
-        self._partner().asked.clear()
+        partner = self._partner()
+        partner.asked.clear()
+        if self.is_action:
+            partner.canceled.clear()
         return ()
 
     def judge(self, evidence: Evidence) -> str:
@@ -88,6 +92,13 @@ class AsksForEach(GraphClause):
         probe.wait(lambda: len(asked) >= len(heard), UNDERWAY_SEC)
         came = list(asked)
         what = 'goal' if self.is_action else 'request'
+        canceled = self._partner().canceled if self.is_action else []
+        if canceled:
+            raise Fail(
+                f'{len(heard)} {what}s to {self.service}, each of which comes to its end',
+                f'{len(canceled)} of them were canceled, such as {expect.show(canceled[:1])}',
+                CANCELED,
+            )
         if came == heard:
             return f'{len(heard)} messages, {len(came)} {what}s.'
         if 0 < len(came) < len(heard) and not wait_until_spun(

@@ -97,7 +97,7 @@ MISTAKES = (
 def _drive(middle: float) -> list[Place]:
     """Return places of a drive in all directions, with the shortest jump at its end."""
     # Also the sum of a step in x and in y is below the limit.
-    steps = [(random.uniform(0.05, 0.35), random.uniform(-math.pi, math.pi)) for _ in range(8)]
+    steps = [(random.uniform(0.05, 0.35), random.uniform(-math.pi, math.pi)) for _ in range(14)]
     along_x = random.choice((0.0, math.pi)) + random.uniform(0.003, 0.008)
     steps.insert(random.randint(1, len(steps)), (random.uniform(0.485, 0.495), along_x))
     # As short as the steps of a slow robot that tells where it is a thousand times a second.

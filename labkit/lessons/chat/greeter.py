@@ -36,7 +36,7 @@ LEFT_BEHIND = WORDS.mistake('greeter/left-behind')
 
 def _draw() -> list[str]:
     """Return texts with and without the word, in the middle and in other letters."""
-    names = iter(draw_names(12))
+    names = iter(draw_names(26))
     number = random.randint(10, 99)
     texts = [
         f'{next(names)}: now that I am here I say Hello to number {number}',
@@ -50,6 +50,10 @@ def _draw() -> list[str]:
         f'{next(names)}: H e l l o',
         f'{next(names)}: Salut {number}',
         f'{ME}: Hi {number}',
+        f'{next(names)}: Hello World: {number}',
+        f'{ME}: Hello',
+        f'{ME}: Hello {number}',
+        f'{REPLY} {number}',
         f'Hello {next(names)}: Good morning',
         '',
         ' ',

@@ -6,7 +6,7 @@ import random
 
 from labkit.exercises import Exercise, anything, words_of
 from labkit.exercises.clauses import Logs, Subscribes, Words
-from labkit.exercises.draws import draw_names, draw_texts, in_a_row
+from labkit.exercises.draws import KNOWN, draw_names, draw_texts, in_a_row
 
 __all__ = ['exercise']
 
@@ -30,6 +30,8 @@ def _draw() -> list[str]:
     """Return messages with a name, among them some with two colons, and some without a name."""
     names, texts = draw_names(), draw_texts(empty=False)
     number = random.randint
+    # Who speaks may have a name that the lesson knows.
+    names += KNOWN
     said = [f'{names[i % len(names)]}: {text}' for i, text in enumerate(dict.fromkeys(texts))]
     more = [
         f'no name {number(1, 99)}',

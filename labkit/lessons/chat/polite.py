@@ -48,7 +48,7 @@ def _politely(_memory: object) -> Generator[str | None, str, None]:
 
 def _draw() -> list[str]:
     """Return what people say whom nobody knows yet, and whom all know by then."""
-    bo, chidi, eva, finn, guo, hana, *more = draw_names(18)
+    bo, chidi, eva, finn, guo, hana, last, *more = draw_names(22)
     kitty = f'Hello {draw_names(2)[0]}'
     # A name that begins as that of the greeter does, and is another one.
     adam = f'{ME}m {draw_names(2)[0]}'
@@ -68,10 +68,10 @@ def _draw() -> list[str]:
         f'{guo}: HELLO',
         f'{hana}: at 7: 30 I say Hello',
         *(f'{name}: Hello' for name in more),
-        f'{finn}: Hello',
+        f'{finn}: Hello World: 1',
         f'{kitty}: Hello',
         f'{guo}: Hello',
-        *(f'{name}: Hello' for name in (chidi, bo, eva)),
+        *(f'{name}: Hello' for name in (chidi, bo, eva, last)),
     ]
 
 

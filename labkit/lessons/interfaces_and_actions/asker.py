@@ -49,7 +49,13 @@ exercise = Exercise(
             WORDS.clause('answers'),
             answer=lambda order: int(find_node('/calculator').factor) * order * (order + 1) // 2,
             # Many, of which two are the same, with the smallest one and a large one.
-            draw=lambda: [3, 3, 1, random.randint(200, 300), *random.sample(range(2, 60), k=MANY)],
+            draw=lambda: [
+                3,
+                3,
+                1,
+                random.randint(2000, 3000),
+                *random.sample(range(2, 60), k=MANY),
+            ],
             outer_type=INT32,
             by=NODE,
             mistakes=[OTHER_NUMBER],

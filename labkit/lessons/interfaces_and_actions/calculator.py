@@ -16,9 +16,9 @@ def make_calculator() -> Node:
     """Return a node that serves `/add_up` (`test_msgs/action/Fibonacci`).
 
     The result of a goal are the sums of the numbers from 1 to `order`, each times `factor`. It
-    takes a moment, see `take_time`.
+    takes a moment, see `take_time`. A goal that is canceled meanwhile ends with its first sum.
     """
-    from rclpy.action.server import ActionServer
+    from rclpy.action.server import ActionServer, CancelResponse
     from rclpy.node import Node
     from test_msgs.action import Fibonacci
 
@@ -27,13 +27,24 @@ def make_calculator() -> Node:
             super().__init__('calculator')
             self.factor = 1
             self.asked: list[int] = []
-            ActionServer(self, Fibonacci, 'add_up', self.execute)  # type: ignore[no-untyped-call]
+            self.canceled: list[int] = []
+            ActionServer(  # type: ignore[no-untyped-call]
+                self,
+                Fibonacci,
+                'add_up',
+                self.execute,
+                cancel_callback=lambda handle: CancelResponse.ACCEPT,
+            )
 
         async def execute(self, handle: Any) -> Any:
             self.asked.append(handle.request.order)
             await take_time(self)
             sums = [self.factor * n * (n + 1) // 2 for n in range(1, handle.request.order + 1)]
             handle.publish_feedback(Fibonacci.Feedback(sequence=sums[:1]))
+            if handle.is_cancel_requested:
+                self.canceled.append(handle.request.order)
+                handle.canceled()
+                return Fibonacci.Result(sequence=sums[:1])
             handle.succeed()
             return Fibonacci.Result(sequence=sums)
 

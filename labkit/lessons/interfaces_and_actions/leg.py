@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from labkit.exercises import Exercise, Fail, NotAttempted, anything, words_of
 from labkit.exercises.clauses import Answers, Evidence, GraphClause, Named
-from labkit.exercises.draws import MANY, draw_float, in_a_row
+from labkit.exercises.draws import MANY, MORE, draw_float, draw_size, in_a_row
 
 __all__ = ['exercise', 'fields_of']
 
@@ -64,7 +64,9 @@ def _shown(fields: dict[str, str]) -> str:
 def _draw() -> Sequence[float]:
     # Ahead and back, left and right, the same twice in a row, and none at all.
     plain = [draw_float(0.05, 0.2), draw_float(-0.2, -0.05)]
-    return in_a_row(plain, [0.0], [draw_float(-0.2, 0.2) for _ in range(MANY)])
+    large = [draw_size(0.5, 5.0), -draw_size(0.5, 5.0), draw_float(50.0, 900.0)]
+    more = [draw_float(-0.2, 0.2) for _ in range(MANY + MORE)]
+    return in_a_row(plain, [0.0, 0.001, *large], more)
 
 
 exercise = Exercise(

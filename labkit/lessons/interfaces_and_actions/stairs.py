@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
+from dataclasses import replace
 
 from labkit.exercises import Exercise, Fail, words_of
 from labkit.exercises.clauses import Goal, Pursues, Pursuit, Serves
+from labkit.exercises.draws import draw_outside
 from labkit.lessons.interfaces_and_actions.goals import (
     ACTION,
     expect_ending,
@@ -37,7 +39,10 @@ def _draw() -> list[Goal]:
     orders = [LEAST, MOST, inside, LEAST - 1, MOST + 1, -outside, -1, outside]
     random.shuffle(orders)
     orders.insert(orders.index(inside), inside)
-    return fibonacci_goals(*orders)
+    near = [replace(goal, is_long=False) for goal in fibonacci_goals(*orders)]
+    # A server that takes the first one of these is not to count up to the last.
+    far = [n for n in draw_outside(LEAST, MOST) if n not in orders]
+    return [*near, *(Goal({'order': order}, after_rejection=True) for order in far)]
 
 
 def _accepts(pursuits: Sequence[Pursuit]) -> None:

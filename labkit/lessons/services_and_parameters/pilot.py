@@ -15,7 +15,7 @@ from labkit.exercises.clauses import (
     Stream,
 )
 from labkit.exercises.clauses.parameter_client import Values
-from labkit.exercises.draws import draw_float
+from labkit.exercises.draws import draw_float, draw_size
 
 __all__ = ['exercise']
 
@@ -30,13 +30,14 @@ AT_THE_LIMIT = WORDS.mistake('pilot/at-the-limit')
 
 
 def _draw() -> Sequence[Values]:
-    """Return pairs: the second speed is above the first limit, and some are at an edge."""
+    """Return pairs: the second speed is above the first limit, some at an edge, one large."""
     low = draw_float(0.05, 0.1)
     high = draw_float(0.15, 0.2)
     return [
         {'speed': draw_float(0.01, low), 'limit': low},
         {'limit': draw_float(high, 0.22), 'speed': high},
         {'speed': low, 'limit': low},
+        {'speed': draw_size(0.5, 50.0), 'limit': draw_float(51.0, 900.0)},
         {'speed': 0.0, 'limit': 0.0},
     ]
 
@@ -46,6 +47,8 @@ def _bad() -> tuple[Values, Sequence[Values]]:
     bad: list[Values] = [
         {'speed': round(limit + 0.001, 3)},
         {'speed': draw_float(limit + 0.1, limit + 1.0)},
+        {'speed': draw_size(2.0, 900.0)},
+        {'speed': math.inf},
         {'speed': -0.001},
         {'speed': draw_float(-1.0, -0.01)},
         {'limit': round(speed - 0.001, 3)},

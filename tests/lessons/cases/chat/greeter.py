@@ -13,6 +13,22 @@ ANSWERS = [
         ("'Hello' in msg.data", "'Hello' in msg.data and 'Ada' not in msg.data"),
     ),
     wrong(
+        'not to a namesake',
+        'were answered correctly, the others were not',
+        ("if 'Hello' in msg.data:", "if 'Hello' in msg.data and not msg.data.startswith('Ada'):"),
+    ),
+    wrong(
+        'says something before anybody is heard',
+        'It publishes although nothing has come.',
+        (
+            'self.on_message, 10)\n',
+            'self.on_message, 10)\n'
+            "        publisher = self.create_publisher(String, 'lobby', 10)\n"
+            "        publisher.publish(String(data='Ada is here'))\n"
+            '        self.destroy_publisher(publisher)\n',
+        ),
+    ),
+    wrong(
         'keeps one publisher',
         'A publisher that is kept is used again and again.',
         ("            publisher = self.create_publisher(String, 'lobby', 10)\n", ''),

@@ -74,6 +74,16 @@ ANSWERS = [
         ),
     ),
     wrong(
+        'a new wish cancels the goal before',
+        'The goal before is canceled',
+        (
+            '        future.result().get_result_async().add_done_callback(self.on_result)\n',
+            "        before, self.goal = getattr(self, 'goal', None), future.result()\n"
+            '        if before is not None:\n            before.cancel_goal_async()\n'
+            '        self.goal.get_result_async().add_done_callback(self.on_result)\n',
+        ),
+    ),
+    wrong(
         'stops after twenty',
         'Some messages lead to a goal, and others do not.',
         (

@@ -37,6 +37,17 @@ ANSWERS = [
         'Others were rejected, and this one was not.',
         ('1 <= goal.order <= 20', 'goal.order >= 0'),
     ),
+    wrong(
+        'modulo 100',
+        'Others were rejected, and this one was not.',
+        ('1 <= goal.order <= 20', '1 <= goal.order % 100 <= 20'),
+    ),
+    wrong(
+        'what is huge is accepted',
+        'Others were rejected, and this one was not.',
+        ('1 <= goal.order <= 20', '1 <= goal.order <= 20 or goal.order > 1000'),
+        (', goal_handle.request.order + 1', ', min(goal_handle.request.order, 20) + 1'),
+    ),
     wrong('no lower limit', 'is rejected', ('1 <= goal.order <= 20', 'goal.order <= 20')),
     wrong(
         'True in the place of ACCEPT',

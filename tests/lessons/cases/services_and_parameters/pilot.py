@@ -54,8 +54,24 @@ ANSWERS = [
     ),
     wrong(
         'a fixed limit',
-        'Some values are refused, and this one is not.',
+        'These values are allowed',
         ("<= values['limit']:", '<= 0.22:'),
+    ),
+    wrong(
+        'a limit that is never over 0.3',
+        'These values are allowed',
+        (
+            "0.0 <= values['speed'] <= values['limit']:",
+            "0 <= values['speed'] <= values['limit'] <= 0.3:",
+        ),
+    ),
+    wrong(
+        'never faster than 0.3',
+        'all else 0.0, in each message',
+        (
+            "msg.linear.x = self.get_parameter('speed').value",
+            "msg.linear.x = min(self.get_parameter('speed').value, 0.3)",
+        ),
     ),
     wrong(
         'the limit itself is refused',
