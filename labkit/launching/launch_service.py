@@ -315,7 +315,7 @@ class Service:
             self._say('ERROR', start.name, f'process has died [{what}].')
         again = bool(start.respawn and program.left and not program.ending)
         again = again and not self._shutting_down
-        told = {'ended': start.name, 'exit_code': code, 'again': again}
+        told = {'ended': start.name, 'exit_code': code, 'again': again, 'left': program.left}
         self._tell({**told, 'shutting_down': self._shutting_down})
         self._emit(events.ProcessExited(start.action, **program.about, returncode=code))
         self._settle()

@@ -39,6 +39,7 @@ class Program:
         starts: How often it was started.
         is_node: Whether the launch file calls it a node.
         again: Whether it has ended, and is about to be started again.
+        left: How often it might be started again when it ended last; below 0 without end.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Program:
     starts: int = 1
     is_node: bool = False
     again: bool = False
+    left: int = -1
 
     def __repr__(self) -> str:
         state = 'running' if self.exit_code is None else f'ended (exit code {self.exit_code})'
@@ -116,7 +118,7 @@ class Launch(Process):
             program = self._program(announcement['ended'])
             if announcement['exit_code'] < 0:
                 self._note_killed(program.pid)
-            program.again = announcement['again']
+            program.again, program.left = announcement['again'], announcement['left']
             self.shutting_down = announcement['shutting_down']
             program.exit_code = announcement['exit_code']
         elif 'fault' in announcement:

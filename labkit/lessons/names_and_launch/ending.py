@@ -17,6 +17,7 @@ NO_RESPAWN = WORDS.mistake('ending/no-respawn')
 ALL_RESPAWN = WORDS.mistake('ending/all-respawn')
 ALL_END = WORDS.mistake('ending/all-end')
 LIMITED = WORDS.mistake('ending/limited')
+COUNTED = WORDS.mistake('ending/counted')
 GOES_ON = WORDS.mistake('ending/goes-on')
 
 
@@ -41,6 +42,13 @@ def _talker_comes_again(system: System) -> None:
     """Let it die, and raise Fail if it does not come again."""
     if not _comes_again(system):
         raise Fail(f'{TALKER} has died, and is started again', 'it stays dead', NO_RESPAWN)
+    times = system.programs[TALKER].left
+    if times >= 0:
+        raise Fail(
+            f'{TALKER} is started again each time',
+            f'it is started again {times} {"times" if times > 1 else "time"}, and no more',
+            COUNTED,
+        )
 
 
 def _listener_stays_dead(system: System) -> None:

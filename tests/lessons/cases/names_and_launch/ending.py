@@ -18,6 +18,22 @@ ANSWERS = [
         ('on_exit="shutdown"', 'respawn="true"'),
     ),
     wrong(
+        'two times',
+        'and no more',
+        ('respawn="true"', 'respawn="true" respawn_max_retries="2"'),
+    ),
+    wrong(
+        'five times',
+        'and no more',
+        ('respawn="true"', 'respawn="true" respawn_max_retries="5"'),
+    ),
+    wrong(
+        'five times, in Python',
+        'and no more',
+        ('respawn=True', 'respawn=True, respawn_max_retries=5'),
+        of='in Python',
+    ),
+    wrong(
         'attribute misspelt',
         'ending.launch.xml, line 5',
         ('respawn="true"', 'respwan="true"'),
