@@ -14,7 +14,7 @@ from typing import Any, cast
 
 from labkit.exercises.clauses import Answers, Logs
 from labkit.exercises.draws import KNOWN
-from labkit.exercises.lesson import all_lessons
+from labkit.exercises.found_lessons import all_lessons
 
 Timed = list[tuple[float, Any]]
 Rule = Callable[[Any], Any]

@@ -21,6 +21,7 @@ INT16 = 'std_msgs/msg/Int16'
 NODES = ('/gauge', '/mast_a', '/mast_b', '/mast_c', '/town')
 TOPICS = ('/level', '/level_a', '/level_b', '/level_c', '/display')
 DEAF = (1, 2, 3)
+# From one number to the next, on average, s.
 PERIOD_SEC = 0.1
 # How much higher the next level is: so no number is another one with 1 more or less.
 STEPS = (2, 3, 4)
@@ -85,8 +86,11 @@ def main() -> None:
 
     def measure() -> None:
         nonlocal level
+        if random.random() < 0.5:
+            return
         level = level % HIGHEST + random.choice(STEPS)
         publishers[0].publish(Int16(data=level))
 
-    nodes[0].create_timer(PERIOD_SEC, measure)
+    # Not as even as a timer: who repeats the newest one now and then leaves some out.
+    nodes[0].create_timer(PERIOD_SEC / 2, measure)
     spin_until_interrupted(*nodes)

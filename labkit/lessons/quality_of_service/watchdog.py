@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -35,14 +36,15 @@ SILENCE_SEC, EARLY_SEC = 0.5, 0.1
 WITHIN_SEC = 2.0
 # The heart of the check beats so often, s, and so often in a row.
 PERIOD_SEC = 0.05
-BEATS = 16
+BEATS, FEW_BEATS = 16, 7
 # What comes so long after the first beat may be of the silence before, s.
 GRACE_SEC = 0.25
 # The heart itself may stumble on a busy machine, and a watchdog of another process hear late what
 # was sent in time: then it beats anew, so many times at most.
 ATTEMPTS = 4
 READY_SEC = 4.0
-ROUNDS = 3
+# It beats and stops so often, at least and at most; the first rounds are long ones.
+ROUNDS, LONG_ROUNDS = (5, 7), 2
 
 NOISE = WORDS.mistake('watchdog/noise')
 USED_UP = WORDS.mistake('watchdog/used-up')
@@ -82,11 +84,12 @@ class _Heart:
         probe.wait(self._publisher.get_subscription_count, READY_SEC)
         self.last = 0.0
 
-    def beat(self, attempts: int) -> tuple[list[float], bool]:
+    def beat(self, attempts: int, beats: int = BEATS) -> tuple[list[float], bool]:
         """Beat for a while.
 
         Args:
             attempts: How often it beats anew if there was an alarm.
+            beats: How often it beats in a row.
 
         Returns:
             The moments of alarms meanwhile, those of a steady heart; and whether there was one
@@ -98,7 +101,7 @@ class _Heart:
         for attempt in range(ATTEMPTS):
             start = self.last = time.time()
             gap = begun = 0.0
-            for _ in range(BEATS):
+            for _ in range(beats):
                 began = time.time()
                 self._publisher.publish(self._beat)
                 # The longest that it can have been: it is held up before it publishes, or after.
@@ -133,7 +136,7 @@ class _Heart:
 
 
 class _AHeart(Stage[str]):
-    """A heart that the check lets beat and stop, twice."""
+    """A heart that the check lets beat and stop, several times."""
 
     @contextmanager
     def scenes(self, probe: Probe, clauses: Sequence[Clause[str]]) -> Iterator[Sequence[str]]:
@@ -155,9 +158,10 @@ def _judge(probe: Probe) -> str:
     alarms = probe.watch(ALARM, STRING)
     heart = _Heart(probe, alarms)
     delays, again = [], []
-    for number in range(ROUNDS):
+    for number in range(random.randint(*ROUNDS)):
         with naming(_RESTS):
-            later, at_first = heart.beat(attempts)
+            beats = BEATS if number < LONG_ROUNDS else FEW_BEATS
+            later, at_first = heart.beat(attempts, beats)
             _refuse_noise(later)
             again.append(at_first)
         delay = heart.rest()
@@ -211,7 +215,7 @@ def _refuse_silence(number: int) -> NoReturn:
     if number:
         raise Fail(
             'an alarm each time that the heart stops',
-            'one when it stopped before, and none this time',
+            f'one when it stopped before, {number} in all, and none this time',
             USED_UP,
         )
     raise Fail(

@@ -116,6 +116,29 @@ ANSWERS = [
             '        self.create_timer(1, self.on_timer)\n        self.subscription',
         ),
     ),
+    wrong(
+        'a timer repeats the newest',
+        'Not each number is passed on.',
+        (
+            '        self.publisher.publish(msg)',
+            '        self.newest = msg\n\n    def on_timer(self):\n'
+            '        if self.newest is not None:\n            self.publisher.publish(self.newest)',
+        ),
+        (
+            '        hears, says = self.silent_link()\n',
+            '        hears, says = self.silent_link()\n        self.newest = None\n'
+            '        self.timer = self.create_timer(0.1, self.on_timer)\n',
+        ),
+    ),
+    wrong(
+        'stops after twenty',
+        'Not each number is passed on',
+        (
+            '        self.publisher.publish(msg)',
+            "        self.count = getattr(self, 'count', 0) + 1\n        if self.count <= 20:\n"
+            '            self.publisher.publish(msg)',
+        ),
+    ),
     right('functions'),
     right(
         'a profile of its own',

@@ -58,7 +58,7 @@ ANSWERS = [
     ),
     wrong(
         'one alarm only',
-        'Something is used up by the first alarm',
+        'Something is used up by an alarm',
         (
             "        super().__init__('watchdog')\n",
             "        super().__init__('watchdog')\n        self.told = False\n",
@@ -66,6 +66,34 @@ ANSWERS = [
         (
             "        self.publisher.publish(String(data='no heartbeat'))\n",
             '        if not self.told:\n            self.told = True\n'
+            "            self.publisher.publish(String(data='no heartbeat'))\n",
+        ),
+    ),
+    wrong(
+        'three alarms and no more',
+        'Something is used up by an alarm',
+        (
+            "        super().__init__('watchdog')\n",
+            "        super().__init__('watchdog')\n        self.alarms = 0\n",
+        ),
+        (
+            "        self.publisher.publish(String(data='no heartbeat'))\n",
+            '        self.alarms += 1\n        if self.alarms <= 3:\n'
+            "            self.publisher.publish(String(data='no heartbeat'))\n",
+        ),
+    ),
+    wrong(
+        'at three silences and no more',
+        'Something is used up by an alarm',
+        (
+            "        super().__init__('watchdog')\n",
+            "        super().__init__('watchdog')\n        self.silences, self.told = 0, False\n",
+        ),
+        ('        pass\n', '        self.told = False\n'),
+        (
+            "        self.publisher.publish(String(data='no heartbeat'))\n",
+            '        self.silences += not self.told\n        self.told = True\n'
+            '        if self.silences <= 3:\n'
             "            self.publisher.publish(String(data='no heartbeat'))\n",
         ),
     ),
