@@ -41,7 +41,7 @@ ANOTHER = WORDS.mistake('stop/another')
 
 
 def _cruises(stream: Stream, wanted: float) -> None:
-    for number, sample in enumerate(stream.samples, start=1):
+    for number, sample in enumerate((*stream.earlier, *stream.samples), start=1):
         command = command_of(sample)
         turns = command.w or command.others
         if abs(command.v - wanted) < SAME and not turns:

@@ -8,6 +8,16 @@ __all__ = ['ANSWERS']
 
 ANSWERS = [
     wrong(
+        'only x',
+        'away',
+        ('math.hypot(dx, dy) <', 'abs(dx) <'),
+    ),
+    wrong(
+        'only y',
+        'away',
+        ('math.hypot(dx, dy) <', 'abs(dy) <'),
+    ),
+    wrong(
         'degrees for radians',
         'Its angles are degrees',
         ('1.5 * error', '1.5 * math.degrees(error)'),

@@ -56,6 +56,17 @@ ANSWERS = [
         run='process',
     ),
     wrong(
+        'the speed ramps up',
+        'each command says',
+        ('        self.publisher =', '        self.speed = 0.0\n        self.publisher ='),
+        (
+            '        msg.linear.x = 0.1\n',
+            '        self.speed = min(0.1, self.speed + 0.02)\n'
+            '        msg.linear.x = self.speed\n',
+        ),
+        ('Cruiser())\n', 'Cruiser())\nlab.wait_until(lambda: cruiser.speed >= 0.1)\n'),
+    ),
+    wrong(
         'best effort',
         '/cruiser offers best effort',
         ('import Node\n', 'import Node\nfrom rclpy.qos import qos_profile_sensor_data\n'),
