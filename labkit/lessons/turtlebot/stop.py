@@ -16,6 +16,8 @@ from labkit.exercises.clauses import (
     Stream,
     often,
 )
+from labkit.exercises.history import Note
+from labkit.exercises.messages_heard import Sample
 from labkit.exercises.observation import live
 from labkit.exercises.variants import varied
 from labkit.lessons.turtlebot.drive import SAME, TWIST, command_of
@@ -41,7 +43,8 @@ ANOTHER = WORDS.mistake('stop/another')
 
 
 def _cruises(stream: Stream, wanted: float) -> None:
-    for number, sample in enumerate((*stream.earlier, *stream.samples), start=1):
+    sent: list[Sample | Note] = [*stream.earlier, *stream.samples]
+    for number, sample in enumerate(sent, start=1):
         command = command_of(sample)
         turns = command.w or command.others
         if abs(command.v - wanted) < SAME and not turns:
