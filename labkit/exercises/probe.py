@@ -152,6 +152,14 @@ class Probe:
         """Seconds until every wait of this check ends."""
         return max(0.0, self._end - (self._stopped or time.monotonic()))
 
+    def allow(self, seconds: float) -> None:
+        """Let so much time be left at least: no check needs less than its task allows.
+
+        Args:
+            seconds: What the task allows for what comes next, s.
+        """
+        self._end += max(0.0, seconds - self.time_left)
+
     @contextlib.contextmanager
     def uncounted(self) -> Iterator[None]:
         """Let the time of a `with` block not count: nodes need it, more on a busy machine."""

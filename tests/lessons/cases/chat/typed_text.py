@@ -62,6 +62,19 @@ ANSWERS = [
     right('not spun'),
     right('functions'),
     right(
+        'a second for each line',
+        ('create_timer(0.1,', 'create_timer(1.0,'),
+        of='a list and a timer',
+    ),
+    right(
+        'a node that the first question makes',
+        (
+            '        teller.say(text)\n\n\nteller = lab.spin(Teller())',
+            '        tellers[:] = tellers or [lab.spin(Teller())]\n'
+            '        tellers[0].say(text)\n\n\ntellers = []',
+        ),
+    ),
+    right(
         'a list and a timer',
         (
             "'hall', 10)\n",
