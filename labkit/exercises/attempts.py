@@ -105,7 +105,7 @@ def _refuse_nodes(probe: Probe, exercise: Exercise, task: str) -> None:
             ends[server.node].append(f'serves {server.service} ({server.srv_type})')
             if (SERVICE, server.service) in probe.scope.of_lesson:
                 known.add(server.node)
-    known -= meant
+    known.difference_update(e.name for e in runtime.nodes() if _is_of_starter(e.cell, exercise))
     new = {name: what for name, what in ends.items() if name not in known}
     if not new:
         return
@@ -118,13 +118,18 @@ def _refuse_nodes(probe: Probe, exercise: Exercise, task: str) -> None:
     )
 
 
+def _is_of_starter(cell: Cell, exercise: Exercise) -> bool:
+    """Tell whether it is the cell to edit: what it has made is meant, whatever it does."""
+    return cell.cell_id == exercise.starter_id
+
+
 def _is_meant(cell: Cell, exercise: Exercise) -> bool:
-    """Tell whether what a cell has made is meant for an exercise, whatever it does.
+    """Tell whether what a cell has made is meant for an exercise.
 
     That is so for the cell to edit, and for any that has run since another exercise was checked,
-    if it is not the one of another exercise.
+    if it is not the one of another exercise. It may be one of the lesson's, too.
     """
-    if cell.cell_id == exercise.starter_id:
+    if _is_of_starter(cell, exercise):
         return True
     lesson = exercise.belongs_to
     others = [other.starter_id for other in lesson.exercises] if lesson is not None else []
