@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 from labkit.exercises import Exercise, Fail, words_of
 from labkit.exercises.clauses import Asked
 from labkit.lessons.names_and_launch.launch_clauses import Launches, OnlyNodes
@@ -14,6 +16,7 @@ WORDS = words_of(__file__)
 DRIVER, TALKER, LISTENER = '/robot1/driver', '/robot1/talker', '/robot1/listener'
 
 NO_RESPAWN = WORDS.mistake('ending/no-respawn')
+SLOW_RESPAWN = WORDS.mistake('ending/slow-respawn')
 ALL_RESPAWN = WORDS.mistake('ending/all-respawn')
 ALL_END = WORDS.mistake('ending/all-end')
 LIMITED = WORDS.mistake('ending/limited')
@@ -35,7 +38,12 @@ def _comes_again(system: System) -> bool:
     system.kill(TALKER)
     if program.starts == before and not program.again:
         return False
-    return system.wait(lambda: program.starts > before)
+    began = time.monotonic()
+    if not system.wait(lambda: program.starts > before or not system.launch.running):
+        seconds = time.monotonic() - began
+        slow = SLOW_RESPAWN.of(seconds=round(seconds))
+        raise Fail(f'{TALKER} has died, and is started again', 'it has not come yet', slow)
+    return program.starts > before
 
 
 def _talker_comes_again(system: System) -> None:

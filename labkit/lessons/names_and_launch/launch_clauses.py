@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from labkit.exercises import Clause, Fail, Mistake, words_of
-from labkit.lessons.names_and_launch.learner_launch import System
+from labkit.lessons.names_and_launch.learner_launch import Names, System
 
 __all__ = ['HasParameters', 'Hears', 'Launches', 'OnlyNodes', 'Publishes', 'RunsNode']
 
@@ -64,7 +64,7 @@ class RunsNode(Clause[System]):
 
 
 @dataclass(frozen=True)
-class OnlyNodes(Clause[System]):
+class OnlyNodes(Names):
     """These nodes run, and no others."""
 
     nodes: Sequence[str]

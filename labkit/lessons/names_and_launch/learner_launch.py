@@ -6,7 +6,7 @@ import contextlib
 import os
 import signal
 from collections import Counter
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -23,7 +23,7 @@ from labkit.lessons.package.learner_workspace import workspace
 if TYPE_CHECKING:
     from labkit.launching.launched import Launch, Program
 
-__all__ = ['EMPTY', 'Launched', 'System']
+__all__ = ['EMPTY', 'Launched', 'Names', 'System']
 
 WORDS = words_of(__file__)
 
@@ -112,13 +112,7 @@ class System:
         from labkit.rosgraph.whose import process_id
 
         helper = self.probe.spun_node
-        for node in self.nodes:
-            if before.get(node):
-                raise Fail(
-                    f'no node of the name {node} before the check starts one',
-                    f'{node} is running already',
-                    RUNS_ALREADY,
-                )
+        _refuse_running(self.nodes, before)
         with self.probe.uncounted():
             left = self.probe.time_left
             hanging = next((n for n in self.nodes if not wait_until_spun(helper, n, left)), '')
@@ -153,6 +147,26 @@ class System:
         return [line.removeprefix(start) for line in output if line.startswith(start)]
 
 
+def _refuse_running(nodes: Iterable[str], before: Mapping[str, int]) -> None:
+    for node in nodes:
+        if before.get(node):
+            raise Fail(
+                f'no node of the name {node} before the check starts one',
+                f'{node} is running already',
+                RUNS_ALREADY,
+            )
+
+
+class Names(Clause[System]):
+    """A clause that names nodes which the file has to start.
+
+    Attributes:
+        nodes: Their full names, with the names of arguments in braces.
+    """
+
+    nodes: Sequence[str]
+
+
 @dataclass(frozen=True)
 class Launched(Stage[System]):
     """A launch file in the learner's workspace, in XML, YAML or Python.
@@ -175,7 +189,8 @@ class Launched(Stage[System]):
     ) -> Iterator[Iterator[System]]:
         """Launch it with each set of arguments, and end it after each."""
         path = self._path()
-        played = self._play(probe, path)
+        names = [node for each in clauses if isinstance(each, Names) for node in each.nodes]
+        played = self._play(probe, path, names)
         try:
             yield played
         finally:
@@ -198,16 +213,26 @@ class Launched(Stage[System]):
             raise NotAttempted(NOTHING_YET)
         return found[-1]
 
-    def _play(self, probe: Probe, path: Path) -> Generator[System, None, None]:
+    def _play(
+        self, probe: Probe, path: Path, names: Sequence[str]
+    ) -> Generator[System, None, None]:
         for arguments in self.arguments():
-            with _launched(probe, path, arguments) as system:
-                system.values = {**self.defaults, **arguments}
+            values = {**self.defaults, **arguments}
+            wanted = [name.format_map(values) for name in names]
+            with _launched(probe, path, arguments, wanted) as system:
+                system.values = values
                 yield system
 
 
 @contextmanager
-def _launched(probe: Probe, path: Path, arguments: Mapping[str, str]) -> Iterator[System]:
-    """Launch a file, after the end of earlier launches of it, and end it."""
+def _launched(
+    probe: Probe, path: Path, arguments: Mapping[str, str], wanted: Sequence[str]
+) -> Iterator[System]:
+    """Launch a file, after the end of earlier launches of it, and end it.
+
+    Raises:
+        Fail: One of the nodes that are wanted is there before; nothing was launched.
+    """
     from labkit.background.runtime import runtime
     from labkit.launching.launched import Launch
     from labkit.programs.child_processes import keep, processes
@@ -217,6 +242,7 @@ def _launched(probe: Probe, path: Path, arguments: Mapping[str, str]) -> Iterato
         if isinstance(earlier, Launch) and earlier.path == str(path) and earlier.running:
             earlier.stop()
     before = Counter(node_names(probe.spun_node))
+    _refuse_running(wanted, before)
     cell = runtime.console.current_cell()
     launch = keep(Launch(f'launch of {path.name}', str(path), arguments, cell))
     system = System(probe, path, arguments, launch)
