@@ -39,6 +39,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     except LabError as error:
         print(f'labkit: {error}', file=sys.stderr)
         return 2
+    except BrokenPipeError:  # as after `| head`, which has read enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
     except KeyboardInterrupt:
         print('\nlabkit: interrupted. Repeat the command to go on.', file=sys.stderr)
         return 130
@@ -85,6 +88,12 @@ def _run(words: list[str]) -> int:
         from labkit.course.copies import restore
 
         print('\n'.join(restore(options.notebook, options.at)))
+        return 0
+    if options.command == 'docs' and options.words:
+        _enter_environment(words)
+        from labkit.course.all_words import all_words
+
+        print(*all_words(), sep='\n')
         return 0
     if options.command == 'docs':
         from labkit.course.public_names import write_page
@@ -232,6 +241,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     restore.add_argument('--at', metavar='TIME', help="such as '2026-11-26 09:4'; needs NN")
     docs = add('docs', 'Write docs/api.md and docs/faults.md anew from the code')
+    docs.add_argument('--words', action='store_true', help='list all that a learner can read')
     docs.add_argument('--site', action='store_true', help='build the documentation site instead')
     docs.add_argument('--out', default='site', metavar='DIR', help='its folder (%(default)s)')
     for name in _forwarded():

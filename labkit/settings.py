@@ -29,6 +29,7 @@ __all__ = [
     'give_environment_back',
     'in_kernel',
     'is_ros2_command',
+    'language',
     'notebook_name',
     'prepare_environment',
     'prepared_variables',
@@ -212,6 +213,13 @@ def state_dir() -> Path:
         return Path(home)
     data = os.environ.get('XDG_DATA_HOME') or Path.home() / '.local' / 'share'
     return Path(data) / 'labkit'
+
+
+def language() -> str:
+    """Return the language of the lessons, such as `'de'`: `$LABKIT_LANGUAGE`; `''` is English."""
+    name = os.environ.get('LABKIT_LANGUAGE', '')
+    # It becomes the name of a folder.
+    return name if name.isascii() and name.isalpha() else ''
 
 
 def variant_seed() -> str:

@@ -5,40 +5,39 @@ How to write the exercises of a lesson
 
 The exercises of `notebooks/04_odds.ipynb` are in the package `labkit.lessons.odds`, which defines
 `LESSON`. That is all: lessons are found by name. Types of messages are given by name
-(`'std_msgs/msg/Int16'`), so it needs no ROS to be imported. A small one, complete::
+(`'std_msgs/msg/Int16'`), so it needs no ROS to be imported. It lists the modules of its exercises,
+and its quizzes::
 
-    """The exercises of lesson 04."""
+    """The exercises and the quiz of `04_odds.ipynb`."""
 
-    from labkit.exercises import Choice, Exercise, Lesson, Quiz, Solution, right, wrong
-    from labkit.exercises.clauses import Publishes, Says
-
-    INT16 = 'std_msgs/msg/Int16'
+    from labkit.exercises import Lesson
+    from labkit.lessons.odds import ones
+    from labkit.lessons.odds.quiz import QUIZ
 
     LESSON = Lesson(
         'odds',
         '04_odds.ipynb',
         title='Odd numbers',
         teaches='numbers on topics, types and their limits, queues; finding a silent fault',
-        exercises=[
-            Exercise(
-                name='ones',
-                task='Publish the Int16 1 on /ones, ten times a second.',
-                clauses=[Publishes('/ones', 10.0, INT16), Says('/ones', 1)],
-                hints=['What calls a function again and again?', 'create_timer(0.1, ...)'],
-                answer=Solution(__file__, 'ones.py', 'A timer leaves the node free.'),
-            ),
-        ],
-        quizzes=[
-            Quiz(
-                'types',
-                Choice(
-                    'What can a message of type Int16 hold?',
-                    right('a number from -32768 to 32767', '16 bits give 65536 numbers.'),
-                    wrong('any int of Python', 'An int of Python has no limits, an Int16 has.'),
-                ),
-            ),
-        ],
+        exercises=[ones],
+        quizzes=[QUIZ],
     )
+
+An exercise is a judge, `ones.py`, and its words, `ones.yaml`, see `words`::
+
+    """Exercise: the number 1, without end."""
+
+    from labkit.exercises import Exercise, words_of
+    from labkit.exercises.clauses import Publishes, Says
+
+    WORDS = words_of(__file__)
+
+    exercise = Exercise(
+        words=WORDS,
+        clauses=[Publishes('/ones', 10.0, 'std_msgs/msg/Int16'), Says('/ones', 1)],
+    )
+
+So is a quiz, which needs Python for what the graph tells alone: `QUIZ = Quiz.of(WORDS, 'types')`.
 
 The solution is the file `solutions/ones.py` beside that module, as a learner would write it in the
 cell, formatted and linted as all code is. It imports `labkit as lab` as a file must, and is shown

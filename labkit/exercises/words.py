@@ -33,30 +33,39 @@ mean. A quiz is a list of questions::
           id: publishers
           why: The graph says so.
           otherwise: Ask the graph.
+
+The files beside the modules are English. Another language is a folder of files of the same names,
+`translations/de/lessons/odds/evens.yaml`, with the same keys and the sentences only. What it lacks
+stays English; `lacking` tells what that is.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import yaml
 
+from labkit import settings
 from labkit.errors import LabError, did_you_mean
 from labkit.exercises.mistakes import Mistake
 from labkit.files import read_limited
 
-__all__ = ['Words', 'words_of']
+__all__ = ['TRANSLATIONS', 'Words', 'files', 'lacking', 'sentences', 'words_of']
 
+ROOT = Path(__file__).resolve().parent.parent
+TRANSLATIONS = ROOT / 'translations'
 # Deeper than any form of a file.
 MAX_DEPTH = 20
 # What a file may hold: a text, or one as it is; a list of one form; a mapping of one, or of named
 # ones.
 _TEXT, _RAW = 'text', 'raw'
 _MISTAKE = {'why': _TEXT, 'todo': _TEXT, 'change': {'': _RAW}, 'raises': _RAW}
+# What is the same in each language.
+_SAME = ('answer', 'change', 'id', 'raises', 'tolerance')
 # Its kind, with the text; see `Question`.
 _QUESTION = {
     **dict.fromkeys(('choice', 'several', 'number', 'word'), _RAW),
@@ -150,6 +159,9 @@ def words_of(module: str) -> Words:
     """
     path = Path(module).with_suffix('.yaml')
     data = _read(path)
+    other = _translation(path, settings.language())
+    if other is not None:
+        data = _merged(data, _read(other))
     mistakes = {
         name: Mistake(
             name,
@@ -161,6 +173,59 @@ def words_of(module: str) -> Words:
         for name, parts in data.get('mistakes', {}).items()
     }
     return Words(path, data, mistakes)
+
+
+def files() -> list[Path]:
+    """Return the files of words of the course, in English."""
+    rooms = (ROOT / 'exercises', ROOT / 'lessons')
+    return sorted(path for room in rooms for path in room.rglob('*.yaml'))
+
+
+def sentences(path: Path) -> dict[str, str]:
+    """Return what a learner can read of a file of words, by keys such as `'hints.2'`."""
+    return dict(_sentences(_read(path)))
+
+
+def lacking(language: str) -> list[str]:
+    """Return what a language lacks, and what it has that English has not: a line for each."""
+    found = []
+    for path in files():
+        other = _translation(path, language)
+        here, there = sentences(path), sentences(other) if other is not None else {}
+        name = path.relative_to(ROOT)
+        found += [f'{name} {key}: lacks {here[key]!r}' for key in here if key not in there]
+        found += [f'{name} {key}: is not in English' for key in there if key not in here]
+    return found
+
+
+def _translation(path: Path, language: str) -> Path | None:
+    """Return the file with the same words in another language, None if there is none."""
+    if not language or not path.is_relative_to(ROOT):
+        return None
+    other = TRANSLATIONS / language / path.relative_to(ROOT)
+    return other if other.exists() else None
+
+
+def _sentences(data: Any, key: str = '') -> Iterator[tuple[str, str]]:
+    if isinstance(data, str):
+        yield key, data
+        return
+    pairs = data.items() if isinstance(data, Mapping) else enumerate(data, start=1)
+    for name, part in pairs:
+        if name not in _SAME:
+            yield from _sentences(part, f'{key}.{name}' if key else str(name))
+
+
+def _merged(data: Any, other: Any) -> Any:
+    """Return words with the sentences of another language in their places, as far as it goes."""
+    if isinstance(data, Mapping):
+        return {
+            name: _merged(part, other[name]) if name in other and name not in _SAME else part
+            for name, part in data.items()
+        }
+    if isinstance(data, list):
+        return [*map(_merged, data, other), *data[len(other) :]]
+    return other
 
 
 def _read(path: Path) -> Mapping[str, Any]:

@@ -8,9 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from labkit import settings
 from labkit.errors import LabError
-from labkit.exercises import learner_errors
-from labkit.exercises.words import Words, words_of
+from labkit.exercises import learner_errors, words
+from labkit.exercises.words import TRANSLATIONS, Words, files, lacking, words_of
 
 LABKIT = Path(__file__).resolve().parent.parent.parent / 'labkit'
 # The name of `**values` in a call.
@@ -43,12 +44,12 @@ def told(folder: Path, text: str) -> Words:
 
 
 def test_words_are_texts_with_the_values_of_the_module(tmp_path: Path) -> None:
-    words = told(tmp_path, EVENS).of(step=1)
-    assert words.task == 'Add 1.'
-    assert words.clause('answers') == 'each number plus 1'
-    assert words.hints == ['Add 1 to {it}.', 'Publish.']
-    assert words.reason == 'One goes out for each one.'
-    mistake = words.mistake('test-evens/no', lambda n: n + 1)
+    evens = told(tmp_path, EVENS).of(step=1)
+    assert evens.task == 'Add 1.'
+    assert evens.clause('answers') == 'each number plus 1'
+    assert evens.hints == ['Add 1 to {it}.', 'Publish.']
+    assert evens.reason == 'One goes out for each one.'
+    mistake = evens.mistake('test-evens/no', lambda n: n + 1)
     assert (mistake.why, mistake.of(more=2).step) == ('no', 'Add 2.0.')
     assert mistake.change == [('        data\n', ''), ('data + 1', 'abs(data) + 1')]
     assert (mistake.raises, mistake.answer(1)) == ("{'data'}", 2)
@@ -83,12 +84,12 @@ def test_wrong_file_is_refused_with_its_line(
 
 
 def test_what_is_not_written_is_named_with_what_is(tmp_path: Path) -> None:
-    words = told(tmp_path, EVENS)
+    evens = told(tmp_path, EVENS)
     for ask, said in (
-        (lambda: words.mistake('test-evens/not'), "no mistake 'test-evens/not'"),
-        (lambda: words.clause('answer'), "no clause 'answer'"),
+        (lambda: evens.mistake('test-evens/not'), "no mistake 'test-evens/not'"),
+        (lambda: evens.clause('answer'), "no clause 'answer'"),
         (lambda: told(tmp_path, 'task: a').reason, "no 'reason'"),
-        (lambda: words.task, "'task' of .*evens.yaml lacks a value for 'step'"),
+        (lambda: evens.task, "'task' of .*evens.yaml lacks a value for 'step'"),
     ):
         with pytest.raises(LabError, match=said):
             ask()
@@ -101,11 +102,56 @@ def test_tower_of_lists_is_refused(tmp_path: Path) -> None:
         told(tmp_path, 'task: ' + '[' * 100_000)
 
 
-def files() -> list[Path]:
-    """Return the files of words."""
-    return sorted(
-        path for room in ('exercises', 'lessons') for path in (LABKIT / room).rglob('*.yaml')
-    )
+GERMAN = """
+task: Zähle {step} dazu.
+hints:
+  - Zähle {step} zu {{it}}.
+mistakes:
+  test-german/no:
+    why: nein
+    change:
+      data + 1: data
+  test-german/old:
+    why: weg
+"""
+
+
+def test_another_language_is_a_folder_of_the_same_files(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(words, 'ROOT', tmp_path)
+    monkeypatch.setattr(words, 'TRANSLATIONS', tmp_path / 'translations')
+    monkeypatch.setenv('LABKIT_LANGUAGE', 'de')
+    lesson, other = (tmp_path / name for name in ('lessons', 'translations/de/lessons'))
+    lesson.mkdir()
+    other.mkdir(parents=True)
+    (other / 'evens.yaml').write_text(GERMAN)
+    found = told(lesson, EVENS.replace('test-evens', 'test-german')).of(step=1)
+    assert (found.task, found.hints) == ('Zähle 1 dazu.', ['Zähle 1 zu {it}.', 'Publish.'])
+    assert found.clause('answers') == 'each number plus 1'
+    mistake = found.mistake('test-german/no')
+    assert (mistake.why, mistake.todo) == ('nein', 'Add {more:.1f}.')
+    assert dict(mistake.change)['data + 1'] == 'abs(data) + 1'
+    file = str(Path('lessons', 'evens.yaml'))
+    assert lacking('de') == [
+        f"{file} clauses.answers: lacks 'each number plus {{step}}'",
+        f"{file} hints.2: lacks 'Publish.'",
+        f"{file} reason: lacks 'One goes out for each one.'",
+        f"{file} mistakes.test-german/no.todo: lacks 'Add {{more:.1f}}.'",
+        f'{file} mistakes.test-german/old.why: is not in English',
+    ]
+    assert len(lacking('fr')) == 7
+
+
+@pytest.mark.parametrize('name', ['', '../de', 'd e', 'ü'])
+def test_language_is_the_name_of_a_folder(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv('LABKIT_LANGUAGE', name)
+    assert settings.language() == ''
+
+
+def test_no_language_lacks_a_sentence() -> None:
+    found = [line for each in TRANSLATIONS.glob('*') for line in lacking(each.name)]
+    assert not found, '\n'.join(found)
 
 
 def trees() -> dict[Path, ast.Module]:
@@ -118,14 +164,14 @@ def trees() -> dict[Path, ast.Module]:
 def test_all_that_is_written_is_used(path: Path) -> None:
     module = path.with_suffix('.py')
     assert module.exists(), f'{path} is the words of no module'
-    words, tree = words_of(str(module)), ast.parse(module.read_text())
+    said, tree = words_of(str(module)), ast.parse(module.read_text())
     literals = {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)}
     # A program that raises an error is told by the error: no judge looks for it.
-    written = [name for name, mistake in words.mistakes.items() if not mistake.raises]
-    written += words.data.get('clauses', {})
-    written += words.data.get('quizzes', {})
+    written = [name for name, mistake in said.mistakes.items() if not mistake.raises]
+    written += said.data.get('clauses', {})
+    written += said.data.get('quizzes', {})
     assert [name for name in written if name not in literals] == []
-    if {'task', 'hints', 'reason'} & words.data.keys():
+    if {'task', 'hints', 'reason'} & said.data.keys():
         assert re.search(r'\bExercise\(\s*words=', module.read_text())
 
 

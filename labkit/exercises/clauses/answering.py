@@ -38,7 +38,7 @@ WORDS = words_of(__file__)
 # How soon an answer has to come, s. A node may keep what it hears until its timer ticks.
 WITHIN_SEC = 1.0
 # The same in words of a task.
-WITHIN = f'within {"a second" if WITHIN_SEC == 1.0 else f"{WITHIN_SEC:g} seconds"}'
+WITHIN = WORDS.of(seconds=f'{WITHIN_SEC:g}').clause('a-second' if WITHIN_SEC == 1.0 else 'within')
 # So often an answer comes once more only where something repeats it.
 MANY = 3
 # How long the first answer of a node may take, if it makes its publisher only then, s.

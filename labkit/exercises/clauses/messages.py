@@ -11,8 +11,11 @@ from labkit.exercises.clauses.base import Evidence, GraphClause, Stream
 from labkit.exercises.expect.values import show, text_trouble
 from labkit.exercises.mistakes import Mistake, recognise
 from labkit.exercises.verdict import Fail
+from labkit.exercises.words import words_of
 
 __all__ = ['HasText', 'Messages', 'Says']
+
+WORDS = words_of(__file__)
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +49,7 @@ class Says(GraphClause):
         field: Name of the field.
         by: Full name of the node; any node if empty.
         mistakes: What a wrong node may say instead, each time: the value of a model.
-        words: In words of the task, with `{}` for the value.
+        words: What is asked for, in words of the task; by default that each says the value.
     """
 
     topic: str
@@ -54,12 +57,12 @@ class Says(GraphClause):
     field: str = 'data'
     by: str = ''
     mistakes: Sequence[Mistake] = ()
-    words: str = 'each message says `{!r}`'
+    words: str = ''
 
     @property
     def text(self) -> str:
         """What is asked for."""
-        return self.words.format(self.value)
+        return self.words or WORDS.of(value=repr(self.value)).clause('says')
 
     def judge(self, evidence: Evidence) -> str:
         """Judge the values."""
@@ -103,7 +106,7 @@ class HasText(GraphClause):
     @property
     def text(self) -> str:
         """What is asked for."""
-        return 'no message is empty'
+        return WORDS.clause('has-text')
 
     def judge(self, evidence: Evidence) -> str:
         """Judge the texts."""

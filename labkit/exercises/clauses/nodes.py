@@ -10,8 +10,11 @@ from labkit.exercises.clauses.base import Evidence, GraphClause
 from labkit.exercises.expect import spinning
 from labkit.exercises.verdict import Fail
 from labkit.exercises.what_is_asked import NODE, SUBSCRIPTION, Role
+from labkit.exercises.words import words_of
 
 __all__ = ['Named', 'NobodyElse', 'Runs', 'Subscribes']
+
+WORDS = words_of(__file__)
 
 
 @dataclass(frozen=True)
@@ -27,7 +30,7 @@ class Named(GraphClause):
     @property
     def text(self) -> str:
         """What is asked for."""
-        return f'the name of the node is `{self.node.lstrip("/")}`'
+        return WORDS.of(node=self.node.lstrip('/')).clause('named')
 
     @property
     def roles(self) -> dict[Role, str]:
@@ -56,7 +59,7 @@ class Subscribes(GraphClause):
     @property
     def text(self) -> str:
         """What is asked for."""
-        return f'subscribe to `{self.topic}` (`{self.msg_type}`)'
+        return WORDS.of(topic=self.topic, msg_type=self.msg_type).clause('subscribes')
 
     @property
     def roles(self) -> dict[Role, str]:
@@ -83,7 +86,7 @@ class NobodyElse(GraphClause):
     @property
     def text(self) -> str:
         """What is asked for."""
-        return f'no other node publishes on `{self.topic}`'
+        return WORDS.of(topic=self.topic).clause('nobody-else')
 
     def judge(self, evidence: Evidence) -> str:
         """Look who publishes."""

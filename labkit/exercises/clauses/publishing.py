@@ -18,6 +18,7 @@ from labkit.exercises.mistakes import Mistake
 from labkit.exercises.observation import Life, live
 from labkit.exercises.verdict import Fail, NotAttempted
 from labkit.exercises.what_is_asked import PUBLISHER, Role
+from labkit.exercises.words import words_of
 
 if TYPE_CHECKING:
     from labkit.exercises.history import Note
@@ -25,10 +26,12 @@ if TYPE_CHECKING:
 
 __all__ = ['OFF', 'Publishes', 'in_words', 'often']
 
+WORDS = words_of(__file__)
+
 # How far a rate may be off, as a part of it, where time is virtual.
 TOLERANCE = 0.02
 # The same in words of a task.
-OFF = f'up to {100 * TOLERANCE:.0f} % off'
+OFF = WORDS.of(percent=f'{100 * TOLERANCE:.0f}').clause('off')
 # How far a single gap may be off: a node may look at the clock in steps of its own, five in a
 # period at least.
 GAP_TOLERANCE = 0.2
@@ -38,20 +41,23 @@ HELD_UP = 2
 FIRST_CALLS = 3
 # What was seen, and what is wrong with it.
 Trouble = tuple[str, Mistake]
-_WORDS: dict[float, str] = {3: 'three', 4: 'four', 5: 'five', 8: 'eight', 10: 'ten', 20: 'twenty'}
-_TIMES: dict[float, str] = {1: 'once', 2: 'twice'}
+# Numbers that have a word, and those that have one as often as something is done.
+_NUMBERS = ('3', '4', '5', '8', '10', '20')
+_TIMES = {1: 'once', 2: 'twice'}
 
 
 def in_words(number: float) -> str:
     """Return a number as a word of a task: `'ten'`; a larger one in digits."""
-    return _WORDS.get(number, f'{number:g}')
+    text = f'{number:g}'
+    return WORDS.clause(text) if text in _NUMBERS else text
 
 
 def often(hz: float) -> str:
     """Return a rate in words: `'ten times a second (10 Hz, up to 2 % off)'`."""
     if hz < 1:
-        return f'every {1 / hz:g} seconds ({OFF})'
-    return f'{_TIMES.get(hz) or f"{in_words(hz)} times"} a second ({hz:g} Hz, {OFF})'
+        return WORDS.of(period=f'{1 / hz:g}', off=OFF).clause('every')
+    told = WORDS.of(hz=f'{hz:g}', number=in_words(hz), off=OFF)
+    return told.clause(_TIMES.get(hz, 'often'))
 
 
 @dataclass(frozen=True)
@@ -84,12 +90,15 @@ class Publishes(GraphClause):
     @property
     def text(self) -> str:
         """What is asked for."""
-        who = f'`{self.by.lstrip("/")}` publishes' if self.by else 'publish'
         rate = often(self.hz)
         if self.at_least:
-            rate = f'at least {rate.partition(" (")[0]}'
-        end = '' if self.ends else ', without end'
-        return f'{who} `{self.msg_type}` on `{self.topic}`, {rate}{end}'
+            rate = WORDS.of(rate=rate.partition(' (')[0]).clause('at-least')
+        if not self.ends:
+            rate = WORDS.of(rate=rate).clause('without-end')
+        told = WORDS.of(
+            node=self.by.lstrip('/'), msg_type=self.msg_type, topic=self.topic, rate=rate
+        )
+        return told.clause('node-publishes' if self.by else 'publishes')
 
     @property
     def roles(self) -> dict[Role, str]:

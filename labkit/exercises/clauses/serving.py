@@ -12,11 +12,14 @@ from labkit.exercises.clauses.base import Evidence, GraphClause
 from labkit.exercises.observation import LIFE_SEC
 from labkit.exercises.verdict import Fail
 from labkit.exercises.what_is_asked import SERVICE, Role
+from labkit.exercises.words import words_of
 
 if TYPE_CHECKING:
     from labkit.exercises.probe import Probe
 
 __all__ = ['Call', 'Responds', 'Serves']
+
+WORDS = words_of(__file__)
 
 # How long a client may take to find its server, and a response to come, s of real time.
 READY_SEC = 5.0
@@ -42,8 +45,8 @@ class Serves(GraphClause):
     @property
     def text(self) -> str:
         """What is asked for."""
-        what = 'serve the action' if '/action/' in self.srv_type else 'serve'
-        return f'{what} `{self.service}` (`{self.srv_type}`)'
+        what = 'serves-action' if '/action/' in self.srv_type else 'serves'
+        return WORDS.of(service=self.service, srv_type=self.srv_type).clause(what)
 
     @property
     def roles(self) -> dict[Role, str]:

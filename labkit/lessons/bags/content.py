@@ -72,7 +72,7 @@ class IsThere(Clause[Found]):
     @property
     def text(self) -> str:
         """What is asked for."""
-        return f'the bag `{self.path}` is there, and its recording has ended'
+        return WORDS.of(path=self.path).clause('is-there')
 
     def judge(self, found: Found) -> str:
         """Open it."""
@@ -98,7 +98,7 @@ class OnlyTopic(Clause[Found]):
     @property
     def text(self) -> str:
         """What is asked for."""
-        return f'it has the topic `{self.topic}` (`{self.msg_type}`), and no other one'
+        return WORDS.of(topic=self.topic, msg_type=self.msg_type).clause('only-topic')
 
     def judge(self, found: Found) -> str:
         """Look at its topics, and read the messages."""

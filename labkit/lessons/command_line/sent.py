@@ -108,7 +108,7 @@ class OnTopic(Clause[Sent]):
     @property
     def text(self) -> str:
         """What is asked for."""
-        return f'on `{self.topic}` and no other topic, with the type `{self.msg_type}`'
+        return WORDS.of(topic=self.topic, msg_type=self.msg_type).clause('on-topic')
 
     @property
     def roles(self) -> dict[Role, str]:

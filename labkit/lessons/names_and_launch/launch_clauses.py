@@ -39,7 +39,7 @@ class Launches(Clause[System]):
     @property
     def text(self) -> str:
         """What is asked for."""
-        return f'`{self._name}.launch.xml` is launched without a fault'
+        return WORDS.of(name=self._name).clause('launches')
 
     def judge(self, system: System) -> str:
         """Raise Fail if nothing was started."""

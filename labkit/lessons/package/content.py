@@ -229,7 +229,7 @@ class Built(Clause[Work]):
     @property
     def text(self) -> str:
         """What is asked for."""
-        return f'the package `{self.package}` is in `src`, and its build is up to date'
+        return WORDS.of(package=self.package).clause('built')
 
     def judge(self, work: Work) -> str:
         """Raise if it is not there, or not built."""
@@ -268,7 +268,8 @@ class Runs(Clause[Work]):
     @property
     def text(self) -> str:
         """What is asked for."""
-        return f'`ros2 run {self.package} {self.program}` runs a node of the name `{self.node}`'
+        told = WORDS.of(package=self.package, program=self.program, node=self.node)
+        return told.clause('runs')
 
     def judge(self, work: Work) -> str:
         """Start it, and raise Fail unless its node comes."""

@@ -37,8 +37,8 @@ class Running(Runs):
     @property
     def text(self) -> str:
         """What is asked for."""
-        run = f'ros2 run {self.package} {self.program}'
-        return f'`{run}` runs in a terminal: the node `/{self.node}` is on the graph'
+        told = WORDS.of(package=self.package, program=self.program, node=self.node)
+        return told.clause('runs-in-a-terminal')
 
     def judge(self, work: Work) -> str:
         """Raise Fail unless it is there, started from what is built now."""

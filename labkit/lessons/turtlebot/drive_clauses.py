@@ -91,10 +91,8 @@ class Begins(Clause[Drive]):
     @property
     def text(self) -> str:
         """What is asked for."""
-        return (
-            f'begin within {BEGIN_SEC} s of each message (`{short(self.msg_type)}`) on '
-            f'`{self.topic}`, and only then'
-        )
+        told = WORDS.of(within=BEGIN_SEC, msg_type=short(self.msg_type), topic=self.topic)
+        return told.clause('begins')
 
     @property
     def roles(self) -> dict[Role, str]:
@@ -151,7 +149,7 @@ class Hears(Clause[Drive]):
     @property
     def text(self) -> str:
         """What is asked for."""
-        return f'subscribe to `{self.topic}` (`{short(self.msg_type)}`)'
+        return WORDS.of(topic=self.topic, msg_type=short(self.msg_type)).clause('hears')
 
     @property
     def roles(self) -> dict[Role, str]:

@@ -46,7 +46,7 @@ TOO_EARLY = WORDS.mistake('wall/too-early')
 class _Scans(Hears):
     @property
     def text(self) -> str:
-        return f'{super().text}, *best effort*'
+        return WORDS.of(hears=super().text).clause('best-effort')
 
     def find(self, seen: Drive) -> None:
         super().find(seen)
