@@ -44,6 +44,9 @@ def _judge(stream: Stream, first: int, step: int, numbers: str) -> str:
         if start.number and began != first:
             told = f'{values[0]} as message number {start.number}, so the first one said {began}'
             found = ANOTHER_START
+    early = stream.values('data', earlier=True)[: len(stream.earlier)]
+    if found is None and early != [first + step * number for number in range(len(early))]:
+        told, found = f'{expect.show(early)} before the check', ANOTHER_START
     if found is not None:
         raise Fail(
             f'odd numbers on {TOPIC}: {numbers}',

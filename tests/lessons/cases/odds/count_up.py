@@ -68,6 +68,12 @@ ANSWERS = [
             '            self.on_timer()\n',
         ),
     ),
+    wrong(
+        'other numbers at its beginning',
+        'The count does not start with 1.',
+        ('msg.data = self.number', 'msg.data = max(self.number, 5)'),
+        ('Odds())\n', 'Odds())\nlab.wait_until(lambda: odds.number > 9)\n'),
+    ),
     right('a fast timer, and every fourth call counts'),
     right(
         'in a namespace, with the full name of the topic',
