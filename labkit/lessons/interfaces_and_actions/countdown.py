@@ -8,6 +8,7 @@ from itertools import pairwise
 
 from labkit.exercises import Exercise, Fail, anything, words_of
 from labkit.exercises.clauses import Goal, Pursues, Pursuit, Serves
+from labkit.exercises.draws import MANY
 from labkit.exercises.expect import apart
 from labkit.lessons.interfaces_and_actions.goals import (
     ACTION,
@@ -64,8 +65,11 @@ def _feeds_back(pursuits: Sequence[Pursuit]) -> None:
 
 
 def _draw() -> list[Goal]:
-    """Return goals: some short ones, the shortest, and one that is longer."""
-    return fibonacci_goals(random.randint(4, 6), random.randint(2, 3), 0, 1, random.randint(8, 12))
+    """Return goals: some short ones, the shortest, one that is longer, and many in the end."""
+    some = random.randint(4, 6), random.randint(2, 3), 0, 1, random.randint(8, 12)
+    # In real time they would take too long.
+    many = [Goal({'order': random.randint(0, 1)}, is_long=True) for _ in range(MANY)]
+    return [*fibonacci_goals(*some), *many]
 
 
 def _draw_canceled() -> list[Goal]:

@@ -10,6 +10,7 @@ from labkit.exercises.expect import apart
 
 __all__ = [
     'ACTION',
+    'LONG',
     'expect_ending',
     'expect_result',
     'feedbacks',

@@ -8,9 +8,10 @@ from dataclasses import replace
 
 from labkit.exercises import Exercise, Fail, words_of
 from labkit.exercises.clauses import Goal, Pursues, Pursuit, Serves
-from labkit.exercises.draws import draw_outside
+from labkit.exercises.draws import MANY, draw_outside
 from labkit.lessons.interfaces_and_actions.goals import (
     ACTION,
+    LONG,
     expect_ending,
     fibonacci_goals,
     order_of,
@@ -45,6 +46,12 @@ def _draw() -> list[Goal]:
     return [*near, *(Goal({'order': order}, after_rejection=True) for order in far)]
 
 
+def _draw_inside() -> list[Goal]:
+    """Return goals that are accepted, so many that a server may have had enough."""
+    many = random.choices(range(LEAST, LONG), k=MANY)
+    return fibonacci_goals(random.randint(5, 9), random.randint(2, 4), LEAST, MOST, *many)
+
+
 def _accepts(pursuits: Sequence[Pursuit]) -> None:
     outside = [pursuit for pursuit in pursuits if order_of(pursuit) not in ALLOWED]
     # What is wrong in the middle is not to look like a matter of limits.
@@ -76,7 +83,7 @@ exercise = Exercise(
         Pursues(
             NAME,
             WORDS.clause('pursues-2'),
-            lambda: fibonacci_goals(random.randint(5, 9), random.randint(2, 4), LEAST, MOST),
+            _draw_inside,
             results(lambda order: list(range(LEAST, order + 1))),
         ),
     ),

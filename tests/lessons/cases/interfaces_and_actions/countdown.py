@@ -77,6 +77,16 @@ ANSWERS = [
         ),
     ),
     wrong(
+        'thirty goals and no more',
+        'execute_callback said abort()',
+        (
+            '        numbers = []\n',
+            "        self.count = getattr(self, 'count', 0) + 1\n"
+            '        if self.count > 30:\n            goal_handle.abort()\n'
+            '            return Fibonacci.Result()\n        numbers = []\n',
+        ),
+    ),
+    wrong(
         'looks each ten numbers',
         'It goes on to count for a while',
         (

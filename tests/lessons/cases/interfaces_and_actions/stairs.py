@@ -48,6 +48,15 @@ ANSWERS = [
         ('1 <= goal.order <= 20', '1 <= goal.order <= 20 or goal.order > 1000'),
         (', goal_handle.request.order + 1', ', min(goal_handle.request.order, 20) + 1'),
     ),
+    wrong(
+        'thirty goals and no more',
+        'it was rejected',
+        (
+            '        if 1 <=',
+            "        self.count = getattr(self, 'count', 0) + (1 <= goal.order <= 20)\n"
+            '        if self.count <= 30 and 1 <=',
+        ),
+    ),
     wrong('no lower limit', 'is rejected', ('1 <= goal.order <= 20', 'goal.order <= 20')),
     wrong(
         'True in the place of ACCEPT',
