@@ -29,6 +29,8 @@ WORDS = words_of(__file__)
 
 EMPTY = '<launch>\n  <!-- ... -->\n</launch>'
 _FORMS = ('xml', 'yaml', 'py')
+# So long a program that is about to make a node may wait for something else, s.
+AT_WORK_SEC = 1.0
 
 RUNS_ALREADY = WORDS.mistake('launch/runs-already')
 DIED = WORDS.mistake('launch/died')
@@ -113,6 +115,7 @@ class System:
 
         helper = self.probe.spun_node
         _refuse_running(self.nodes, before)
+        self._refuse_late()
         with self.probe.uncounted():
             left = self.probe.time_left
             hanging = next((n for n in self.nodes if not wait_until_spun(helper, n, left)), '')
@@ -131,6 +134,22 @@ class System:
                 for program in self.launch.processes:
                     if program.pid & 0xFFFF == process_id(end.gid):
                         self.programs[end.node] = program
+
+    def _refuse_late(self) -> None:
+        """Raise NotAttempted if a program is about to make its node: the machine is busy."""
+        from labkit.programs.child_processes import gids_in
+        from labkit.programs.children import is_at_work
+        from labkit.rosgraph.whose import process_id
+
+        there = {process_id(gid) for gid in gids_in(self.probe.spun_node)}
+        for one in self.launch.processes:
+            is_late = one.is_node and one.exit_code is None and one.pid & 0xFFFF not in there
+            # Who sleeps in a loop of its own, and makes no node, is not about to make one.
+            if is_late and self.probe.wait(lambda: is_at_work(one.pid), AT_WORK_SEC):  # noqa: B023
+                raise NotAttempted(
+                    f'Too early to tell: {one.name} was started, and its node is not there yet. '
+                    'Run this cell again.'
+                )
 
     def _refuse_dead(self) -> None:
         for program in self.launch.processes:
