@@ -69,7 +69,11 @@ class DeclareLaunchArgument(Action):
         super().__init__(**options)
         self.name = name
         self.default_value = None if default_value is None else pieces(default_value)
-        self.choices = None if choices is None else [str(choice) for choice in choices]
+        if choices is not None and not (choices and all(isinstance(one, str) for one in choices)):
+            raise LaunchError(
+                f'choices are one or more texts, and these are {choices!r}.', place=self.place
+            )
+        self.choices = None if choices is None else list(choices)
         if description is None:
             description = f'One of: {self.choices}' if choices else 'no description given'
         elif choices:
@@ -281,10 +285,16 @@ class IncludeLaunchDescription(Action):
         self,
         launch_description_source: Any,
         *,
-        launch_arguments: Mapping[Any, Any] | Iterable[tuple[Any, Any]] | None = None,
+        launch_arguments: Iterable[tuple[Any, Any]] | None = None,
         **options: Any,
     ) -> None:
         super().__init__(**options)
+        if isinstance(launch_arguments, Mapping):
+            raise LaunchError(
+                'launch_arguments are pairs, and this is a dictionary.',
+                todo='launch_arguments={...}.items()',
+                place=self.place,
+            )
         source = launch_description_source
         self.source = source if isinstance(source, Source) else Source(source)
         self.launch_arguments = pairs_in(launch_arguments)
@@ -388,6 +398,12 @@ class TimerAction(Action):
         **options: Any,
     ) -> None:
         super().__init__(**options)
+        if isinstance(period, int):
+            raise LaunchError(
+                f'The period of a timer is a float, and this is {period!r}.',
+                todo=f'period={float(period)}',
+                place=self.place,
+            )
         self.period, self.cancel_on_shutdown = period, cancel_on_shutdown
         self.actions = list(actions)
 
@@ -413,6 +429,11 @@ class RegisterEventHandler(Action):
 
     def __init__(self, event_handler: BaseEventHandler, **options: Any) -> None:
         super().__init__(**options)
+        if not isinstance(event_handler, BaseEventHandler):
+            raise LaunchError(
+                f'RegisterEventHandler takes an event handler, and this is {event_handler!r}.',
+                place=self.place,
+            )
         if isinstance(getattr(event_handler, 'entities', None), Action):
             raise LaunchError('entities of an EventHandler is a list.', place=self.place)
         self.event_handler = event_handler
@@ -479,8 +500,8 @@ def declared(
     for action in actions:
         if isinstance(action, ResetLaunchConfigurations):
             return  # what follows can not be given from outside
-        if action.condition is not None:
-            continue
+        if not isinstance(action, Action) or action.condition is not None:
+            continue  # what is no action is told when its turn comes
         if isinstance(action, DeclareLaunchArgument):
             yield action, includes
         around = (*includes, action) if isinstance(action, IncludeLaunchDescription) else includes

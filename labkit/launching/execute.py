@@ -171,6 +171,11 @@ class ExecuteLocal(Action):
             )
         self.process_description = process_description
         self.options = _Options(**options)
+        if isinstance(self.options.respawn, str):
+            raise LaunchError(
+                f'respawn is True, False or a substitution, and this is {self.options.respawn!r}.',
+                place=self.place,
+            )
         self.on_exit = on_exit
         self.process_details: dict[str, Any] | None = None
         self._executed = False

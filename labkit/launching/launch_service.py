@@ -90,10 +90,13 @@ class Service:
         self._timers: dict[asyncio.TimerHandle, Timer] = {}
         self._asked_to_end = self._shutting_down = self._interrupted = False
         self._code = 0
+        self._ended_by: int | None = None
         self._log: Any = None
 
     def run(self) -> int:
         """Run it, and return the exit code: 1 if something went wrong in the launch itself.
+
+        A signal that ends it, but Ctrl-C, ends the process too, when all programs have ended.
 
         Raises:
             LabError: Something is wrong in the files. Nothing was started.
@@ -115,6 +118,9 @@ class Service:
             stack.callback(self._kill_all)
             loop.call_soon(self._begin)
             loop.run_until_complete(self._done)
+        if self._ended_by is not None:  # as if nobody had handled it
+            signal.signal(self._ended_by, signal.SIG_DFL)
+            os.kill(os.getpid(), self._ended_by)
         return self._code
 
     def _on_error(self, _: Any, context: dict[str, Any]) -> None:
@@ -350,7 +356,7 @@ class Service:
     def _on_sigterm(self, number: int) -> None:
         name = signal.Signals(number).name
         self._say('ERROR', 'launch', f'ended by {name}')
-        self._code = 1
+        self._ended_by = number
         self._emit(events.Shutdown(name))
         self._settle()
         self._end_if_idle()

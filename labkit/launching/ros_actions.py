@@ -16,6 +16,7 @@ from labkit.launching.model import (
     Context,
     LaunchError,
     Substitution,
+    Text,
     check_namespace,
     check_node_name,
     perform,
@@ -127,21 +128,32 @@ class Node(ExecuteProcess):
         name: Any = None,
         namespace: Any = None,
         exec_name: Any = None,
-        parameters: Sequence[Any] | None = None,
+        parameters: list[Any] | None = None,
         remappings: Iterable[tuple[Any, Any]] | None = None,
-        ros_arguments: Iterable[Any] | None = None,
+        ros_arguments: list[Any] | None = None,
         arguments: Iterable[Any] | None = None,
         **options: Any,
     ) -> None:
         super().__init__(cmd=[], name=exec_name, **options)
+        if not isinstance(ros_arguments or [], list):
+            raise LaunchError('ros_arguments is a list of texts.', place=self.place)
         self.executable = pieces(executable)
         self.package = None if package is None else pieces(package)
         self.node_name = None if name is None else pieces(name)
         self.node_namespace = None if namespace is None else pieces(namespace)
         self.parameters = _parameters(parameters or [], self)
-        self.remappings = [(pieces(old), pieces(new)) for old, new in remappings or ()]
+        self.remappings = [self._pair(one) for one in remappings or ()]
         self.ros_arguments = [pieces(word) for word in ros_arguments or ()]
         self.arguments = [pieces(word) for word in arguments or ()]
+
+    def _pair(self, given: Any) -> tuple[Text, Text]:
+        if not isinstance(given, tuple) or len(given) != 2:
+            raise LaunchError(
+                f'remappings are pairs of texts, and one is {given!r}.',
+                todo="remappings=[('old', 'new'), ...], with round brackets",
+                place=self.place,
+            )
+        return pieces(given[0]), pieces(given[1])
 
     def words(self, context: Context) -> tuple[str, list[str | Written]]:
         namespace = joined_namespace(
@@ -318,11 +330,12 @@ def kind_of(value_type: Any) -> str:
     raise LaunchError(f'{value_type!r} is no type of a parameter.')
 
 
-def _parameters(given: Sequence[Any], node: Action) -> list[Any]:
-    if isinstance(given, (str, Mapping)) or not isinstance(given, Sequence):
+def _parameters(given: Any, node: Action) -> list[Any]:
+    if not isinstance(given, list):
+        items = list(given) if isinstance(given, tuple) else [given]
         raise LaunchError(
             'parameters is a list of dictionaries and files.',
-            todo=f'parameters=[{given!r}]',
+            todo=f'parameters={items!r}',
             place=node.place,
         )
     known = (ParameterFile, Parameter, Mapping)

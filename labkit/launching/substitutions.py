@@ -275,6 +275,8 @@ class IfElseSubstitution(Substitution):
     """`$(if condition value other)`: one of two texts."""
 
     def __init__(self, condition: Any, if_value: Any = '', else_value: Any = '') -> None:
+        if '' == if_value == else_value:
+            raise LaunchError('IfElseSubstitution has neither if_value nor else_value.')
         self.condition = pieces(condition)
         self.if_value, self.else_value = pieces(if_value), pieces(else_value)
 

@@ -42,7 +42,7 @@ def launch(args: Namespace) -> int | None:
     os.environ.update(environment())
     if args.all_output:
         os.environ['OVERRIDE_LAUNCH_PROCESS_OUTPUT'] = 'both'
-    root = IncludeLaunchDescription(Source(path), launch_arguments=pairs)
+    root = IncludeLaunchDescription(Source(path), launch_arguments=pairs.items())
     interactive = sys.stdin.isatty() and not args.noninteractive
     tell = teller()
     try:
