@@ -14,7 +14,13 @@ from labkit.errors import LabError
 from labkit.hub import leftovers
 from labkit.hub.class_list import Member
 
-__all__ = ['GROUP', 'make_accounts', 'make_class_folder', 'make_private_folder']
+__all__ = [
+    'GROUP',
+    'end_processes',
+    'make_accounts',
+    'make_class_folder',
+    'make_private_folder',
+]
 
 GROUP = 'labkit-class'
 """The group of all accounts made here, to tell them from others."""
@@ -87,7 +93,8 @@ def make_class_folder(folder: Path, members: Sequence[Member]) -> None:
 def make_private_folder(folder: Path, names: Iterable[str]) -> str:
     """Make sure that servers have a place for their certificates and temporary files.
 
-    What is left there of others goes: another account may have got their number.
+    What is left there of others goes: another account may have got their number. What those still
+    run, with a server of this hub, ends before.
 
     Args:
         folder: The folder of one class.
@@ -98,9 +105,19 @@ def make_private_folder(folder: Path, names: Iterable[str]) -> str:
     """
     folder.mkdir(exist_ok=True)
     folder.chmod(0o711)
+    names = list(names)
+    for name in _members():
+        if name not in names and (folder / name).exists():
+            end_processes(name)
     kept = {leftovers.ASIDE, *(place for name in names for place in (name, f'{name}-tmp'))}
     said = [leftovers.remove(place) for place in [*folder.iterdir()] if place.name not in kept]
     return said[-1] if said else ''
+
+
+def end_processes(name: str) -> None:
+    """End all that an account runs, also what is no child of its server, as behind `nohup`."""
+    # In one moment: one after the other they could begin anew.
+    subprocess.run(['runuser', '-u', name, '--', 'kill', '-KILL', '--', '-1'])
 
 
 def _members() -> list[str]:

@@ -13,7 +13,7 @@ from labkit.hub.class_list import read_class
 from labkit.hub.command import PORT
 from labkit.hub.containers import HUB_IP, MOUNTED, mount_class
 from labkit.hub.login import TEACHER
-from labkit.hub.passwords import HASHES
+from labkit.hub.passwords import HASHES, names_with_password
 from labkit.hub.proxy import proxy_command
 
 c = get_config()  # type: ignore[name-defined] # noqa: F821 (JupyterHub brings it)
@@ -28,6 +28,8 @@ c.JupyterHub.template_paths = [str(Path(hub.__file__).with_name('templates'))]
 c.Authenticator.allowed_users = {member.name for member in members}
 teachers = c.ClassAuthenticator.teachers = {member.name for member in members if member.teaches}
 c.Authenticator.allow_existing_users = False  # people removed from the list are out
+# And the hub ends their servers when it starts.
+c.Authenticator.blocked_users = names_with_password(Path()) - c.Authenticator.allowed_users
 
 # --- Where ---------------------------------------------------------------------------------------
 # Only this machine, unless `--ip` says otherwise.

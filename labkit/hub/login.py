@@ -140,6 +140,15 @@ class ClassAuthenticator(FirstUseAuthenticator):  # type: ignore[misc]
         if role is not None and user.name in self.teachers and role not in user.roles:
             user.roles.append(role)
 
+    async def refresh_user(self, user: Any, handler: Any = None) -> bool:
+        """Return whether a session goes on: not of somebody who is taken out of the list.
+
+        Args:
+            user: Who has logged in at some time, maybe before the hub was started.
+            handler: The request.
+        """
+        return user.name in self.allowed_users
+
     def delete_user(self, user: Any) -> None:
         """Keep name and password: who may log in says the list of the class.
 

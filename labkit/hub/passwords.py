@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dbm
+import os
 import secrets
 from collections.abc import Iterable
 from pathlib import Path
@@ -11,7 +12,7 @@ import bcrypt
 
 from labkit.files import write_atomically
 
-__all__ = ['FIRST_PASSWORDS', 'HASHES', 'has_password', 'make_passwords']
+__all__ = ['FIRST_PASSWORDS', 'HASHES', 'make_passwords', 'names_with_password']
 
 HASHES = 'passwords.dbm'
 """Names and hashes, for jupyterhub-firstuseauthenticator."""
@@ -23,13 +24,13 @@ _SIGNS = 'abcdefghijkmnpqrstuvwxyz23456789'.replace('v', '')
 _GROUPS, _SIGNS_EACH = 3, 4
 
 
-def has_password(folder: Path, name: str) -> bool:
-    """Return whether somebody can log in on the hub of a folder."""
+def names_with_password(folder: Path) -> set[str]:
+    """Return who has a password on the hub of a folder: all who were of the class ever."""
     try:
         with dbm.open(str(folder / HASHES), 'r') as hashes:
-            return name.encode() in hashes
+            return {os.fsdecode(name) for name in hashes.keys()}  # noqa: SIM118 (a dbm has no more)
     except dbm.error:
-        return False
+        return set()
 
 
 def make_passwords(folder: Path, names: Iterable[str], *, anew: Iterable[str] = ()) -> list[str]:

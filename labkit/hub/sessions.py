@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import secrets
 import ssl
-import subprocess
 import time
 import urllib.error
 import urllib.request
@@ -13,6 +12,7 @@ from pathlib import Path
 
 from labkit.errors import LabError
 from labkit.files import write_atomically
+from labkit.hub.accounts import end_processes
 
 __all__ = ['end_all', 'note_hub', 'noted_hub']
 
@@ -70,8 +70,7 @@ def end_all(folder: Path, name: str, *, account: bool) -> None:
             )
         time.sleep(0.1)
     if account:
-        # Also what is no child of the server any more, such as a program behind `nohup`.
-        subprocess.run(['runuser', '-u', name, '--', 'kill', '-KILL', '--', '-1'])
+        end_processes(name)
 
 
 def _delete(folder: Path, path: str) -> int:

@@ -17,7 +17,7 @@ from labkit.errors import LabError
 from labkit.hub.accounts import make_accounts, make_class_folder, make_private_folder
 from labkit.hub.class_list import read_class
 from labkit.hub.containers import HUB_IP, make_class_volumes
-from labkit.hub.passwords import FIRST_PASSWORDS, has_password, make_passwords
+from labkit.hub.passwords import FIRST_PASSWORDS, make_passwords, names_with_password
 from labkit.hub.sessions import end_all, note_hub, noted_hub
 from labkit.setup.compiler import fix_exported_paths
 from labkit.setup.environment import ROOT, environment_variables
@@ -89,7 +89,7 @@ def _renew(options: argparse.Namespace, names: Sequence[str]) -> int:
     name = options.new_password
     if name not in names:
         raise LabError(f'{name!r} is not in {options.class_list.name}.')
-    if not has_password(options.folder, name):
+    if name not in names_with_password(options.folder):
         raise LabError(
             f'{name!r} has no password in the hub of {str(options.folder)!r}.',
             todo='If the hub of this class was started with --folder, give it here, too. Who is '
