@@ -31,6 +31,9 @@ _NICENESS = 5
 # Of sched.h and sys/mount.h.
 _CLONE_NEWNS, _MS_REC, _MS_SLAVE, _MS_BIND = 0x00020000, 0x4000, 0x80000, 0x1000
 _MS_NOSUID, _MS_NODEV = 0x2, 0x4
+# What is in shared memory is of no process, so no limit of processes holds for it, and it stays
+# when they end. A node takes some 1 MB; Docker gives a container 64 MB. Empty files take some too.
+_SHARED_MEMORY = b'mode=1777,size=256m,nr_inodes=10k'
 _libc = ctypes.CDLL(None, use_errno=True)
 
 
@@ -89,7 +92,8 @@ class LimitedSpawner(_OwnAddress, LocalProcessSpawner):  # type: ignore[misc]
 
     `mem_limit` applies to each process of a learner. Threads count as processes. `cpu_limit` is
     the number of processors for a learner; without it all learners share all processors, divided
-    evenly by the system. `/tmp` and `/dev/shm` are the learner's own, where the system allows it.
+    evenly by the system. `/tmp` and `/dev/shm` (256 MB) are the learner's own, where the system
+    allows it.
     """
 
     process_limit = Integer(
@@ -156,7 +160,7 @@ def _take_places(tmp: bytes | None) -> None:
     steps: tuple[tuple[Any, ...], ...] = (
         (_libc.unshare, _CLONE_NEWNS),
         (_libc.mount, b'none', b'/', None, _MS_REC | _MS_SLAVE, None),
-        (_libc.mount, b'tmpfs', b'/dev/shm', b'tmpfs', _MS_NOSUID | _MS_NODEV, b'mode=1777'),
+        (_libc.mount, b'tmpfs', b'/dev/shm', b'tmpfs', _MS_NOSUID | _MS_NODEV, _SHARED_MEMORY),
         *([(_libc.mount, tmp, b'/tmp', None, _MS_BIND, None)] if tmp is not None else []),
     )
     for call, *arguments in steps:

@@ -209,6 +209,25 @@ def test_a_learner_has_temporary_files_of_their_own(machine: Machine, tmp_path: 
     assert found.stdout == ''
 
 
+def test_shared_memory_has_a_limit(machine: Machine) -> None:
+    code = (
+        'import os; from labkit.hub.spawner import _take_places\n'
+        '_take_places(None)\n'
+        'try:\n'
+        '    with open("/dev/shm/full", "wb") as file:\n'
+        '        os.posix_fallocate(file.fileno(), 0, 300_000_000)\n'
+        'except OSError as error:\n'
+        '    print(error.strerror)\n'
+        'try:\n'
+        '    for number in range(20_000):\n'
+        '        open(f"/dev/shm/{number}", "w").close()\n'
+        'except OSError as error:\n'
+        '    print(error.strerror)\n'
+    )
+    done = machine.run('env', f'PYTHONPATH={ROOT}', sys.executable, '-c', code)
+    assert done.stdout.splitlines() == ['No space left on device'] * 2, done
+
+
 @pytest.mark.slow('a hub, with servers and kernels')
 def test_a_neighbours_certificate_opens_no_place_of_another(
     hub: Hub, notebooks: dict[str, Notebook], machine: Machine
