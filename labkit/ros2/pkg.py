@@ -11,7 +11,13 @@ from labkit import settings
 from labkit.errors import LabError, quoted
 from labkit.ros2.parser import Command, Parser, Verb, real_one
 from labkit.ros2.pkg_create import CREATE
-from labkit.rosgraph.packages import DEMO, executables, package_names, prefix_of, with_executables
+from labkit.rosgraph.packages import (
+    executables,
+    own_programs,
+    package_names,
+    prefix_of,
+    with_executables,
+)
 
 __all__ = ['COMMAND']
 
@@ -54,15 +60,16 @@ def _prefix(args: Namespace) -> Path:
 def list_executables(args: Namespace) -> None:
     """Print the executables that `ros2 run` can start."""
     packages = with_executables() if args.package_name is None else [args.package_name]
-    stand_ins = False
+    stand_ins = {}
     for package in packages:
         for one in executables(package):
-            stand_ins = stand_ins or one.stand_in
+            if one.stand_in:
+                stand_ins[package] = own_programs(package)
             print(' '.join(one.command) if args.full_path else f'{package} {one.path.name}')
-    if stand_ins:
-        # In a notebook, stderr is shown as an error.
-        place = sys.stdout if settings.in_kernel() else sys.stderr
-        print(f'({DEMO} is not installed; labkit has its talker and listener.)', file=place)
+    # In a notebook, stderr is shown as an error.
+    place = sys.stdout if settings.in_kernel() else sys.stderr
+    for package, programs in stand_ins.items():
+        print(f'({package} is not installed; labkit has its {programs}.)', file=place)
 
 
 def _package_argument(parser: Parser) -> None:

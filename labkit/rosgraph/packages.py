@@ -14,21 +14,26 @@ from labkit.rosgraph import interfaces
 from labkit.rosgraph.workspaces import why_missing, why_not_in
 
 __all__ = [
-    'DEMO',
     'Executable',
     'executable',
     'executables',
+    'own_programs',
     'package_names',
     'prefix_of',
     'with_executables',
 ]
 
-# The package that labkit can stand in for.
-DEMO = 'demo_nodes_py'
 # Modules and their programs, by the package in which `ros2 run` finds them.
 _OWN: dict[str, dict[str, tuple[str, ...]]] = {
-    DEMO: {name: ('labkit.programs.demo_nodes', name) for name in ('listener', 'talker')},
+    'demo_nodes_py': {
+        name: ('labkit.programs.demo_nodes', name) for name in ('talker', 'listener')
+    },
     'labkit': {'turtlebot': ('labkit.sim.turtlebot_program',)},
+    'tf2_ros': {
+        name: (f'labkit.programs.{name}',)
+        for name in ('static_transform_publisher', 'tf2_echo', 'tf2_monitor')
+    },
+    'tf2_tools': {'view_frames': ('labkit.programs.view_frames',)},
 }
 # Packages of the tutorials that no wheel has, and what to use here.
 _INSTEAD = {
@@ -56,7 +61,7 @@ class Executable:
     @property
     def stand_in(self) -> bool:
         """Whether it stands in for that of a package that is not installed."""
-        return self.own and self.package == DEMO
+        return self.own and self.package != 'labkit'
 
 
 def package_names() -> list[str]:
@@ -81,7 +86,7 @@ def prefix_of(package: str) -> Path:
     if package in _OWN:
         raise LabError(
             f"Package '{package}' not found",
-            todo=f'It has no files here. labkit runs its {" and ".join(_OWN[package])}.',
+            todo=f'It has no files here. labkit runs its {own_programs(package)}.',
         )
     if todo := why_missing(package):
         raise LabError(f"Package '{package}' not found", todo=todo)
@@ -95,6 +100,12 @@ def prefix_of(package: str) -> Path:
     )
 
 
+def own_programs(package: str) -> str:
+    """Return the names of the programs that labkit has of a package."""
+    *names, last = _OWN[package]
+    return f'{", ".join(names)} and {last}' if names else last
+
+
 def executables(package: str) -> list[Executable]:
     """Return the executables of a package, sorted by name.
 
@@ -104,7 +115,7 @@ def executables(package: str) -> list[Executable]:
     if package in _OWN and package not in package_names():
         return [
             Executable(package, Path(name), (sys.executable, '-m', *words), own=True)
-            for name, words in _OWN[package].items()
+            for name, words in sorted(_OWN[package].items())
         ]
     found = []
     for folder, folders, files in os.walk(prefix_of(package) / 'lib' / package):

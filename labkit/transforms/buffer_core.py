@@ -35,7 +35,7 @@ class BufferCore:
     """
 
     def __init__(self, cache_time: Duration | None = None) -> None:
-        self._tree = Tree(CACHE_TIME if cache_time is None else _ns(cache_time, 'duration'))
+        self.tree = Tree(CACHE_TIME if cache_time is None else _ns(cache_time, 'duration'))
 
     def set_transform(self, transform: TransformStamped, authority: str) -> None:
         """Note where a frame is in its parent.
@@ -55,7 +55,7 @@ class BufferCore:
 
     def clear(self) -> None:
         """Forget where moving frames were; their names stay, and static frames, too."""
-        self._tree.clear()
+        self.tree.clear()
 
     def _set(self, transform: TransformStamped, authority: str, *, is_static: bool) -> None:
         parent = transform.header.frame_id.removeprefix('/')
@@ -71,7 +71,7 @@ class BufferCore:
         if wrong:
             return
         sample = Sample(parent, translation, rotation)
-        if not self._tree.insert(child, time, sample, authority=authority, is_static=is_static):
+        if not self.tree.insert(child, time, sample, authority=authority, is_static=is_static):
             get_logger('tf2').warning(  # type: ignore[no-untyped-call]
                 f'TF_OLD_DATA ignoring data from the past for frame {child} at time '
                 f'{shown_time(time)} according to authority {authority}\nPossible reasons are '
@@ -96,7 +96,7 @@ class BufferCore:
             ExtrapolationException: Nothing is known for that time.
             InvalidArgumentException: A name is empty or begins with a slash.
         """
-        found, place = self._tree.look(target_frame, source_frame, _ns(time))
+        found, place = self.tree.look(target_frame, source_frame, _ns(time))
         return _message(target_frame, source_frame, found, place)
 
     def lookup_transform_full_core(
@@ -119,7 +119,7 @@ class BufferCore:
         Raises:
             TransformException: As `lookup_transform_core`.
         """
-        found, place = self._tree.look_full(
+        found, place = self.tree.look_full(
             target_frame, _ns(target_time), source_frame, _ns(source_time), fixed_frame
         )
         return _message(target_frame, source_frame, found, place)
@@ -137,8 +137,8 @@ class BufferCore:
         asked = target_frame, source_frame, _ns(time)
         if target_frame == source_frame:
             return True, ''
-        why = self._tree.why_unknown(target_frame=target_frame, source_frame=source_frame)
-        return _answer(why or self._tree.why_not(*asked))
+        why = self.tree.why_unknown(target_frame=target_frame, source_frame=source_frame)
+        return _answer(why or self.tree.why_not(*asked))
 
     def can_transform_full_core(
         self,
@@ -159,10 +159,10 @@ class BufferCore:
         """
         second = target_frame, fixed_frame, _ns(target_time)
         first = fixed_frame, source_frame, _ns(source_time)
-        why = self._tree.why_unknown(
+        why = self.tree.why_unknown(
             target_frame=target_frame, source_frame=source_frame, fixed_frame=fixed_frame
         )
-        return _answer(why or self._tree.why_not(*second) or self._tree.why_not(*first))
+        return _answer(why or self.tree.why_not(*second) or self.tree.why_not(*first))
 
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
         """Return the latest time for which the way between two frames is known.
@@ -175,9 +175,9 @@ class BufferCore:
             TransformException: A frame is not known, or they are not connected.
         """
         for frame in (target_frame, source_frame):
-            self._tree.check_frame('get_latest_common_time', frame)
+            self.tree.check_frame('get_latest_common_time', frame)
         try:
-            found = self._tree.latest_common_time(target_frame, source_frame)
+            found = self.tree.latest_common_time(target_frame, source_frame)
         except TransformException as error:
             raise TransformException(str(error)) from None
         return Time(nanoseconds=found)
@@ -186,19 +186,19 @@ class BufferCore:
 
     def all_frames_as_string(self) -> str:
         """Return a sentence for each frame that has a parent."""
-        return self._tree.as_string()
+        return self.tree.as_string()
 
     def all_frames_as_yaml(self) -> str:
         """Return what is known of each frame: its parent, who says so, how often, since when."""
-        return self._tree.as_yaml()
+        return self.tree.as_yaml()
 
     # These names of the real one are used by programs, too.
 
     def _frameExists(self, frame_id: str) -> bool:
-        return frame_id in self._tree
+        return frame_id in self.tree
 
     def _getFrameStrings(self) -> list[str]:
-        return self._tree.names()
+        return self.tree.names()
 
 
 def _ns(time: Any, what: str = 'time') -> int:

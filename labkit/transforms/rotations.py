@@ -22,6 +22,7 @@ __all__ = [
     'product',
     'rotated',
     'slerp',
+    'to_rpy',
 ]
 
 Vector = tuple[float, float, float]
@@ -39,6 +40,22 @@ def from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
         cos_x * sin_y * cos_z + sin_x * cos_y * sin_z,
         cos_x * cos_y * sin_z - sin_x * sin_y * cos_z,
         cos_x * cos_y * cos_z + sin_x * sin_y * sin_z,
+    )
+
+
+def to_rpy(m: Matrix) -> Vector:
+    """Return the angles about the fixed x axis, then y, then z, rad, of a rotation matrix.
+
+    Where x and z turn about the same axis, the angle about z is 0.
+    """
+    if abs(m[2][0]) >= 1.0:
+        return math.atan2(m[2][1], m[2][2]), math.copysign(math.pi / 2, -m[2][0]), 0.0
+    pitch = -math.asin(m[2][0])
+    cos = math.cos(pitch)
+    return (
+        math.atan2(m[2][1] / cos, m[2][2] / cos),
+        pitch,
+        math.atan2(m[1][0] / cos, m[0][0] / cos),
     )
 
 

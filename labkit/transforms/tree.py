@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterable
+from dataclasses import dataclass
 from operator import mul
 from typing import Any, cast
 
@@ -30,7 +31,7 @@ from labkit.transforms.rotations import (
     rotated,
 )
 
-__all__ = ['Place', 'Tree']
+__all__ = ['Edge', 'Place', 'Tree']
 
 # A longer way is a loop.
 MAX_DEPTH = 1000
@@ -38,6 +39,27 @@ NO_PARENT = 'NO_PARENT'
 Place = tuple[Vector, Quaternion]
 """Where a frame is in another one, and how it is turned."""
 _HERE: Place = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+
+
+@dataclass(frozen=True)
+class Edge:
+    """What is known of a frame in its parent.
+
+    Attributes:
+        child: The frame.
+        parent: Its parent in the newest sample.
+        authority: Who says so.
+        rate: Samples in a second, Hz; 10,000 for a single one, as tf2 counts.
+        latest: Time of the newest sample, ns; 0 for a static frame.
+        oldest: Time of the oldest sample, ns.
+    """
+
+    child: str
+    parent: str
+    authority: str
+    rate: float
+    latest: int
+    oldest: int
 
 
 class Tree:
@@ -273,23 +295,49 @@ class Tree:
 
     def as_yaml(self) -> str:
         """Return what is known of each frame: its parent, who says so, how often, since when."""
-        with self._lock:
-            return ''.join(map(self._as_yaml, self._frames)) if self._frames else '[]'
-
-    def _as_yaml(self, name: str) -> str:
-        cache = self._frames[name]
-        if not cache:  # nothing, or no sample
-            return ''
-        span = cache.latest - cache.oldest
-        return (
-            f'{name}: \n'
-            f"  parent: '{cache.latest_parent}'\n"
-            f"  broadcaster: '{self._authorities[name]}'\n"
-            f'  rate: {len(cache) * 1e9 / max(span, 100_000):.3f}\n'
-            f'  most_recent_transform: {shown_time(cache.latest)}\n'
-            f'  oldest_transform: {shown_time(cache.oldest)}\n'
-            f'  buffer_length: {span / NANOSECONDS:.3f}\n'
+        if not self._frames:
+            return '[]'
+        return ''.join(
+            f'{edge.child}: \n'
+            f"  parent: '{edge.parent}'\n"
+            f"  broadcaster: '{edge.authority}'\n"
+            f'  rate: {edge.rate:.3f}\n'
+            f'  most_recent_transform: {shown_time(edge.latest)}\n'
+            f'  oldest_transform: {shown_time(edge.oldest)}\n'
+            f'  buffer_length: {(edge.latest - edge.oldest) / NANOSECONDS:.3f}\n'
+            for edge in self.edges()
         )
+
+    def edges(self) -> list[Edge]:
+        """Return what is known of each frame that has a parent."""
+        with self._lock:
+            return [
+                Edge(
+                    child=name,
+                    parent=cache.latest_parent,
+                    authority=self._authorities[name],
+                    rate=len(cache) * 1e9 / max(cache.latest - cache.oldest, 100_000),
+                    latest=cache.latest,
+                    oldest=cache.oldest,
+                )
+                for name, cache in self._frames.items()
+                if cache  # one without samples is false
+            ]
+
+    def chain(self, target: str, source: str) -> list[str]:
+        """Return the frames on the way between two, both included, at the latest time.
+
+        Raises:
+            TransformException: It is not known.
+        """
+        with self._lock:
+            self._check(target_frame=target, source_frame=source)
+            if target == source:
+                return [target]
+            _, up, down = self._way(target, source, 0)
+        ways = [source, *(step.parent for step in up)], [target, *(step.parent for step in down)]
+        # Where the way down ends, the way up has been.
+        return [*ways[0], *reversed(ways[1][:-1])] if up else ways[1][::-1]
 
 
 def _bad_name(frame: str) -> str:

@@ -127,7 +127,7 @@ def test_a_package_of_the_tutorials_that_is_not_here_names_what_is(capsys):
 def test_prefix_of_a_package_that_has_stand_ins(capsys):
     code, out, err = said(capsys, 'pkg prefix demo_nodes_py')
     assert (code, out) == (1, '')
-    assert err.endswith('It has no files here. labkit runs its listener and talker.\n')
+    assert err.endswith('It has no files here. labkit runs its talker and listener.\n')
 
 
 def test_executables(capsys):
