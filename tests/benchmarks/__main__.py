@@ -31,6 +31,7 @@ BENCHES = {
     'course': ('bench_course', 'tables', 'labkit lab the second time, labkit test --fast'),
     'bags': ('bench_bags', 'tables', 'recording beside a bare subscription'),
     'sim': ('bench_sim', 'tables', 'the robot: alone, with its arena, in quick time'),
+    'transforms': ('bench_transforms', 'tables', 'lookups, and a thousand transforms a second'),
 }
 # Longer, so only when named.
 LONG = {

@@ -71,7 +71,8 @@ FRAMES = ['--frame-id', 'base', '--child-frame-id', 'scan']
 def test_a_static_transform_is_read_from_the_command_line(words, shift, turn):
     found = static_transform_publisher.read(words)
     assert found.frames == {'frame-id': 'base', 'child-frame-id': 'scan'}
-    assert (found.shift, found.turn) == (pytest.approx(shift), pytest.approx(turn))
+    assert found.shift == pytest.approx(shift)
+    assert found.turn == pytest.approx(turn)
 
 
 @pytest.mark.parametrize(
