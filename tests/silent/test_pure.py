@@ -11,7 +11,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
-from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from labkit.rosgraph.endpoints import Endpoint
 from labkit.rosgraph.snapshot import Graph, GraphAction, GraphTopic
@@ -217,3 +217,16 @@ def test_a_graph_at_which_a_look_has_failed_is_looked_at_again(
 )
 def test_which_names_are_alike(one: str, two: str, how: str) -> None:
     assert (alike(one, two), alike(two, one)) == (how, how)
+
+
+def test_a_static_broadcaster_repeats_all_in_its_last_message() -> None:
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    wide = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    for topic, faults in (('/notices', ['qos.kept']), ('/tf_static', [])):
+        pub = Publisher(topic, 'tf2_msgs/msg/TFMessage', latched, count=4, last=1.0)
+        sub = Subscription(topic, pub.msg_type, wide, None, heard=1, since=2.0)
+        nodes = (
+            OwnNode('/sender', '/', publishers=(pub,)),
+            OwnNode('/hearer', '/', subscriptions=(sub,)),
+        )
+        assert told(Scene(Graph((), ()), {topic: 1}, nodes)) == faults
