@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import base64
 import contextlib
+import math
 import os
 import re
 import signal
@@ -21,20 +22,22 @@ from pathlib import Path
 from typing import Any, cast
 
 import nbformat
-from jupyter_client.kernelspec import KernelSpecManager
+from jupyter_client.kernelspec import KernelSpecManager, NoSuchKernel
 from jupyter_client.manager import AsyncKernelManager
 from nbclient import NotebookClient
 from nbformat import NotebookNode
+from nbval.plugin import find_comment_markers, find_metadata_tags
 
 from labkit.errors import LabError
 
-__all__ = ['LessonError', 'LessonRun', 'normalised']
+__all__ = ['LessonError', 'LessonRun', 'nbval_options', 'normalised']
 
 # A cell takes at most 5 s; the rest is for busy machines. A cell that builds sets a limit in its
 # metadata: "labkit": {"timeout_sec": 1200}.
 CELL_TIMEOUT_SEC = 60
 OUTPUT_TIMEOUT_SEC = 30
 STARTUP_TIMEOUT_SEC = 120
+_TIMED_OUT = 'CellTimeoutError'
 # Variables of the caller that would show in the outputs, or let others be heard.
 _FOREIGN = (
     *('CLICOLOR', 'FASTDDS_', 'FASTRTPS_', 'FORCE_COLOR', 'JPY_', 'LABKIT_', 'MPLBACKEND'),
@@ -61,28 +64,53 @@ class LessonError(LabError):
         self.traceback = traceback
 
 
+def nbval_options(cell: NotebookNode) -> dict[str, bool]:
+    """Return what nbval's tags and comments say of a cell: `skip`, `check`, `check_exception`."""
+    if cell.cell_type != 'code':
+        return {}
+    return {**dict(find_metadata_tags(cell.metadata)), **dict(find_comment_markers(cell.source))}
+
+
 class LessonRun:
     """Run the cells of one lesson in a new kernel.
 
     The kernel starts in the lesson's folder, with a new state folder (`LABKIT_HOME`) and with ROS
     discovery off. A lesson with the metadata `"labkit": {"processes": true}` finds other processes
-    on this machine (LOCALHOST), in its own domain.
+    on this machine (LOCALHOST), in its own domain. A cell that nbval skips is not run here either,
+    and keeps its outputs.
 
     Args:
         path: The notebook.
         cell_timeout_sec: Seconds per cell.
+        startup_timeout_sec: Seconds for the start of the kernel.
+        kernel_name: The kernel, by the name of its specification. `'python3'` is this Python.
+
+    Attributes:
+        broken: The kernel is lost.
+        timed_out: A cell has taken too long, and was interrupted.
+        shown: What the cell that ran last has shown, before it was normalised.
 
     Raises:
         LessonError: The kernel did not start.
     """
 
-    def __init__(self, path: Path, *, cell_timeout_sec: int = CELL_TIMEOUT_SEC) -> None:
+    def __init__(
+        self,
+        path: Path,
+        *,
+        cell_timeout_sec: float = CELL_TIMEOUT_SEC,
+        startup_timeout_sec: float = STARTUP_TIMEOUT_SEC,
+        kernel_name: str = 'python3',
+    ) -> None:
         self.path = path.resolve()
         self.notebook: NotebookNode = nbformat.read(self.path, as_version=4)
         self.broken = False
+        self.timed_out = False
+        self.shown: list[NotebookNode] = []
+        self._cell_timeout_sec = cell_timeout_sec
         self._next = 0
         for cell in self.notebook.cells:
-            if cell.cell_type == 'code':
+            if cell.cell_type == 'code' and not nbval_options(cell).get('skip'):
                 cell.outputs, cell.execution_count = [], None
         with contextlib.ExitStack() as stack:
             temporary = tempfile.TemporaryDirectory(prefix='labkit-', ignore_cleanup_errors=True)
@@ -90,14 +118,15 @@ class LessonRun:
             log = stack.enter_context((self._home / 'kernel.log').open('wb'))
             # Without folders to search for kernels, 'python3' is this Python. Sockets instead of
             # ports: those may be taken before the kernel has them.
+            dirs: dict[str, Any] = {'kernel_dirs': []} if kernel_name == 'python3' else {}
             kernels = AsyncKernelManager(
-                kernel_name='python3',
-                kernel_spec_manager=KernelSpecManager(kernel_dirs=[]),
+                kernel_name=kernel_name,
+                kernel_spec_manager=KernelSpecManager(**dirs),
                 transport='ipc',
                 ip=str(self._home / 'socket'),
             )
             stack.callback(_end_children, kernels)
-            self._client = self._make_client(kernels, cell_timeout_sec)
+            self._client = self._make_client(kernels, startup_timeout_sec)
             start = self._client.setup_kernel(
                 cleanup_kc=True,
                 cwd=str(self.path.parent),
@@ -109,18 +138,30 @@ class LessonRun:
                 stack.enter_context(start)
             except RuntimeError as error:
                 raise LessonError(f'the kernel did not start: {error}\n{self._log()}') from error
+            except NoSuchKernel:
+                raise LessonError(
+                    f'expected the name of a kernel, but it is {kernel_name!r}. `jupyter '
+                    'kernelspec list` names them; --nbval-current-env takes the Python of pytest'
+                ) from None
             self._stack = stack.pop_all()
 
-    def _make_client(self, kernels: AsyncKernelManager, cell_timeout_sec: int) -> NotebookClient:
+    def _make_client(
+        self, kernels: AsyncKernelManager, startup_timeout_sec: float
+    ) -> NotebookClient:
         return NotebookClient(
             self.notebook,
             km=kernels,
-            timeout_func=lambda cell: _time_limit(cell, cell_timeout_sec),
+            timeout_func=self._time_limit,
+            # The traceback of the interruption says where it hung.
+            interrupt_on_timeout=True,
+            error_on_timeout={'ename': _TIMED_OUT},
+            on_cell_executed=self._note_timeout,
             iopub_timeout=OUTPUT_TIMEOUT_SEC,
             raise_on_iopub_timeout=True,
-            startup_timeout=STARTUP_TIMEOUT_SEC,
+            startup_timeout=math.ceil(startup_timeout_sec),
             # Errors are handled here: nbclient's way may make the kernel drop the next cell.
             allow_errors=True,
+            skip_cells_with_tag='',  # nbval has its own
             record_timing=False,
             store_widget_state=False,
             # Output of C code arrives at any time, so it goes to the log.
@@ -159,9 +200,8 @@ class LessonRun:
             The cell with its execution count and normalised outputs.
 
         Raises:
-            LessonError: A cell raised without a `raises-exception` tag, or did not raise despite
-                it. Or it took too long or ended the kernel: then the run is `broken`, and every
-                further cell fails at once.
+            LessonError: A cell raised, and is not marked as one that does. Or it took too long, or
+                ended the kernel: then the run is `broken`, and every further cell fails at once.
         """
         for position in range(min(self._next, index), index + 1):
             self._execute(position)
@@ -175,6 +215,10 @@ class LessonRun:
         if self.broken:
             raise LessonError('not run: an earlier cell lost the kernel', cell_id=cell_id)
         self._next = max(self._next, index + 1)
+        options = nbval_options(cell)
+        if options.get('skip'):
+            return
+        self._late = False
         # As in JupyterLab: labkit asks which cell has made a node.
         assert self._client.kc is not None
         self._client.kc.session.metadata = {'cellId': cell_id}
@@ -186,8 +230,37 @@ class LessonRun:
             message = str(error).partition('\nHere is a preview')[0]
             raise LessonError(f'{message}\n{self._log()}'.strip(), cell_id=cell_id) from error
         if cell.cell_type == 'code':
-            cell.outputs = normalised(cell.outputs, self.folders())
-            _check_error(cell, cell_id)
+            self.shown = cell.outputs
+            cell.outputs = normalised(self.shown, self.folders())
+            raised = next((out for out in cell.outputs if out.output_type == 'error'), None)
+            traceback = '\n'.join(raised.traceback) if raised else ''
+            if self._late:
+                raise LessonError(
+                    f'it took longer than {self._time_limit(cell):g} s and was interrupted',
+                    cell_id=cell_id,
+                    traceback=traceback,
+                )
+            if raised and not options.get('check_exception'):
+                message = f'it raised {raised.ename}: {raised.evalue}'
+                raise LessonError(message, cell_id=cell_id, traceback=traceback)
+
+    def execute_source(self, source: str, **_: object) -> None:
+        """Run code that is in no cell of the notebook."""
+        cells = self.notebook.cells
+        cells.append(nbformat.v4.new_code_cell(source))
+        try:
+            self._client.execute_cell(cells[-1], len(cells) - 1)
+        finally:
+            cells.pop()
+
+    def _time_limit(self, cell: NotebookNode) -> float:
+        """Return the time limit of a cell, s."""
+        own = cell.metadata.get('labkit', {}).get('timeout_sec', self._cell_timeout_sec)
+        return float(own)
+
+    def _note_timeout(self, execute_reply: dict[str, Any], **_: object) -> None:
+        self._late = execute_reply['content'].get('ename') == _TIMED_OUT
+        self.timed_out |= self._late
 
     def folders(self) -> dict[str, str]:
         """Return the folders that differ between machines, and their placeholders."""
@@ -216,20 +289,6 @@ def _end_children(kernels: AsyncKernelManager) -> None:
     if group is not None:
         with contextlib.suppress(ProcessLookupError):
             os.killpg(group, signal.SIGKILL)
-
-
-def _check_error(cell: NotebookNode, cell_id: str) -> None:
-    """Raise if a cell failed, unless its tag says that it must."""
-    error = next((out for out in cell.outputs if out.output_type == 'error'), None)
-    meant = 'raises-exception' in cell.metadata.get('tags', ())
-    if meant and error is None:
-        raise LessonError('it is tagged raises-exception, but nothing was raised', cell_id=cell_id)
-    if error is not None and not meant:
-        raise LessonError(
-            f'it raised {error.ename}: {error.evalue}',
-            cell_id=cell_id,
-            traceback='\n'.join(error.traceback),
-        )
 
 
 def normalised(outputs: list[NotebookNode], folders: dict[str, str]) -> list[NotebookNode]:
@@ -308,8 +367,3 @@ def _without_metadata(text: str) -> str:
             kept.append(png[start:end])
         start = end
     return base64.b64encode(b''.join(kept)).decode()
-
-
-def _time_limit(cell: NotebookNode, usual_sec: int) -> int:
-    """Return the time limit of a cell, s."""
-    return int(cell.metadata.get('labkit', {}).get('timeout_sec', usual_sec))

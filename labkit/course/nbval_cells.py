@@ -1,24 +1,28 @@
 """The cells of a notebook of labkit as tests, for `pytest --nbval`.
 
-nbval finds the notebooks, reads the tags of their cells and makes a test of each code cell. A cell
-is run by labkit, in the same way as by `python3 -m labkit record`, and what it shows is compared
-with what is stored: all of it, exactly, but for the pixels of pictures and the traceback of an
-error that is meant (its name and message are compared).
+nbval finds the notebooks, reads the tags and comments of their cells, and makes a test of each
+code cell; its options hold here, too (docs/nbval.md). A cell is run by labkit, in the same way as
+by `python3 -m labkit record`. What nbval compares of its outputs, after its replacements
+(`--nbval-sanitize-with`), must be what is stored, also in its order.
 """
 
 from __future__ import annotations
 
 import difflib
+import hashlib
 import json
 import re
 import shlex
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from copy import deepcopy
+from types import SimpleNamespace
 
 import pytest
 from nbformat import NotebookNode
-from nbval.plugin import IPyNbCell, IPyNbFile
+from nbval.cover import setup_coverage, teardown_coverage
+from nbval.plugin import IPyNbCell, IPyNbFile, coalesce_streams
 
-from labkit.course.lesson_run import CELL_TIMEOUT_SEC, LessonError, LessonRun, normalised
+from labkit.course.lesson_run import LessonError, LessonRun, normalised
 from labkit.course.record import LESSONS_DIR
 
 __all__ = ['LessonFile']
@@ -36,23 +40,44 @@ class LessonFile(IPyNbFile):  # type: ignore[misc]
         items = list(super().collect())
         places = [i for i, cell in enumerate(self.nb.cells) if cell.cell_type == 'code']
         for item, index in zip(items, places, strict=True):
-            yield LessonCell.from_parent(
+            cell = LessonCell.from_parent(
                 self,
                 name=item.cell.get('id', item.name),
-                cell_num=index,
+                cell_num=item.cell_num,
                 cell=item.cell,
                 options=item.options,
             )
+            cell.index = index
+            yield cell
 
     def setup(self) -> None:
-        """Start the lesson's kernel."""
-        limit = min(CELL_TIMEOUT_SEC, int(self.config.option.nbval_cell_timeout))
-        self.run = LessonRun(self.path, cell_timeout_sec=limit)
+        """Start the lesson's kernel, and read what nbval is to replace in outputs."""
+        option = self.config.option
+        named = self.nb.metadata.get('kernelspec', {}).get('name', 'python3')
+        name = 'python3' if option.nbval_current_env else option.nbval_kernel_name or named
+        self.run = LessonRun(
+            self.path,
+            cell_timeout_sec=option.nbval_cell_timeout,
+            startup_timeout_sec=option.nbval_kernel_startup_timeout,
+            kernel_name='python3' if name == 'python' else name,
+        )
+        self.setup_sanitize_files()
+        self._measure(setup_coverage)
 
     def teardown(self) -> None:
         """End the kernel and all that it has started."""
         if self.run is not None:
+            self._measure(teardown_coverage)
             self.run.close()
+
+    def _measure(self, step: Callable[..., None]) -> None:
+        """Begin or end to measure coverage, for `--cov` of pytest-cov."""
+        if self.run is None or self.run.broken or not getattr(self.config.option, 'cov_source', 0):
+            return
+        # All that nbval asks of its kernel for this.
+        run = SimpleNamespace(execute=self.run.execute_source)
+        kernel = SimpleNamespace(language='python', kc=run, await_idle=lambda *_: None)
+        step(self.config, kernel, None)
 
 
 class OutputsDifferError(Exception):
@@ -62,27 +87,49 @@ class OutputsDifferError(Exception):
 class LessonCell(IPyNbCell):  # type: ignore[misc]
     """A code cell: it must run, and show what is stored."""
 
+    index: int
+    """Its position in the notebook, 0 for the first cell of any kind."""
+
     def runtest(self) -> None:
         """Run the cell, and those before it that have not run yet; compare its outputs."""
         if self.options['skip']:
-            pytest.skip('the cell is tagged nbval-skip')
+            pytest.skip('nbval skips the cell')
+        run = self.parent.run
         try:
-            now = self.parent.run.execute(self.cell_num).outputs
+            run.execute(self.index)
         except LessonError:
             # nbval then expects the lesson's further cells to fail, and reports only this one.
-            self.parent.timed_out = self.parent.run.broken
+            self.parent.timed_out = run.timed_out or run.broken
             raise
-        if self.options['check']:
-            # Stored outputs are in this form already, if `labkit record` has stored them.
-            stored = normalised(self.cell.outputs, self.parent.run.folders())
-            self._compare(_lines(stored), _lines(now))
+        self.test_outputs = coalesce_streams(deepcopy(run.shown))
+        # nbval leaves a cell alone that was never run, but not outputs without a run.
+        if self.options['check'] or self.cell.execution_count is None:
+            self._compare()
 
-    def _compare(self, stored: list[str], now: list[str]) -> None:
+    def _compare(self) -> None:
+        stored = self._comparable(coalesce_streams(deepcopy(self.cell.outputs)))
+        now = self._comparable(deepcopy(self.test_outputs))
         if self.cell.execution_count is None:
-            stored = ['(the cell has never been recorded)']
+            now, stored = [], stored and ['(outputs of a cell that has never run)', *stored]
         if stored != now:
             diff = difflib.unified_diff(stored, now, 'stored', 'now', lineterm='')
             raise OutputsDifferError('\n'.join(map(_visible, diff)))
+
+    def _comparable(self, outputs: list[NotebookNode]) -> list[str]:
+        """Return as lines what nbval compares of outputs, after its replacements and ours."""
+        left_out, kept = self.parent.skip_compare, []
+        for output in outputs:
+            if output.get('name') in left_out:
+                continue
+            fields = output.get('data', output)
+            for key in list(fields) if 'data' in output else ('text', 'ename', 'evalue'):
+                if key in left_out:
+                    fields.pop(key, None)
+                elif key in fields and key not in PICTURES:
+                    fields[key] = self.sanitize(fields[key])
+            kept.append(output)
+        # Stored outputs are in this form already, if `labkit record` has stored them.
+        return _lines(normalised(kept, self.parent.run.folders()))
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException]) -> str:
         """Say in which cell of which lesson what has gone wrong, and what to do."""
@@ -117,12 +164,13 @@ def _lines(outputs: list[NotebookNode]) -> list[str]:
         if output.output_type == 'stream':
             parts = {output.name: output.text}
         elif output.output_type == 'error':
-            parts = {'error': f'{output.ename}: {output.evalue}'}
+            said = [output[key] for key in ('ename', 'evalue') if key in output]
+            parts = {'error': ': '.join(said)}
         else:
             parts = {f'{output.output_type}, {mime}': data for mime, data in output.data.items()}
         for title, content in sorted(parts.items()):
             if title.endswith(PICTURES):
-                content = '(a picture)'
+                content = f'(a picture: {hashlib.sha256(content.encode()).hexdigest()[:16]})'
             elif not isinstance(content, str):
                 content = json.dumps(content, indent=1, sort_keys=True)
             text = content.removesuffix('\n')

@@ -16,7 +16,7 @@ from pathlib import Path
 import nbformat
 from nbformat import NotebookNode
 
-from labkit.course.lesson_run import LessonError, LessonRun
+from labkit.course.lesson_run import LessonError, LessonRun, nbval_options
 from labkit.errors import LabError
 from labkit.files import write_atomically
 
@@ -100,7 +100,7 @@ def _record_lesson(path: Path) -> str:
     with LessonRun(path) as run:
         write_tasks(run.notebook, path.name)
         for index in range(len(run.notebook.cells)):
-            run.execute(index)
+            _check_raised(run.execute(index))
     _keep_measurements(run.notebook, nbformat.reads(before.decode(), as_version=4))
     after = as_stored(run.notebook)
     if path.read_bytes() != before:
@@ -110,6 +110,15 @@ def _record_lesson(path: Path) -> str:
         return f'{number} cells unchanged'
     write_atomically(path, after)
     return f'{number} cells recorded'
+
+
+def _check_raised(cell: NotebookNode) -> None:
+    """Raise if a cell did not fail, though it says that it does."""
+    options = nbval_options(cell)
+    raised = any(output.output_type == 'error' for output in cell.get('outputs', ()))
+    if options.get('check_exception') and not options.get('skip') and not raised:
+        message = 'it is tagged raises-exception, but nothing was raised'
+        raise LessonError(message, cell_id=str(cell.get('id', '')))
 
 
 def write_tasks(notebook: NotebookNode, name: str) -> None:
@@ -150,7 +159,7 @@ def _keep_measurements(notebook: NotebookNode, before: NotebookNode) -> None:
     These are measurements, different each time: the file need not change for that.
     """
     for cell, old in zip(notebook.cells, before.cells, strict=True):
-        if 'nbval-ignore-output' in cell.metadata.get('tags', ()):
+        if not nbval_options(cell).get('check', True):
             forms = [
                 json.dumps(outputs, sort_keys=True) for outputs in (cell.outputs, old.outputs)
             ]

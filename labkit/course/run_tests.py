@@ -33,8 +33,13 @@ _FAST_TESTS = (
     'tests/course/test_public_names.py',
     'tests/lessons/test_answers_style.py',
 )
-# The limit judges nothing. It ends a test that hangs.
-_PYTEST = ('pytest', '--nbval', '--timeout=900', '-p', 'tests.gate')
+# The limits judge nothing. They end what hangs: a cell, a kernel that starts, a test.
+_LIMITS = (
+    '--nbval-cell-timeout=60',
+    '--nbval-kernel-startup-timeout=120',
+    '--timeout=900',
+)
+_PYTEST = ('pytest', '--nbval', *_LIMITS, '-p', 'tests.gate')
 # Two workers for each processor: many tests mostly wait. (Of the gate on two processors, three
 # took 13 min 16 s and left a quarter of them idle, four 12 min 17 s.) A notebook runs in one
 # worker from top to bottom, so that its cells share a kernel. tests/conftest.py decides which

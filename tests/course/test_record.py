@@ -16,6 +16,7 @@ import pytest
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 
+from labkit.course import lesson_run
 from labkit.course.lesson_run import LessonError, LessonRun, normalised
 from labkit.course.record import lesson_paths, record, with_bullets, write_tasks
 from labkit.errors import LabError
@@ -164,15 +165,45 @@ def test_a_crash_while_storing_leaves_the_old_file(folder: Path, monkeypatch: py
     assert [p.read_bytes() for p in folder.iterdir()] == [before]
 
 
-def test_a_cell_that_takes_too_long_ends_the_run(folder: Path):
+def test_a_cell_that_takes_too_long_is_interrupted(folder: Path):
     cells = {'long': 'import time\ntime.sleep(1000)', 'next': '1'}
     path = write(folder / '01_one.ipynb', cells)
     with LessonRun(path, cell_timeout_sec=1) as run:
-        with pytest.raises(LessonError, match=r'timed out .* after 1 seconds') as caught:
+        with pytest.raises(LessonError, match='longer than 1 s and was interrupted') as caught:
+            run.execute(1)
+        assert caught.value.cell_id == 'long' and 'KeyboardInterrupt' in caught.value.traceback
+        assert shown(run.execute(2)) == '1' and not run.broken
+
+
+@pytest.mark.slow('waits for what hangs')
+def test_a_cell_that_cannot_be_interrupted_ends_the_run(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(lesson_run, 'OUTPUT_TIMEOUT_SEC', 1)
+    deaf = 'import signal, time\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\ntime.sleep(1000)'
+    path = write(folder / '01_one.ipynb', {'long': deaf, 'next': '1'})
+    with LessonRun(path, cell_timeout_sec=1) as run:
+        with pytest.raises(LessonError, match='Timeout waiting for IOPub output') as caught:
             run.execute(1)
         assert caught.value.cell_id == 'long' and run.broken
         with pytest.raises(LessonError, match='an earlier cell lost the kernel'):
             run.execute(2)
+
+
+@pytest.mark.slow('records a notebook twice')
+def test_what_nbval_is_told_of_a_cell_holds_when_it_is_recorded(folder: Path):
+    cells = {
+        'skipped': '# NBVAL_SKIP\n1 / 0',
+        'meant': '# NBVAL_RAISES_EXCEPTION\n1 / 0',
+        'measured': '# NBVAL_IGNORE_OUTPUT\nimport time; print(time.time_ns())',
+    }
+    path = write(folder / '01_one.ipynb', cells)
+    assert record(folder=folder) == 0
+    before = path.read_bytes()
+    assert read(path)['skipped'].execution_count is None
+    assert read(path)['meant'].outputs[0].ename == 'ZeroDivisionError'
+    assert record(folder=folder) == 0
+    assert path.read_bytes() == before
 
 
 def test_the_next_cell_runs_after_one_that_raised(folder: Path):
