@@ -21,6 +21,7 @@ __all__ = [
     'LONG_SEC',
     'RECORDING',
     'SCRIPT',
+    'SHORT_SEC',
     'TERMINAL',
     'Audience',
     'after_start',
@@ -45,6 +46,8 @@ after_start: list[Callable[[], None]] = []
 LONG_SEC = 1.0
 # One that is shorter is not looked at: it is as likely the machine that was busy, s.
 LATE_SEC = 0.2
+# Nor is the callback of a timer that is shorter, though it outlasts the period, s.
+SHORT_SEC = 0.01
 
 is_ros2_command = False
 """Whether this process is `ros2` of a terminal: it is on the graph as the real one is."""

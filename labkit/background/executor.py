@@ -354,10 +354,11 @@ class BackgroundExecutor(Executor):
                 error = self._begin(work, entry)
             self._running = None
             took = time.monotonic() - self._running_since
-            if took >= settings.LATE_SEC:  # a busy machine may have kept it from running
+            late = _late_after(what) if took >= settings.SHORT_SEC else settings.LATE_SEC
+            if took >= late:  # a busy machine may have kept it from running
                 waited = self._read_waits()
                 took = max(self._waits_read - self._running_since - waited, 0.0)
-            if took >= settings.LATE_SEC or entry.took:
+            if took >= late or entry.took:
                 key = what if isinstance(what, Timer) else callback_name(what)
                 entry.took[key] = (*entry.took.get(key, ())[-2:], took)
             # The error of a node or action that was removed meanwhile is only that it was.
@@ -431,6 +432,12 @@ class BackgroundExecutor(Executor):
             return error
         task = Task(coroutine)  # type: ignore[no-untyped-call]
         return self._pending_tasks.add_callback(task, entry, work.entity)
+
+
+def _late_after(what: Any) -> float:
+    """Return after how long a callback is late: a timer's at the next time it is due, s."""
+    period = what.timer_period_ns * 1e-9 if isinstance(what, Timer) else settings.LATE_SEC
+    return min(period, settings.LATE_SEC)
 
 
 def _waits_for_a_processor() -> float:

@@ -66,7 +66,8 @@ class NodeEntry:
         parameters: The values of its parameters when it was started.
         budget: Number of callbacks left before the node leaves the executor, None for no limit.
         took: Seconds that callbacks took the last three times, by timer or by name, once one has
-            taken `LATE_SEC`; without those in which it could have run, and others did.
+            taken `LATE_SEC`, or longer than the period of its timer; without those in which it
+            could have run, and others did.
         spins: The foreground spins of it, the last one of which gets what its callbacks raise.
         lasts: Whether it stays when these have ended.
     """

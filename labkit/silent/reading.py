@@ -274,9 +274,9 @@ def _long_calls(entry: NodeEntry | None) -> Iterator[LongCall]:
         yield LongCall(*running[1:])
     timers = {*entry.node.timers}
     for what, times in dict(entry.took).items():
-        if times[-1] >= LATE_SEC:
-            timed = what in timers and not what.is_canceled()
-            period = what.timer_period_ns / 1e9 if timed else math.inf
+        timed = what in timers and not what.is_canceled()
+        period = what.timer_period_ns / 1e9 if timed else math.inf
+        if times[-1] >= min(period, LATE_SEC):
             least = min(times) if len(times) == 3 else 0.0
             yield LongCall(callback_name(what), times[-1], least, period)
 

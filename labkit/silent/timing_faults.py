@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from labkit.settings import LATE_SEC, LONG_SEC
+from labkit.settings import LONG_SEC, SHORT_SEC
 from labkit.silent.kinds import Fault, kind
 from labkit.silent.scene import OwnNode, Scene
 
@@ -216,7 +216,7 @@ def look_at_callbacks(scene: Scene) -> Iterator[Fault]:
                     f'{call.callback} of {node.name} takes {call.seconds:.1f} s; meanwhile '
                     'nothing else runs.',
                 )
-            elif not node.sim_time and call.least > max(call.period, LATE_SEC):
+            elif not node.sim_time and call.least > max(call.period, SHORT_SEC):
                 yield Fault(
                     OVERRUN,
                     (node.name,),

@@ -20,7 +20,7 @@ _LONG = (
     'e = runtime.entry_of(n)\nlab.wait_until(lambda: e.took or {seconds} < 1 and e.counts)'
 )
 _OVERRUN = (
-    "n = node('sleeper')\ndef tick(): time.sleep(0.25)\nn.create_timer({period}, tick)\n"
+    "n = node('sleeper')\ndef tick(): time.sleep({seconds})\nn.create_timer({period}, tick)\n"
     'lab.wait_until(lambda: runtime.entry_of(n).callbacks > 3)'
 )
 # Once `e` has a callback that took long, it is none that outlasts its period.
@@ -43,7 +43,7 @@ _ONE_CALL = (
 _BUSY = (
     '\nfrom labkit.background import executor\n'
     'executor._waits_for_a_processor, real = time.monotonic, executor._waits_for_a_processor\n'
-    f'{_OVERRUN.partition("lab.wait_until")[0].format(period=0.05)}'
+    f'{_OVERRUN.partition("lab.wait_until")[0].format(period=0.05, seconds=0.25)}'
     'lab.wait_until(lambda: runtime.entry_of(n).callbacks > 2)\n'
     'told = [f.kind.id for f in watch.look()]\n'
     'executor._waits_for_a_processor = real; lab.remove(n)\n'
@@ -79,8 +79,8 @@ CASES = {
         _LONG.format(seconds=0.01, more='m.create_timer(0.5, heard)'),
     ),
     'time.overrun': (
-        _OVERRUN.format(period=0.05),
-        _OVERRUN.format(period=1) + _ONE_NAME + _QUIET + _ONE_CALL + _QUIET + _BUSY,
+        _OVERRUN.format(period=1 / 30, seconds=0.05),
+        _OVERRUN.format(period=1, seconds=0.05) + _ONE_NAME + _QUIET + _ONE_CALL + _QUIET + _BUSY,
     ),
     'time.stuck-callback': (
         "free = threading.Event(); n = node('stuck'); begun = threading.Event()\n"
