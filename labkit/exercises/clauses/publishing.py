@@ -43,7 +43,7 @@ FIRST_CALLS = 3
 Trouble = tuple[str, Mistake]
 # Numbers that have a word, and those that have one as often as something is done.
 _NUMBERS = ('3', '4', '5', '8', '10', '20')
-_TIMES = {1: 'once', 2: 'twice'}
+_TIMES: dict[float, str] = {1: 'once', 2: 'twice'}
 
 
 def in_words(number: float) -> str:
