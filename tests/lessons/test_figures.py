@@ -1,7 +1,7 @@
 """A figure in the words of a task is the one that its judge takes: both are one name.
 
-That is read off the program: the words of a clause get their figures from names, and each of these
-names stands in the code of a judge, too.
+That is read off the program: the words of a clause have names in braces for their figures, what
+the program gives for them is made of names, and each of these stands in the code of a judge, too.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from proof import lessons
 import labkit
 from labkit.exercises import Exercise
 from labkit.exercises.clauses import WITHIN
+from labkit.exercises.words import files, sentences
 
 ROOT = Path(labkit.__file__).parent
 # What is 0 is not there; once, twice, one and half are said of single things.
@@ -52,6 +53,8 @@ def test_no_figure_of_a_task_is_written_a_second_time(exercise: Exercise) -> Non
 @pytest.mark.parametrize('exercise', EXERCISES)
 def test_judge_takes_each_name_that_gives_a_task_its_figure(exercise: Exercise) -> None:
     texts = [clause.text for clause in exercise.clauses]
+    for name in given():
+        assert _without_texts(name) <= in_judges(), ast.unparse(name)
     for node in every(ast.JoinedStr):
         if _stands_in(node, texts):
             assert _without_texts(node) <= in_judges(), ast.unparse(node)
@@ -78,7 +81,26 @@ def written() -> list[str]:
     """Return the pieces of text with a figure in them; in pairs stand changes of programs."""
     changes = {id(part) for pair in every(ast.Tuple) for part in ast.iter_child_nodes(pair)}
     texts = [str(n.value) for n in every(ast.Constant) if id(n) not in changes]
+    texts += [
+        piece.strip()
+        for path in files()
+        if 'lessons' in path.parts
+        for key, text in sentences(path).items()
+        if key.startswith('clauses.')
+        for piece in re.split(r'\{\w+\}', text)
+    ]
     return [text for text in texts if len(text) >= LEAST and figures(text)]
+
+
+@cache
+def given() -> list[ast.expr]:
+    """Return what words get for the names in their braces."""
+    calls = [call for call in every(ast.Call) if _fills_words(call)]
+    return [keyword.value for call in calls for keyword in call.keywords]
+
+
+def _fills_words(node: ast.AST) -> bool:
+    return isinstance(node, ast.Call) and ast.unparse(node.func) in ('WORDS.of', 'words.of')
 
 
 @cache
@@ -88,7 +110,7 @@ def in_judges() -> set[str]:
 
 
 def _outside(node: ast.AST) -> Iterator[str]:
-    if isinstance(node, ast.JoinedStr):
+    if isinstance(node, ast.JoinedStr) or _fills_words(node):
         return
     if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
         yield node.id

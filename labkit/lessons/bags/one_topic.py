@@ -47,7 +47,7 @@ exercise = Exercise(
     clauses=(
         IsThere(PATH),
         OnlyTopic(TOPIC, FLOAT64),
-        Asked(WORDS.clause('enough'), _enough),
+        Asked(WORDS.of(least=LEAST).clause('enough'), _enough),
         Asked(WORDS.clause('storage'), _storage),
     ),
     stage=InABag(PATH, TOPIC),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 
 from labkit.exercises import Exercise, Fail, words_of
-from labkit.exercises.clauses import Answers, Asked, Evidence, Words
+from labkit.exercises.clauses import WITHIN, Answers, Asked, Evidence, Words
 from labkit.exercises.draws import draw_names, in_a_row
 from labkit.exercises.observation import live
 
@@ -101,7 +101,7 @@ exercise = Exercise(
             TOPIC,
             TOPIC,
             STRING,
-            WORDS.clause('answers'),
+            WORDS.of(within=WITHIN).clause('answers'),
             answer=lambda text: REPLY if 'Hello' in text else None,
             draw=_draw,
             mistakes=MISTAKES,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 
 from labkit.exercises import Exercise, anything, words_of
-from labkit.exercises.clauses import Logs, Subscribes, Words
+from labkit.exercises.clauses import WITHIN, Logs, Subscribes, Words
 from labkit.exercises.draws import KNOWN, draw_names, draw_texts, in_a_row
 
 __all__ = ['exercise']
@@ -14,7 +14,7 @@ WORDS = words_of(__file__)
 
 TOPIC, STRING = '/hall', 'std_msgs/msg/String'
 NAMELESS = Words(WORDS.clause('nameless'))
-ALONE = Words(WORDS.clause('alone'))
+ALONE = Words(WORDS.of(within=WITHIN).clause('alone'))
 
 
 def _named(message: str | None) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator, Sequence
 
 from labkit.exercises import Exercise, Mistake, words_of
-from labkit.exercises.clauses import Answers, Words
+from labkit.exercises.clauses import WITHIN, Answers, Words
 from labkit.exercises.draws import draw_names
 
 __all__ = ['exercise']
@@ -87,7 +87,7 @@ exercise = Exercise(
             TOPIC,
             TOPIC,
             STRING,
-            WORDS.clause('answers'),
+            WORDS.of(within=WITHIN).clause('answers'),
             answer=_politely,
             draw=_draw,
             mistakes=MISTAKES,

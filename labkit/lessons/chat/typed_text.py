@@ -108,7 +108,7 @@ class _Typed(GraphClause):
 class _Says(GraphClause):
     """What was typed is published."""
 
-    text = WORDS.clause('says')
+    text = WORDS.of(arrives=f'{ARRIVES_SEC:g}').clause('says')
 
     @property
     def roles(self) -> dict[Role, str]:

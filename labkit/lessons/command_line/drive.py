@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 
 from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, words_of
-from labkit.exercises.clauses import Asked
+from labkit.exercises.clauses import Asked, in_words
 from labkit.exercises.messages_heard import Sample
 from labkit.lessons.command_line.last_command import commanded_rate
 from labkit.lessons.command_line.sent import (
@@ -152,10 +152,18 @@ exercise = Exercise(
             _expect_fields,
         ),
         Asked(
-            WORDS.clause('expect-count'),
+            WORDS.of(count=in_words(COUNT), digits=COUNT).clause('expect-count'),
             _expect_count,
         ),
-        Asked(WORDS.clause('expect-rate'), _expect_rate),
+        Asked(
+            WORDS.of(
+                times=in_words(HZ),
+                hz=HZ,
+                lowest=f'{HZ * (1 - TOLERANCE):g}',
+                highest=f'{HZ * (1 + TOLERANCE):g}',
+            ).clause('expect-rate'),
+            _expect_rate,
+        ),
     ),
     shared=[WHERE.topic],
     reliable=[WHERE.topic],

@@ -110,7 +110,10 @@ exercise = Exercise(
     clauses=(
         _WHERE,
         Asked(WORDS.clause('expect-once'), _expect_once),
-        Asked(WORDS.clause('expect-numbers'), _expect_numbers),
+        Asked(
+            WORDS.of(numbers=', then '.join(map(str, WANTED))).clause('expect-numbers'),
+            _expect_numbers,
+        ),
     ),
     shared=[TOPIC],
     stage=Commands(

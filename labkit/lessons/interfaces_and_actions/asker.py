@@ -7,7 +7,7 @@ from typing import Any
 
 from labkit.exercises import Exercise, anything, words_of
 from labkit.exercises.callback_count import find_node
-from labkit.exercises.clauses import Answers, AsksForEach, Named
+from labkit.exercises.clauses import WITHIN, Answers, AsksForEach, Named
 from labkit.exercises.draws import MANY
 
 __all__ = ['exercise']
@@ -46,7 +46,7 @@ exercise = Exercise(
             WISH,
             SUM,
             INT16,
-            WORDS.clause('answers'),
+            WORDS.of(within=WITHIN).clause('answers'),
             answer=lambda order: int(find_node('/calculator').factor) * order * (order + 1) // 2,
             # Many, of which two are the same, with the smallest one and a large one.
             draw=lambda: [

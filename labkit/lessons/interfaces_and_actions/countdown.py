@@ -128,14 +128,14 @@ exercise = Exercise(
         ),
         Pursues(
             NAME,
-            WORDS.clause('pursues-2'),
+            WORDS.of(pause=f'{PAUSE_SEC:g}').clause('pursues-2'),
             _draw,
             _feeds_back,
             LONGEST_SEC,
         ),
         Pursues(
             NAME,
-            WORDS.clause('pursues-3'),
+            WORDS.of(more=MORE).clause('pursues-3'),
             _draw_canceled,
             _cancels,
             LONGEST_SEC,

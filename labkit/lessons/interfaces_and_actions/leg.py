@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from labkit.exercises import Exercise, Fail, NotAttempted, anything, words_of
-from labkit.exercises.clauses import Answers, Evidence, GraphClause, Named
+from labkit.exercises.clauses import WITHIN, Answers, Evidence, GraphClause, Named
 from labkit.exercises.draws import MANY, MORE, draw_float, draw_size, in_a_row
 
 __all__ = ['exercise', 'fields_of']
@@ -78,7 +78,7 @@ exercise = Exercise(
             TOPIC,
             COMMANDS,
             TYPE,
-            WORDS.clause('answers'),
+            WORDS.of(within=WITHIN).clause('answers'),
             answer=lambda speed: speed,
             draw=_draw,
             outer_type=TWIST,

@@ -76,13 +76,13 @@ exercise = Exercise(
         Serves(NAME, ACTION),
         Pursues(
             NAME,
-            WORDS.clause('pursues'),
+            WORDS.of(least=LEAST, most=MOST).clause('pursues'),
             _draw,
             _accepts,
         ),
         Pursues(
             NAME,
-            WORDS.clause('pursues-2'),
+            WORDS.of(least=LEAST).clause('pursues-2'),
             _draw_inside,
             results(lambda order: list(range(LEAST, order + 1))),
         ),

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from labkit.exercises import Exercise, Fail, Mistake, Probe, Solution, expect, words_of
-from labkit.exercises.clauses import Answers, Evidence
+from labkit.exercises.clauses import WITHIN, Answers, Evidence
 from labkit.exercises.observation import Stimulus, live
 from labkit.exercises.variants import varied
 from labkit.lessons.my_name_is.stages import INNER, NOT_IN_IT, NOTHING_ADDED, STRING
@@ -45,7 +45,7 @@ def _trouble(text: str, came: Sequence[str]) -> Mistake | None:
 
 
 def _variant(*, ending: str = ENDING) -> Exercise:
-    words = WORDS.of(ending=ending)
+    words = WORDS.of(ending=ending, within=WITHIN)
     return Exercise(
         words=words,
         clauses=(

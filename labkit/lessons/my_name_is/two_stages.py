@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from labkit.exercises import Exercise, Fail, words_of
-from labkit.exercises.clauses import Answers, Evidence, GraphClause, Publishes, Test
+from labkit.exercises.clauses import WITHIN, Answers, Evidence, GraphClause, Publishes, Test
 from labkit.exercises.draws import draw_texts
 from labkit.lessons.my_name_is.stages import (
     COMPLETES,
@@ -65,7 +65,7 @@ exercise = Exercise(
             INNER,
             OUTER,
             STRING,
-            WORDS.clause('completes'),
+            WORDS.of(within=WITHIN).clause('completes'),
             draw=lambda: [OPENING, *draw_texts()],
             **COMPLETES,
         ),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from labkit.exercises import Exercise, Fail, Mistake, Probe, expect, words_of
 from labkit.exercises.clauses import (
+    WITHIN,
     Answers,
     Asked,
     Evidence,
@@ -93,7 +94,7 @@ class _ThreeNodes(GraphClause):
 class _Flows(GraphClause):
     """While all three work, all texts arrive."""
 
-    text = WORDS.clause('flows')
+    text = WORDS.of(within=WITHIN).clause('flows')
     own_life = True
 
     def judge(self, evidence: Evidence) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from labkit.exercises import Exercise, anything, words_of
-from labkit.exercises.clauses import Answers
+from labkit.exercises.clauses import WITHIN, Answers
 from labkit.exercises.draws import draw_int16s
 
 __all__ = ['exercise']
@@ -11,6 +11,7 @@ __all__ = ['exercise']
 WORDS = words_of(__file__)
 
 INT16 = 'std_msgs/msg/Int16'
+MORE = 1
 
 MISTAKES = (
     WORDS.mistake('evens/passed-on', lambda n: n),
@@ -27,8 +28,8 @@ exercise = Exercise(
             '/odds',
             '/evens',
             INT16,
-            WORDS.clause('answers'),
-            answer=lambda number: number + 1,
+            WORDS.of(more=MORE, within=WITHIN).clause('answers'),
+            answer=lambda number: number + MORE,
             draw=lambda: draw_int16s(-32767, 32765, 2),
             mistakes=MISTAKES,
         ),

@@ -20,6 +20,6 @@ exercise = Exercise(
     words=WORDS,
     clauses=(
         Publishes('/ones', 10.0, INT16),
-        Says('/ones', 1, words=WORDS.clause('says'), mistakes=MISTAKES),
+        Says('/ones', 1, words=WORDS.of(number=1).clause('says'), mistakes=MISTAKES),
     ),
 )

@@ -214,11 +214,17 @@ exercise = Exercise(
         _Run(TOPIC, 10.0, INT16),
         Messages(
             TOPIC,
-            WORDS.clause('messages'),
+            WORDS.of(
+                first=FIRST,
+                second=FIRST + 2,
+                third=FIRST + 4,
+                largest=LARGEST,
+                last_but_one=LARGEST - 2,
+            ).clause('messages'),
             _up_to_the_limit,
         ),
         Asked(
-            WORDS.clause('after-the-limit'),
+            WORDS.of(again=_again()).clause('after-the-limit'),
             _after_the_limit,
         ),
     ),

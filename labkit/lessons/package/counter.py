@@ -104,7 +104,7 @@ exercise = Exercise(
         Built(PACKAGE),
         Runs('counter', 'counter', PACKAGE),
         Asked(
-            WORDS.clause('counts'),
+            WORDS.of(least=LEAST, most=MOST).clause('counts'),
             _counts,
         ),
         Asked(WORDS.clause('halves'), _halves),

@@ -17,7 +17,7 @@ exercise = Exercise(
     words=WORDS,
     clauses=(
         Publishes(TOPIC, 5.0, INT16),
-        Says(TOPIC, 1, words=WORDS.clause('says')),
+        Says(TOPIC, 1, words=WORDS.of(number=1).clause('says')),
         Matches(
             TOPIC,
             NODE,

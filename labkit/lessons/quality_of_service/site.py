@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from labkit.exercises import Exercise, anything, words_of
-from labkit.exercises.clauses import Answers, Latched
+from labkit.exercises.clauses import WITHIN, Answers, Latched
 
 __all__ = ['exercise']
 
@@ -20,7 +20,7 @@ exercise = Exercise(
             '/move',
             '/site',
             STRING,
-            WORDS.clause('answers'),
+            WORDS.of(within=WITHIN).clause('answers'),
             answer=str,
             mistakes=[MORE],
         ),

@@ -55,7 +55,7 @@ ALL_CLEAR = WORDS.mistake('watchdog/all-clear')
 
 _HEARS = Subscribes(HEART, EMPTY)
 _BARKS = Words(WORDS.clause('barks'))
-_IN_TIME = Words(WORDS.clause('in-time'))
+_IN_TIME = Words(WORDS.of(within=f'{WITHIN_SEC:g}').clause('in-time'))
 _RESTS = Words(WORDS.clause('rests'))
 _AGAIN = Words(WORDS.clause('again'))
 CLAUSES = (_HEARS, _RESTS, _BARKS, _IN_TIME, _AGAIN)

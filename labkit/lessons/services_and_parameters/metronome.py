@@ -7,7 +7,7 @@ import random
 from collections.abc import Sequence
 
 from labkit.exercises import Exercise, Probe, Solution, words_of
-from labkit.exercises.clauses import Follows, GraphClause, HasParameter, Named, Refuses
+from labkit.exercises.clauses import OFF, Follows, GraphClause, HasParameter, Named, Refuses
 from labkit.exercises.clauses.parameter_client import Values
 from labkit.exercises.draws import draw_float
 from labkit.exercises.variants import varied
@@ -62,7 +62,7 @@ def _clauses(words: Words, low: float, high: float) -> tuple[GraphClause, ...]:
 
 
 def _variant(*, low: float = LIMITS[0], high: float = LIMITS[1]) -> Exercise:
-    words = WORDS.of(low=low, high=high)
+    words = WORDS.of(low=low, high=high, off=OFF)
     return Exercise(
         words=words,
         publishes={TOPIC: EMPTY},

@@ -8,11 +8,13 @@ from collections.abc import Sequence
 
 from labkit.exercises import Exercise, Fail, expect, words_of
 from labkit.exercises.clauses import (
+    OFF,
     Follows,
     HasParameter,
     Named,
     Refuses,
     Stream,
+    in_words,
 )
 from labkit.exercises.clauses.parameter_client import Values
 from labkit.exercises.draws import draw_float, draw_size
@@ -80,7 +82,7 @@ def _says_speed(values: Values, stream: Stream) -> None:
 _FOLLOWS = Follows(
     NODE,
     TOPIC,
-    WORDS.clause('follows'),
+    WORDS.of(times=in_words(HZ), off=OFF).clause('follows'),
     _draw,
     hz=lambda _: HZ,
     rule=_says_speed,

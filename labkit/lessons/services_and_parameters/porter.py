@@ -7,7 +7,7 @@ from typing import Any
 
 from labkit.exercises import Exercise, anything, words_of
 from labkit.exercises.callback_count import find_node
-from labkit.exercises.clauses import Answers, AsksForEach, Named
+from labkit.exercises.clauses import WITHIN, Answers, AsksForEach, Named
 from labkit.exercises.draws import MANY
 
 __all__ = ['exercise']
@@ -56,7 +56,7 @@ exercise = Exercise(
             WISH,
             NEWS,
             BOOL,
-            WORDS.clause('answers'),
+            WORDS.of(within=WITHIN).clause('answers'),
             answer=_message,
             draw=lambda: [True, False, *random.choices([True, False], k=MANY)],
             outer_type=STRING,

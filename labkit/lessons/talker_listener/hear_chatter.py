@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from labkit.exercises import Exercise, words_of
-from labkit.exercises.clauses import Logs, Subscribes
+from labkit.exercises.clauses import WITHIN, Logs, Subscribes
 
 __all__ = ['exercise']
 
@@ -19,7 +19,7 @@ exercise = Exercise(
         Logs(
             '/chatter',
             STRING,
-            WORDS.clause('logs'),
+            WORDS.of(within=WITHIN).clause('logs'),
         ),
     ),
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from labkit.exercises import Exercise, anything, words_of
-from labkit.exercises.clauses import Answers, Named
+from labkit.exercises.clauses import WITHIN, Answers, Named
 
 __all__ = ['exercise']
 
@@ -31,7 +31,7 @@ exercise = Exercise(
             '/thought',
             '/speech',
             STRING,
-            WORDS.clause('answers'),
+            WORDS.of(within=WITHIN).clause('answers'),
             answer=str.upper,
             by='/mouth',
             mistakes=MISTAKES,

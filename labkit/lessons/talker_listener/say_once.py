@@ -7,7 +7,7 @@ import random
 from labkit.exercises import Exercise, Fail, Watch, expect, words_of
 from labkit.exercises.clauses import Asked, Evidence, GraphClause, Runs
 from labkit.exercises.expect.timing import FOUND_SEC
-from labkit.exercises.observation import live
+from labkit.exercises.observation import LIFE_SEC, live
 
 __all__ = ['exercise']
 
@@ -31,7 +31,7 @@ HEARD_BEFORE = WORDS.mistake('say-once/heard-before')
 class _SaysIt(GraphClause):
     """When somebody listens, the node says the text."""
 
-    text = WORDS.clause('says-it')
+    text = WORDS.of(life=f'{LIFE_SEC:.0f}').clause('says-it')
 
     def find(self, evidence: Evidence) -> None:
         """Look for the publisher."""

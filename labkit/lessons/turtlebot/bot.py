@@ -11,7 +11,9 @@ from labkit.exercises.clauses import Asked
 from labkit.exercises.expect import digits
 from labkit.lessons.turtlebot.drive import EMPTY, ODOMETRY, SAME, STEP_SEC, Drive, Trial
 from labkit.lessons.turtlebot.drive_clauses import (
+    MANY,
     NAN,
+    PER_SECOND,
     STOPS,
     Begins,
     Hears,
@@ -100,7 +102,7 @@ exercise = Exercise(
     clauses=(
         Begins(*SIGN),
         Hears('/odom', ODOMETRY, SIGN[0]),
-        Asked(WORDS.clause('steps'), _steps),
+        Asked(WORDS.of(steps=STEPS, many=MANY, per_second=PER_SECOND).clause('steps'), _steps),
         Asked(
             WORDS.clause('gain'),
             _gain,

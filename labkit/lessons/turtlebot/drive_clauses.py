@@ -248,9 +248,12 @@ def look_at_time(drive: Drive, seconds: float) -> None:
         raise Fail(expected, f'it still moves after {taken:.1f} s', SLOW)
 
 
-SENSIBLE = Asked(WORDS.clause('sensible'), look_at_numbers)
+SENSIBLE = Asked(
+    WORDS.of(too_fast=f'{TOO_FAST:g}', too_round=f'{TOO_ROUND:g}').clause('sensible'),
+    look_at_numbers,
+)
 STOPS = Asked(WORDS.clause('stops'), look_at_end)
 RESTS = Asked(
-    WORDS.clause('rests'),
+    WORDS.of(rest=f'{REST_SEC:g}').clause('rests'),
     partial(look_at_end, may_rest=True),
 )

@@ -185,7 +185,7 @@ exercise = Exercise(
         Asked(WORDS.clause('turns'), _turns),
         Asked(RATE, look_at_rate),
         Asked(
-            WORDS.clause('arrives'),
+            WORDS.of(seconds=f'{SECONDS:.0f}').clause('arrives'),
             _arrives,
         ),
         Asked(

@@ -15,6 +15,7 @@ from labkit.exercises.clauses import Asked, Evidence
 from labkit.exercises.variants import varied
 from labkit.lessons.turtlebot.drive import EMPTY, STEP_SEC, Drive, Point, Trial
 from labkit.lessons.turtlebot.drive_clauses import (
+    RATE,
     REST_SEC,
     RESTS,
     SENSIBLE,
@@ -164,6 +165,8 @@ def _variant(*, outline: tuple[float, str] = (0.4, 'left')) -> Exercise:
         seconds=f'{seconds:g}',
         steps=f'{seconds / STEP_SEC:.0f}',
         step=STEP_SEC,
+        rate=RATE,
+        rest=f'{REST_SEC:g}',
     )
     clauses: tuple[Clause[Drive], ...] = (
         Begins(*SIGN),

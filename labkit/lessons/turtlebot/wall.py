@@ -196,7 +196,7 @@ exercise = Exercise(
         Begins(*SIGN),
         _Scans('/scan', SCAN, SIGN[0]),
         Asked(
-            WORDS.clause('speed'),
+            WORDS.of(hz=FEWEST_HZ).clause('speed'),
             _speed,
         ),
         Asked(

@@ -128,9 +128,9 @@ class InARepository(InAWorkspace):
 exercise = Exercise(
     words=WORDS,
     clauses=(
-        Asked(WORDS.clause('says-version'), _says_version),
+        Asked(WORDS.of(version=VERSION).clause('says-version'), _says_version),
         Asked(
-            WORDS.clause('has-files'),
+            WORDS.of(version=VERSION).clause('has-files'),
             _has_files,
         ),
         Asked(WORDS.clause('has-sources-alone'), _has_sources_alone),
