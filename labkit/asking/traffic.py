@@ -106,12 +106,19 @@ class Publication(NamedTuple):
 
 
 @contextmanager
-def publications() -> Iterator[list[Publication]]:
-    """Note what is published in this process meanwhile: a message does not say who has sent it."""
+def publications(
+    tell: Callable[[Publication], None] = lambda publication: None,
+) -> Iterator[list[Publication]]:
+    """Note what is published in this process meanwhile: a message does not say who has sent it.
+
+    Args:
+        tell: Called with each of them at once.
+    """
     notes: list[Publication] = []
 
     def note(publication: Publication, _: Any) -> None:
         notes.append(publication)
+        tell(publication)
 
     note_each(note)
     try:

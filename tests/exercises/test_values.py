@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from labkit.exercises.expect import apart
+from labkit.exercises.expect.values import text_trouble
 
 
 @pytest.mark.parametrize(
@@ -31,3 +32,10 @@ def test_two_long_texts_show_where_they_part() -> None:
     expected, seen = apart([f'{start} 17 {end}'], [f'{start} 71 {end}'])
     assert ' 17 ' in expected and ' 71 ' in seen
     assert len(expected) < 120
+
+
+def test_what_a_long_text_lacks_is_told_in_short() -> None:
+    for wanted, seen in (('Ada' + 'b' * 900, 'Ada'), ('Ada', 'Ada' + 'b' * 900)):
+        mistake = text_trouble(seen, wanted)
+        assert mistake is not None
+        assert "'bbb" in mistake.reason and len(mistake.reason) < 160

@@ -73,7 +73,7 @@ def text_trouble(seen: Any, wanted: Any) -> Mistake | None:
     if seen.lower() == wanted.lower():
         return common_mistakes.LETTERS
     if seen.startswith(wanted):
-        return common_mistakes.TOO_LONG.of(more=seen[len(wanted) :])
+        return common_mistakes.TOO_LONG.of(more=show([seen[len(wanted) :]]))
     if wanted.startswith(seen):
-        return common_mistakes.TOO_SHORT.of(less=wanted[len(seen) :])
+        return common_mistakes.TOO_SHORT.of(less=show([wanted[len(seen) :]]))
     return None

@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 from labkit.exercises import Exercise, Fail, words_of
 from labkit.exercises.clauses import WITHIN, Answers, Asked, Evidence, Words
 from labkit.exercises.draws import draw_names, in_a_row
-from labkit.exercises.observation import live
+from labkit.exercises.observation import Stimulus, live
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+    from rclpy.publisher import Publisher
 
 __all__ = ['exercise']
 
@@ -32,6 +40,9 @@ MISTAKES = (
 )
 KEPT = WORDS.mistake('greeter/kept')
 LEFT_BEHIND = WORDS.mistake('greeter/left-behind')
+
+
+AT_ONCE = WORDS.mistake('greeter/at-once')
 
 
 def _draw() -> list[str]:
@@ -81,7 +92,16 @@ def _used_once(evidence: Evidence) -> None:
         return sum(end.node == node for end in probe.publishers(TOPIC))
 
     if here is not None:
-        live(probe, {TOPIC: STRING}, GONE_SEC, nodes=[node])
+        # In this process all arrives at once, so it is looked at how the publisher is treated.
+        hello = Stimulus(at=0.5, topic=TOPIC, msg_type=STRING, fields={'data': 'Bo: Hello'})
+        with _destroyed_at_once(here) as hasty:
+            live(probe, {TOPIC: STRING}, GONE_SEC, stimuli=[hello], nodes=[node])
+        if hasty:
+            raise Fail(
+                'a publisher that is destroyed when its message has arrived',
+                f'one of {node} that has not waited for that',
+                AT_ONCE,
+            )
     else:
         # Until the graph tells that they are gone, or the check's time is over.
         probe.wait(lambda: not kept())
@@ -91,6 +111,41 @@ def _used_once(evidence: Evidence) -> None:
             f'{kept()} of them',
             LEFT_BEHIND,
         )
+
+
+@contextmanager
+def _destroyed_at_once(node: Node) -> Iterator[list[Publisher]]:
+    """Note the publishers that are destroyed in the moment of their last message, unasked."""
+    from rclpy.publisher import Publisher
+
+    from labkit.asking.traffic import Publication, publications
+
+    made: Any = Publisher
+    acked, destroyed = made.wait_for_all_acked, made.destroy
+    said = WeakKeyDictionary[Publisher, int]()
+    found: list[Publisher] = []
+
+    def now() -> int:
+        return int(node.get_clock().now().nanoseconds)
+
+    def note(publication: Publication) -> None:
+        said[publication.publisher] = now()
+
+    def wait(self: Publisher, *args: Any, **kwargs: Any) -> Any:
+        said.pop(self, None)
+        return acked(self, *args, **kwargs)
+
+    def destroy(self: Publisher) -> None:
+        if said.pop(self, None) == now():
+            found.append(self)
+        destroyed(self)
+
+    made.wait_for_all_acked, made.destroy = wait, destroy
+    try:
+        with publications(note):
+            yield found
+    finally:
+        made.wait_for_all_acked, made.destroy = acked, destroyed
 
 
 exercise = Exercise(

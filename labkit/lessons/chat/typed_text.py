@@ -152,7 +152,7 @@ class _Says(GraphClause):
     ) -> Fail:
         """Return what is wrong with what came first, where something else was due, or nothing."""
         seen = f'data = {expect.show(came[:3])}' if came else f'nothing on {TOPIC}'
-        wanted = f'data = {expect.show([right])} on {TOPIC} for the line {line!r}'
+        wanted = f'data = {expect.show([right])} on {TOPIC} for the line {expect.show([line])}'
         if not right:
             wanted = f'one message on {TOPIC} for each line, and no other'
         mistake: Mistake | None = SILENT

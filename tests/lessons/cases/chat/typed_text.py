@@ -16,6 +16,18 @@ ANSWERS = [
         ('Ada: {text}', 'Ada:{text}'),
     ),
     wrong(
+        'nothing for a namesake',
+        'nothing was published for it within 3 s',
+        ('    if text:\n', "    if text and not text.startswith('Ada'):\n"),
+    ),
+    wrong('the first 1000 letters', 'The text ends too early', ('{text}', '{text[:1000]}')),
+    wrong(
+        'thirty lines and no more',
+        'nothing was published for it within 3 s',
+        ('    if text:\n', '    teller.count += 1\n    if text and teller.count <= 30:\n'),
+        ("'hall', 10)\n", "'hall', 10)\n        self.count = 0\n"),
+    ),
+    wrong(
         'in capital letters',
         'Capital and small letters differ',
         (').strip()', ').strip().upper()'),
