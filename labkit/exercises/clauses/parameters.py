@@ -24,6 +24,8 @@ __all__ = ['Follows', 'HasParameter', 'Refuses']
 
 # How many messages of a changed rate are looked at, and how long at least, s.
 MESSAGES, LEAST_SEC = 12, 3.0
+# So many sets of values are looked at in another process, where each takes long.
+ELSEWHERE = 4
 # Fewer than that do not tell a rate.
 FEW = 6
 # A node may begin anew with a message when a parameter changes.
@@ -138,6 +140,8 @@ class Follows(GraphClause):
     def judge(self, evidence: Evidence) -> str:
         """Set the parameters, and look at what is published then."""
         sets = self.draw()
+        if evidence.probe.node_object(self.node) is None:
+            sets = sets[:ELSEWHERE]
         with kept(evidence.probe, self.node, list(sets[0])) as before:
             self.look(evidence, before)
             for values in sets:

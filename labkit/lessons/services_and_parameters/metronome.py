@@ -23,9 +23,10 @@ LIMITS = 1.0, 20.0
 
 
 def _rates(low: float, high: float) -> Sequence[Values]:
-    """Return a rate that is no whole number, and both limits of the range."""
+    """Return some rates that are no whole numbers, and both limits of the range."""
     rates = [draw_float(3.0, 9.0), low, high]
     random.shuffle(rates)
+    rates += [draw_float(3.0, 9.0) for _ in range(random.randint(1, 2))]
     return [{'rate': rate} for rate in rates]
 
 

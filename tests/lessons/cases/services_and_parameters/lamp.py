@@ -70,6 +70,16 @@ ANSWERS = [
             '    def off(self):\n        self.is_on = False\n',
         ),
     ),
+    wrong(
+        'thirty requests and no more',
+        "message = ''",
+        (
+            '    def on_switch(self, request, response):\n',
+            '    def on_switch(self, request, response):\n'
+            "        self.count = getattr(self, 'count', 0) + 1\n"
+            '        if self.count > 30:\n            return response\n',
+        ),
+    ),
     right('functions, and an executor of its own'),
     right(
         'if and else',

@@ -27,6 +27,15 @@ ANSWERS = [
         ('        self.add_post_set_parameters_callback(self.on_change)\n', ''),
     ),
     wrong(
+        'five changes and no more',
+        'a message every',
+        (
+            '        for parameter in parameters:\n',
+            "        self.changes = getattr(self, 'changes', 0) + 1\n"
+            '        for parameter in parameters if self.changes <= 5 else ():\n',
+        ),
+    ),
+    wrong(
         'no range',
         'A range in the descriptor is checked by ROS itself',
         (

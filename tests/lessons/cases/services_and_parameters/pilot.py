@@ -113,6 +113,17 @@ ANSWERS = [
         ("msg.linear.x = self.get_parameter('speed').value", 'msg.linear.x = self.speed'),
     ),
     wrong(
+        'five changes and no more',
+        'after it has refused other values',
+        (
+            '    def on_change(self, parameters):\n',
+            '    def on_change(self, parameters):\n'
+            "        self.changes = getattr(self, 'changes', 0) + 1\n"
+            '        if self.changes > 5:\n            return\n',
+        ),
+        of='keeps the speed in an attribute',
+    ),
+    wrong(
         'no limit declared',
         'A node has the parameters that it declares',
         ("        self.declare('limit', 0.1, 'Greatest speed, in m/s')\n", ''),
