@@ -37,7 +37,8 @@ def reindex(args: Namespace) -> None:
         duration_ns = bag.end_ns - bag.start_ns
         metadata = Metadata(bag.storage, bag.files, bag.start_ns, duration_ns, bag.topics)
     try:
-        write_atomically(path / FILE_NAME, metadata.text(files).encode())
+        # Not through a link: it may be to the metadata of another bag.
+        write_atomically(path / FILE_NAME, metadata.text(files).encode(), follow_links=False)
     except OSError as error:
         raise LabError(f'{quoted(str(path))} can not be written: {error.strerror}.') from error
     log('INFO', _LOGGER, 'Reindexing complete.')

@@ -266,6 +266,17 @@ def test_metadata_is_written_anew(
         assert bag.note == '' and len(list(bag.messages())) == 20
 
 
+def test_metadata_is_written_through_no_link(tmp_path: Path) -> None:
+    path = made.make_mcap(tmp_path / 'walk', [('/count', 0, made.int16(0))])
+    own = tmp_path / 'thesis.txt'
+    own.write_text('years of work')
+    (path / 'metadata.yaml').unlink()
+    (path / 'metadata.yaml').symlink_to(own)
+    assert run('reindex', str(path)) == 0
+    assert own.read_text() == 'years of work'
+    assert read_metadata(path / 'metadata.yaml').count == 1
+
+
 @pytest.mark.parametrize(
     ('options', 'count'),
     [
