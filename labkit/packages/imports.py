@@ -69,14 +69,13 @@ _UNAVAILABLE = {
         'what launch files of MoveIt are written with',
         _REAL.format('moveit-configs-utils'),
     ),
-    'sensor_msgs_py': ('a reader of point clouds', _REAL.format('sensor-msgs-py')),
     **dict.fromkeys(
         ('ros2cli', 'ros2run', 'ros2launch', 'ros2topic', 'ros2node', 'ros2param', 'ros2bag'),
         ('the program ros2. Here, %ros2 has its words', ''),
     ),
     **{
         name: ('a part of tf2, the frames', _REAL.format(name.replace('_', '-')))
-        for name in ('tf2_kdl', 'tf2_sensor_msgs', 'tf2_tools')
+        for name in ('tf2_kdl', 'tf2_tools')
     },
     **{
         name: ('MoveIt, which plans how an arm moves', _REAL.format('moveit-py'))
@@ -94,7 +93,6 @@ _UNAVAILABLE = {
             ('diagnostic_updater', 'what tells the state of a device'),
             ('image_geometry', 'the geometry of a camera'),
             ('image_transport_py', 'what sends images in compressed form'),
-            ('laser_geometry', 'a converter of laser scans to point clouds'),
         )
     },
     'xacro': ('a language in which robots are described. Here, `pip install xacro` has it', ''),

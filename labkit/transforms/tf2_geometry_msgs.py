@@ -141,8 +141,13 @@ def _unit(rotation: Any) -> Quaternion:
     return normalized(matrix(q))
 
 
+def as_matrix(rotation: Any) -> Matrix:
+    """Return the matrix of the message of a quaternion."""
+    return matrix(_unit(rotation))
+
+
 def _turn(transform: TransformStamped) -> Matrix:
-    return matrix(_unit(transform.transform.rotation))
+    return as_matrix(transform.transform.rotation)
 
 
 def _applied(m: Matrix, v: Vector) -> Vector:

@@ -1,10 +1,13 @@
-"""Write real.json and real_messages.json: what the real tf2 says, where it is on the path.
+"""Write real.json, real_messages.json, real_clouds.json: what the real packages say.
+
+They have to be on the path:
 
     PYTHONPATH=FOLDER:tests:labkit/packages/stand_ins python tests/transforms/record_real.py
 
 Those in the repository were made with ros2/geometry2, branch jazzy, commit 646342c (2024-10-04):
 tf2/src and tf2_py/src/tf2_py.cpp compiled as one library for Python, tf2_ros_py/tf2_ros and
-tf2_geometry_msgs/src as they are.
+tf2_geometry_msgs/src as they are, tf2_sensor_msgs too; ros-perception/laser_geometry, branch
+rolling, commit 7688a58; ros2/common_interfaces, branch jazzy, commit 5283bd9.
 """
 
 from __future__ import annotations
@@ -17,13 +20,18 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import laser_geometry
 import tf2_geometry_msgs
 import tf2_py
+import tf2_sensor_msgs
+from sensor_msgs_py import point_cloud2
+from transforms import clouds
 from transforms.replay import KINDS, ask, make_buffer, put, transformed
 
 SECOND = 1_000_000_000
 FILE = Path(__file__).with_name('real.json')
 MESSAGES = Path(__file__).with_name('real_messages.json')
+CLOUDS = Path(__file__).with_name('real_clouds.json')
 Step = dict[str, Any]
 draw = random.Random(54)
 
@@ -347,6 +355,10 @@ def main() -> None:
     found = [{**one, 'said': transformed(tf2_geometry_msgs, one)} for one in messages()]
     MESSAGES.write_text('[\n' + ',\n'.join(map(json.dumps, found)) + '\n]\n', encoding='utf-8')
     print(f'{len(found)} messages')
+    made = [clouds.cloud_of(laser_geometry, case) for case in clouds.CASES]
+    said = [clouds.told(one, point_cloud2, tf2_sensor_msgs) for one in made]
+    CLOUDS.write_text('[\n' + ',\n'.join(map(json.dumps, said)) + '\n]\n', encoding='utf-8')
+    print(f'{len(said)} clouds')
 
 
 def _in_lines(story: dict[str, Any], key: str) -> str:
