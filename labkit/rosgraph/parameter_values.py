@@ -54,15 +54,18 @@ def to_yaml(node_name: str, values: Mapping[str, ParameterValue]) -> str:
 
     Args:
         node_name: Full name of the node.
-        values: Name -> value. Dots in names separate groups.
+        values: Name -> value. Dots in names separate groups, down to one that has the name of a
+            parameter: its names keep their dots, which the readers of parameter files take, too.
     """
     tree: dict[str, Any] = {}
     for name, value in values.items():
-        *groups, last = name.split('.')
+        parts = name.split('.')
+        deepest = range(1, len(parts))
+        taken = next((end for end in deepest if '.'.join(parts[:end]) in values), len(parts))
         branch = tree
-        for group in groups:
+        for group in parts[: taken - 1]:
             branch = branch.setdefault(group, {})
-        branch[last] = python_value(value)
+        branch['.'.join(parts[taken - 1 :])] = python_value(value)
     text: str = yaml.safe_dump({node_name: {'ros__parameters': tree}}, default_flow_style=False)
     return text
 

@@ -50,6 +50,24 @@ def test_what_is_dumped_can_be_loaded(tmp_path):
     assert {name: parameter.value for name, parameter in found.items()} == values
 
 
+def test_a_parameter_may_have_the_name_of_a_group(tmp_path):
+    names = ['b', 'b.size', 'b.size.x', 'pid.p', 'pid.p.max', 'pid.i']
+    for order in (names, names[::-1]):
+        values = {name: value_from(str(number)) for number, name in enumerate(order)}
+        path = tmp_path / 'lamp.yaml'
+        path.write_text(to_yaml('/lamp', values))
+        found = parameters_in(str(path), '/lamp')
+        assert {name: parameter.value for name, parameter in found.items()} == values
+        rclpy.init(args=['--ros-args', '--params-file', str(path)])
+        try:
+            declare = {'automatically_declare_parameters_from_overrides': True}
+            node = Node('lamp', **declare)
+            assert [node.get_parameter(name).value for name in order] == list(range(6))
+            node.destroy_node()
+        finally:
+            rclpy.shutdown()
+
+
 def test_what_is_for_every_node_comes_first(tmp_path):
     path = tmp_path / 'all.yaml'
     path.write_text(
