@@ -9,10 +9,14 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import TYPE_CHECKING, Any
 
+from lifecycle_msgs.srv import GetState
+
 from labkit.asking.traffic import sent_by
+from labkit.background import own_executors
 from labkit.background.nodes import existing_nodes, full_name, half_made
 from labkit.background.runtime import runtime
 from labkit.background.wait import wait_for
+from labkit.errors import LabError
 from labkit.rosgraph.endpoints import publishers
 from labkit.rosgraph.matching import why_deaf
 from labkit.rosgraph.names import EVERY_NODE_OFFERS
@@ -24,6 +28,10 @@ if TYPE_CHECKING:
     from rclpy.qos import QoSProfile
 
 __all__ = ['Failures', 'offers_service', 'stuck_callback', 'why_silent', 'why_unanswered']
+
+GET_STATE = 'lifecycle_msgs/srv/GetState'
+# How long a node may take to tell its state, s.
+STATE_SEC = 1.0
 
 
 class Failures:
@@ -64,9 +72,10 @@ def stuck_callback(patience_sec: float = LONG_SEC) -> str:
     if running is None or running[2] < LONG_SEC:
         return ''
     entry, callback, _ = running
+    earlier = 'an earlier ' * runtime.executor.runs_for_an_ended_node()
     return (
-        f'The callback {callback} of {entry.name} is still running; while it runs, no other '
-        'callback can. Let callbacks return soon.'
+        f'The callback {callback} of {earlier}{entry.name} is still running; while it runs, no '
+        'other callback can. Let callbacks return soon.'
     )
 
 
@@ -80,11 +89,27 @@ def _unspun(names: Collection[str], *, offers: bool = False) -> str:
     """
     for node in existing_nodes():
         name = full_name(node)
-        idle = runtime.entry_of(node) is None and node.executor is None
+        idle = runtime.entry_of(node) is None and not own_executors.is_spun(node)
         if name in names and node in half_made:
             return f'{name} is half made: an error has ended its __init__.'
         if name in names and idle and (offers or _has_callbacks(node)):
             return f'{name} is not spun: lab.spin(...) does that.'
+        if name in names and (running := _held(node)):
+            return running
+    return ''
+
+
+def _held(node: Node) -> str:
+    """Return which callback keeps an executor of the learner's own; '' if none does."""
+    executor = node.executor
+    if executor is None or executor is runtime.executor:
+        return ''
+    for call in own_executors.calls_in(executor):
+        if call.node is node and call.seconds >= LONG_SEC:
+            return (
+                f'The callback {call.callback} of {full_name(node)} has been running for '
+                f'{call.seconds:.0f} s. Let callbacks return soon.'
+            )
     return ''
 
 
@@ -138,6 +163,8 @@ def why_silent(
         )
     if seen := (failures.seen(names) if failures else '') or _unspun(names):
         return seen
+    if seen := _inactive(node, names):
+        return seen
     if heard:
         return 'Maybe they come more slowly than that.'
     seen = (
@@ -147,6 +174,32 @@ def why_silent(
     if _has_published(names, topic):
         return f'{seen} It has published before.'
     return f'{seen} Maybe its timer does not run, or publish() is not reached.' if guess else seen
+
+
+def _inactive(node: Node, names: Collection[str]) -> str:
+    """Return which of some nodes has a life cycle and is not active; '' if none is."""
+    from labkit.asking.service_calls import AGAIN_SEC, ServiceCalls
+
+    if runtime.called_by_callback():
+        return ''
+    offered = dict(node.get_service_names_and_types())
+    for name in names:
+        if GET_STATE not in offered.get(f'{name}/get_state', ()):
+            continue
+        with ServiceCalls(node, GetState, f'{name}/get_state') as service:
+            try:
+                answer = service.call(GetState.Request(), STATE_SEC, again_sec=AGAIN_SEC)
+            except LabError:  # who does not answer is not told to be inactive
+                continue
+        label = answer.current_state.label
+        if label != 'active':
+            to_do = {'unconfigured': '{id: 1}, then {id: 3}', 'inactive': '{id: 3}'}.get(label)
+            todo = f' Its service {name}/change_state does that: transition {to_do}.'
+            return (
+                f'{name} has a life cycle, and its state is {label}: it publishes only while it '
+                f'is active.{todo if to_do else ""}'
+            )
+    return ''
 
 
 def _has_published(names: Collection[str], topic: str) -> bool:

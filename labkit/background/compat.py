@@ -64,6 +64,7 @@ __all__ = [
     'take_all',
     'take_logs',
     'takers',
+    'tasks_of',
     'timer_of_rate',
     'write_for',
 ]
@@ -175,6 +176,12 @@ def keep_feedback(handle: ClientGoalHandle, result: Future) -> Callable[[], None
     if (heard := callbacks.get(goal)) is not None:
         result.add_done_callback(lambda _: callbacks.setdefault(goal, heard))  # type: ignore[no-untyped-call]
     return lambda: callbacks.pop(goal, None)
+
+
+def tasks_of(executor: Executor) -> list[tuple[Task, Any, Node | None]]:
+    """Return the tasks of an executor that are not done, each with its entity and node."""
+    with executor._tasks_lock:
+        return [each for each in executor._tasks if not each[0].done()]  # type: ignore[no-untyped-call]
 
 
 def is_shut_down(executor: Executor) -> bool:

@@ -289,8 +289,12 @@ class BackgroundExecutor(Executor):
     def running_period(self) -> float:
         """Return the period of the timer whose callback is running, s; 0 if none is."""
         running = self._running
-        timer = running[1] if running is not None else None
-        return timer.timer_period_ns * 1e-9 if isinstance(timer, Timer) else 0.0
+        return _period(running[1]) if running is not None else 0.0
+
+    def runs_for_an_ended_node(self) -> bool:
+        """Return whether the running callback is of a node that was ended or replaced since."""
+        running = self._running
+        return running is not None and running[0].node not in self._entries
 
     def running_for(self) -> tuple[NodeEntry, str, float] | None:
         """Return the node and the name of the running callback, and its seconds, or None."""
@@ -436,8 +440,15 @@ class BackgroundExecutor(Executor):
 
 def _late_after(what: Any) -> float:
     """Return after how long a callback is late: a timer's at the next time it is due, s."""
-    period = what.timer_period_ns * 1e-9 if isinstance(what, Timer) else settings.LATE_SEC
-    return min(period, settings.LATE_SEC)
+    return min(_period(what) or settings.LATE_SEC, settings.LATE_SEC)
+
+
+def _period(what: Any) -> float:
+    """Return the period of a timer, s; 0 if it was destroyed, or it is none."""
+    try:
+        return float(what.timer_period_ns * 1e-9) if isinstance(what, Timer) else 0.0
+    except InvalidHandle:
+        return 0.0
 
 
 def _waits_for_a_processor() -> float:

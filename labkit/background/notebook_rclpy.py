@@ -31,7 +31,7 @@ from rclpy.utilities import get_default_context
 from rclpy.validate_node_name import validate_node_name
 
 from labkit import domain_ids, settings, stop_button
-from labkit.background import compat, exits
+from labkit.background import compat, exits, own_executors
 from labkit.background.action_callbacks import guarded
 from labkit.background.arguments import (
     check_args,
@@ -367,6 +367,10 @@ class _NotebookSafe:
 
     def wait_for_ready_callbacks(self, executor: Any, *args: Any, **kwargs: Any) -> Any:
         """Wait for work of the learner's own executor, so that the stop button is heard."""
+        with own_executors.waiting(executor):
+            return self._wait_for_ready_callbacks(executor, *args, **kwargs)
+
+    def _wait_for_ready_callbacks(self, executor: Any, *args: Any, **kwargs: Any) -> Any:
         wait = ORIGINALS['wait_for_ready_callbacks']
         first, *rest = args or (kwargs.pop('timeout_sec', None),)
         given = getattr(first, 'timeout', first)
@@ -400,7 +404,8 @@ class _NotebookSafe:
 
     def run_task(self, task: Any) -> None:
         try:
-            ORIGINALS['run_task'](task)
+            with own_executors.in_task(task):
+                ORIGINALS['run_task'](task)
         except BaseException as error:
             if _in_cell():
                 raise

@@ -65,7 +65,8 @@ class Runtime:
         ended: Full names of nodes that have ended themselves, with the callback and what it did.
         foreign_threads: Threads that spin the learner's own executors, see `notebook_rclpy`.
         on_exit: Called when a cell ends with `sys.exit()`, out of no spin.
-        waits: What threads wait for: a rate's timer or a client, with words for it and the cell.
+        waits: What threads wait for: a rate's timer or a client, with words for it, the cell, and
+            the number of the thread.
     """
 
     def __init__(self) -> None:
@@ -75,7 +76,7 @@ class Runtime:
         self.helper: Node | None = None
         self.ended: dict[str, str] = {}
         self.foreign_threads: set[threading.Thread] = set()
-        self.waits: dict[Any, tuple[str, Cell]] = {}
+        self.waits: dict[Any, tuple[str, Cell, int]] = {}
         self.on_exit: Callable[[], None] = lambda: None
         self._starting = threading.RLock()  # never taken by a callback, see `start`
         self._ending = threading.Lock()
@@ -310,7 +311,7 @@ class Runtime:
     @contextmanager
     def waiting_for(self, entity: Any, words: str) -> Iterator[None]:
         """Note in a `with` block that a thread waits for a rate's timer or for a client."""
-        self.waits[entity] = (words, self.console.current_cell())
+        self.waits[entity] = (words, self.console.current_cell(), threading.get_ident())
         try:
             yield
         finally:

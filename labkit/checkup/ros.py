@@ -93,9 +93,10 @@ def _try_here(runtime: Runtime) -> str:
             'it stays so, restart the kernel.',
         )
     entry, callback, seconds = running
+    earlier = 'an earlier ' * runtime.executor.runs_for_an_ended_node()
     raise LabError(
-        f'No message can arrive: the callback {callback} of {entry.name} has been running for '
-        f'{seconds:.0f} s, and while it runs no other callback can.',
+        f'No message can arrive: the callback {callback} of {earlier}{entry.name} has been '
+        f'running for {seconds:.0f} s, and while it runs no other callback can.',
         todo='Restart the kernel, and let that callback return soon: no endless loop, no sleep.',
     )
 
@@ -219,12 +220,20 @@ def nodes() -> str:
     if runtime is None:
         return 'none'
     entries = [entry for entry in runtime.nodes() if not is_hidden(entry.name)]
+    names = [*(entry.name for entry in entries), *_spun_elsewhere(runtime)]
     found = [*_unspun(runtime), *_left_behind(entries), *_doubles(runtime, entries)]
     states = _states(entries)
     _raise_for_faults('parameters', 'remap', 'life', besides=found, also=states)
-    if not entries:
-        return 'none'
-    return '. '.join([first_few([entry.name for entry in entries]), *states])
+    return '. '.join([first_few(names), *states]) if names else 'none'
+
+
+def _spun_elsewhere(runtime: Runtime) -> list[str]:
+    """Return the nodes that executors of the learner's own spin."""
+    from labkit.background.nodes import full_name
+    from labkit.background.own_executors import is_spun
+
+    nodes = [node for node in runtime.unspun_nodes() if is_spun(node)]
+    return [full_name(node) for node in nodes if not is_hidden(node.get_name())]
 
 
 def _states(entries: list[NodeEntry]) -> list[str]:
@@ -237,13 +246,14 @@ def _states(entries: list[NodeEntry]) -> list[str]:
 
 def _unspun(runtime: Runtime) -> list[tuple[str, str]]:
     from labkit.background.nodes import full_name, half_made
+    from labkit.background.own_executors import is_spun
 
     nodes = [
         node
         for node in runtime.unspun_nodes()
-        # A node on another executor is spun by the owner of that one.
-        if node.executor is None and not is_hidden(node.get_name())
+        if not is_spun(node) and not is_hidden(node.get_name())
     ]
+    lost = {full_name(node) for node in nodes if node.executor is not None}
     found = [
         (
             f'{name} is half made: an error has ended its __init__.',
@@ -256,7 +266,9 @@ def _unspun(runtime: Runtime) -> list[tuple[str, str]]:
         made = f'{name} was made{f" {count} times" if count > 1 else ""}'
         found.append(
             (
-                f'{made}, but nobody spins it: its callbacks are never called.',
+                f'{name} is in an executor that nobody spins: its callbacks are not called.'
+                if name in lost
+                else f'{made}, but nobody spins it: its callbacks are never called.',
                 'Start it with lab.spin(node), or end it with lab.remove(node).',
             )
         )

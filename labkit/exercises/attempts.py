@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 from labkit import settings
 from labkit.exercises import common_mistakes
 from labkit.exercises.callback_count import is_given
+from labkit.exercises.expect import spinning
 from labkit.exercises.learner_errors import last_cell
 from labkit.exercises.machine_faults import refuse_machine_fault
 from labkit.exercises.verdict import Fail
@@ -63,10 +64,14 @@ def refuse_nameless(probe: Probe, task: str) -> None:
     Args:
         probe: The probe of the check.
         task: What the exercise asks for, in a few words.
+
+    Raises:
+        LabError: Who holds it is a callback of it that still runs.
     """
     from labkit.background.runtime import runtime
     from labkit.rosgraph.snapshot import node_names
 
+    spinning.earlier()
     known = node_names(probe.node)
     for entry in runtime.nodes():
         if entry.name in known or is_given(entry.name, probe.scope):

@@ -14,16 +14,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.exceptions import InvalidHandle
+from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
 
 from labkit.asking.silence import offers_service
 from labkit.asking.traffic import Sent, sent_by
-from labkit.background import compat
+from labkit.background import compat, own_executors
 from labkit.background.nodes import callback_name, existing_nodes, full_name, half_made, made
 from labkit.background.runtime import runtime
 from labkit.rosgraph.interfaces import type_name
-from labkit.rosgraph.names import is_hidden
+from labkit.rosgraph.names import EVERY_NODE_OFFERS, is_hidden
 from labkit.rosgraph.parameter_files import flat, sections_in
 from labkit.rosgraph.snapshot import Graph, is_whole, read_graph
 from labkit.rosgraph.yaml_loading import load_yaml_file
@@ -31,6 +33,7 @@ from labkit.settings import LATE_SEC
 from labkit.silent.rereading import reads_only_in_init
 from labkit.silent.scene import (
     Client,
+    Held,
     LongCall,
     OwnNode,
     ParameterFile,
@@ -112,6 +115,7 @@ class Reader:
             tuple(own),
             tuple(_sleepers(nodes)),
             _running(),
+            tuple(_held(nodes)),
             time.monotonic(),
         )
 
@@ -120,7 +124,8 @@ class Reader:
         entry = runtime.entry_of(node)
         origin = made.origins.get(node)
         cell = entry.cell if entry is not None else origin and origin.cell
-        is_spun = entry is not None or node.executor is not None
+        in_executor = entry is None and node.executor is not None
+        is_spun = entry is not None or own_executors.is_spun(node)
         name, namespace = full_name(node), node.get_namespace()
         clients = tuple(_clients(node))
         if not is_spun and cell is not None and cell is running:
@@ -135,6 +140,7 @@ class Reader:
             namespace,
             cell,
             is_spun,
+            in_executor,
             sim_time,
             now,
             self._jump(node, now) if sim_time else 0.0,
@@ -286,15 +292,56 @@ def _running() -> Running | None:
     if running is None or is_hidden(running[0].name):
         return None
     entry, callback, seconds = running
-    return Running(entry.name, callback, seconds, entry.cell)
+    ended = runtime.executor.runs_for_an_ended_node()
+    return Running(entry.name, callback, seconds, entry.cell, ended)
 
 
 def _sleepers(nodes: Sequence[Node]) -> Iterator[Sleeper]:
-    for entity, (words, cell) in tuple(runtime.waits.items()):
+    for entity, (words, cell, _) in tuple(runtime.waits.items()):
         for node in nodes:
             known = entity in (*node.timers, *node.clients)
-            if known and runtime.entry_of(node) is None and node.executor is None:
+            if known and runtime.entry_of(node) is None and not own_executors.is_spun(node):
                 yield Sleeper(full_name(node), words, cell)
+
+
+def _held(nodes: Sequence[Node]) -> Iterator[Held]:
+    """Yield the callbacks of executors of the learner's own for which others have to wait."""
+    own = {node.executor for node in nodes if node.executor is not None}
+    for executor in own - {runtime.executor}:
+        for call in own_executors.calls_in(executor):
+            group = getattr(call.entity, 'callback_group', None)
+            ends = [end for node in executor.get_nodes() for end in _ends(node)]
+            others = 'of its executor'
+            if isinstance(executor, MultiThreadedExecutor):
+                if not isinstance(group, MutuallyExclusiveCallbackGroup):
+                    continue
+                others = 'of its callback group'
+                ends = [end for end in ends if group.has_entity(end) and end is not call.entity]
+                if not ends:
+                    continue
+            waits = next(
+                (
+                    words
+                    for entity, (words, _, thread) in tuple(runtime.waits.items())
+                    if thread == call.thread and entity in ends
+                ),
+                '',
+            )
+            node = call.node or next(iter(executor.get_nodes()), None)
+            if node is not None and full_name(node):
+                yield Held(full_name(node), call.callback, call.seconds, others, waits)
+
+
+def _ends(node: Node) -> Iterator[Any]:
+    """Yield the ends of a node that may have something to do."""
+    yield from (timer for timer in node.timers if not _timer(timer).is_canceled)
+    yield from node.subscriptions
+    yield from (client for client in node.clients if compat.pending_requests(client))
+    yield from (
+        service
+        for service in node.services
+        if service.srv_name.rpartition('/')[2] not in EVERY_NODE_OFFERS
+    )
 
 
 # -- arguments ------------------------------------------------------------------------------------

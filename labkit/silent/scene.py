@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     'Client',
+    'Held',
     'LongCall',
     'OwnNode',
     'ParameterFile',
@@ -117,12 +118,32 @@ class LongCall:
 
 @dataclass(frozen=True)
 class Running:
-    """The callback that is running: its node, which may have ended, its name, and the seconds."""
+    """The callback that is running: its node, its name, the seconds, and if the node has ended."""
 
     node: str
     callback: str
     seconds: float
     cell: Any = None
+    ended: bool = False
+
+
+@dataclass(frozen=True)
+class Held:
+    """A callback that holds up an executor of the learner's own.
+
+    Attributes:
+        node: Its node.
+        callback: Its name.
+        seconds: For how long it has been running.
+        others: What can't run meanwhile, in words.
+        waits: What it waits for, in words; '' if for nothing that is known.
+    """
+
+    node: str
+    callback: str
+    seconds: float
+    others: str
+    waits: str = ''
 
 
 @dataclass(frozen=True)
@@ -163,6 +184,7 @@ class OwnNode:
         namespace: Its namespace.
         cell: The execution of the cell that made it.
         is_spun: Whether an executor runs it.
+        in_executor: Whether it is in an executor of the learner's own.
         sim_time: Whether it uses simulated time.
         now: Time of its clock, ns.
         went_back: Seconds by which its clock has jumped back.
@@ -182,6 +204,7 @@ class OwnNode:
     namespace: str
     cell: Any = None
     is_spun: bool = True
+    in_executor: bool = False
     sim_time: bool = False
     now: int = 0
     went_back: float = 0.0
@@ -222,7 +245,8 @@ class Scene:
         publishers: For each topic, the number of its publishers, hidden ones too.
         nodes: The nodes of this process.
         sleepers: What threads wait for though nobody spins the node.
-        running: The callback that is running, None if none is.
+        running: The callback that is running in the background, None if none is.
+        held: The callbacks that hold up executors of the learner's own.
         now: `time.monotonic()`.
     """
 
@@ -231,6 +255,7 @@ class Scene:
     nodes: tuple[OwnNode, ...] = ()
     sleepers: tuple[Sleeper, ...] = ()
     running: Running | None = None
+    held: tuple[Held, ...] = ()
     now: float = 0.0
 
     def own(self, name: str) -> OwnNode | None:

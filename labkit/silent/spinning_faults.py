@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 
+from labkit.settings import LONG_SEC
 from labkit.silent.kinds import Fault, kind
 from labkit.silent.scene import Scene
 
-__all__ = ['look_at_calls', 'look_at_ends', 'look_at_spinning']
+__all__ = ['look_at_calls', 'look_at_ends', 'look_at_executors', 'look_at_spinning']
 
 SLEEPER = kind(
     'life.rate-unspun',
@@ -29,6 +30,14 @@ UNSPUN_CLIENT = kind(
     'The future is never done: nobody spins the node of the client',
     'Run the node with lab.spin(node): the answer is taken when it is spun.',
     'the node is spun, or there was no request',
+)
+HELD = kind(
+    'life.held-executor',
+    'An executor of your own calls nothing any more: one of its callbacks does not return',
+    'Let it return: no endless loop, call_async() instead of call(). In a MultiThreadedExecutor, '
+    'what waits for another callback needs another callback group: '
+    'callback_group=ReentrantCallbackGroup() for the client.',
+    'the callback is alone in its callback group, or that is reentrant',
 )
 NO_SERVER = kind(
     'life.no-server',
@@ -72,7 +81,9 @@ def look_at_spinning(scene: Scene) -> Iterator[Fault]:
                 UNSPUN,
                 (node.name,),
                 'spin',
-                f'{node.name} was made, but nobody spins it: its callbacks are never called.',
+                f'{node.name} is in an executor that nobody spins: its callbacks are not called.'
+                if node.in_executor
+                else f'{node.name} was made, but nobody spins it: its callbacks are never called.',
             )
         for client in node.clients:
             if client.pending and client.is_ready:
@@ -83,6 +94,20 @@ def look_at_spinning(scene: Scene) -> Iterator[Fault]:
                     f'{node.name} has called {client.service}, but nobody spins it: the answer '
                     'is never taken.',
                 )
+
+
+def look_at_executors(scene: Scene) -> Iterator[Fault]:
+    """Find callbacks that hold up an executor of the learner's own."""
+    for one in scene.held:
+        if one.seconds >= 2 * LONG_SEC:
+            waits = f' It waits in {one.waits}, and what ends that is one of them.'
+            yield Fault(
+                HELD,
+                (one.node,),
+                one.callback,
+                f'{one.callback} of {one.node} has been running for {one.seconds:.0f} s; until '
+                f'it returns, no other callback {one.others} runs.{waits * bool(one.waits)}',
+            )
 
 
 def look_at_calls(scene: Scene) -> Iterator[Fault]:

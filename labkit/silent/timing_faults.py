@@ -199,8 +199,8 @@ def look_at_callbacks(scene: Scene) -> Iterator[Fault]:
             STUCK,
             (stuck.node,),
             stuck.callback,
-            f'{stuck.callback} of {stuck.node} has been running for {stuck.seconds:.0f} s; until '
-            'it returns, no other callback of this process runs.',
+            f'{stuck.callback} of {"an earlier " * stuck.ended}{stuck.node} has been running for '
+            f'{stuck.seconds:.0f} s; until it returns, no other callback of this process runs.',
             # The cell of its node; if that was made again, the cell which did.
             cell=None if scene.own(stuck.node) else stuck.cell,
         )

@@ -160,6 +160,22 @@ TIMEOUTS = {
         '/mute has a publisher on /chatter with the right type and QoS, but nothing came from it '
         'in that time. Maybe its timer does not run, or publish() is not reached.',
     ),
+    'a publisher that is not active': (
+        'from rclpy.lifecycle import LifecycleNode\n'
+        'node = lab.spin(LifecycleNode("cycle"))\n'
+        'node.create_lifecycle_publisher(String, "chatter", 10)\nnode.trigger_configure()\n'
+        'lab.wait_for_message("/chatter", String, timeout_sec=0.2)',
+        '/cycle has a life cycle, and its state is inactive: it publishes only while it is '
+        'active. Its service /cycle/change_state does that: transition {id: 3}.',
+    ),
+    'an active publisher that is silent': (
+        'from rclpy.lifecycle import LifecycleNode\n'
+        'node = lab.spin(LifecycleNode("cycle"))\n'
+        'node.create_lifecycle_publisher(String, "chatter", 10)\n'
+        'node.trigger_configure()\nnode.trigger_activate()\n'
+        'lab.wait_for_message("/chatter", String, timeout_sec=0.2)',
+        'Maybe its timer does not run, or publish() is not reached.',
+    ),
     'too few messages': (
         'speaker = lab.spin(Speaker())\nwith over_after(10, lambda: speaker.count):\n'
         '    lab.listen("/chatter", String, count=10000, timeout_sec=50)',

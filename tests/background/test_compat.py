@@ -128,6 +128,23 @@ print(compat.is_shut_down(executor))
     assert result.stdout == 'True\ndone\nNone False\nTrue\n', result.stderr
 
 
+def test_an_executor_knows_its_tasks(script):
+    result = script(
+        READY
+        + """
+def tick():
+    print([(each is timer, owner is node) for _, each, owner in compat.tasks_of(executor)])
+timer = node.create_timer(0.001, tick)
+executor.spin_once()
+timer.cancel()
+print(compat.tasks_of(executor))
+executor.create_task(print)
+print([(each, owner) for _, each, owner in compat.tasks_of(executor)])
+"""
+    )
+    assert result.stdout == '[(True, True)]\n[]\n[(None, None)]\n', result.stderr
+
+
 def test_a_node_forgets_its_executor(script):
     result = script(
         READY

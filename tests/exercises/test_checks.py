@@ -16,6 +16,8 @@ from counter_node import Counter
 from rclpy.node import Node
 from std_msgs.msg import Int16, String
 
+from labkit.background.runtime import runtime
+from labkit.errors import LabTimeout
 from labkit.exercises import Exercise, Fail, Lesson, NotAttempted, Outcome, Probe, Solution, expect
 from labkit.exercises.clauses import Answers, Graph
 from labkit.exercises.draws import draw_int16s
@@ -159,6 +161,30 @@ def test_callback_that_blocks_is_named(lab: ModuleType) -> None:
         release.set()
     assert verdict.outcome is Outcome.FAIL
     assert 'on_timer of /counter is still running' in verdict.seen
+
+
+@pytest.mark.slow('waits for what hangs')
+def test_a_callback_of_a_replaced_node_is_no_fault_of_the_new_one(lab: ModuleType) -> None:
+    release, begun = threading.Event(), threading.Event()
+
+    class Blocker(Counter):
+        def on_timer(self) -> None:
+            begun.set()
+            release.wait()
+
+    lab.spin(Blocker())
+    assert begun.wait(60)
+    try:
+        lab.spin(Counter())
+        verdict = exercise(counts).check()
+        with pytest.raises(LabTimeout, match='on_timer of an earlier /counter is still running'):
+            lab.wait_for_message('/odds', Int16, timeout_sec=0.1)
+    finally:
+        release.set()
+    assert verdict.outcome is Outcome.ERROR, repr(verdict)
+    assert 'on_timer of an earlier /counter, which has ended, still runs' in verdict.seen
+    lab.wait_until(lambda: runtime.executor.running_callback() is None)
+    assert exercise(counts).check().outcome is not Outcome.ERROR
 
 
 def test_messages_are_seen_while_another_callback_blocks(lab: ModuleType) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NoReturn
 
+from labkit.errors import LabError
 from labkit.exercises import common_mistakes
 from labkit.exercises.mistakes import Mistake
 from labkit.exercises.probe import Probe
@@ -13,7 +14,7 @@ from labkit.exercises.verdict import Fail
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
 
-__all__ = ['hanging', 'how_to_spin', 'outlasts', 'overloaded', 'runs', 'spun']
+__all__ = ['earlier', 'hanging', 'how_to_spin', 'outlasts', 'overloaded', 'runs', 'spun']
 
 
 def hanging(found: Hanging | None = None) -> None:
@@ -21,10 +22,14 @@ def hanging(found: Hanging | None = None) -> None:
 
     Args:
         found: What was found not to return; it is looked for if None.
+
+    Raises:
+        LabError: It is a callback of a node that was replaced: no fault of what is checked.
     """
     found = found or find_hanging()
     if found is None:
         return
+    earlier(found)
     where = f' ({found.line})' if found.line else ''
     if not found.node:
         raise Fail(
@@ -36,6 +41,24 @@ def hanging(found: Hanging | None = None) -> None:
         'callbacks that return at once',
         f'the callback {found.callback} of {found.node} is still running{where}',
         common_mistakes.BLOCKS,
+    )
+
+
+def earlier(found: Hanging | None = None) -> None:
+    """Raise LabError if a callback of a node that has ended does not return.
+
+    Args:
+        found: What was found not to return; it is looked for if None.
+    """
+    found = found or find_hanging()
+    if found is None or not found.ended:
+        return
+    where = f' ({found.line})' if found.line else ''
+    raise LabError(
+        f'{found.callback} of an earlier {found.node}, which has ended, still runs{where}: until '
+        'it returns, no callback of the new one can.',
+        todo='Wait until it has returned, then run the cell of the node and this one again. If it '
+        'never returns, restart the kernel (menu Kernel), and run the cells from the top.',
     )
 
 

@@ -27,6 +27,7 @@ class Hanging:
         line: Where in the learner's code it is; '' if that is not known.
         took: How long it was at work, s.
         period: The period of the timer that calls it, s; 0 if no timer does.
+        ended: Whether its node has ended: another one may have the name now.
     """
 
     node: str
@@ -34,6 +35,7 @@ class Hanging:
     line: str
     took: float = 0.0
     period: float = 0.0
+    ended: bool = False
 
 
 class Standstill:
@@ -65,7 +67,12 @@ class Standstill:
         node, callback = self.at[0] or ('', '')
         executor = self._runtime.executor
         return Hanging(
-            node, callback, _line_of(executor.thread), self.seconds, executor.running_period()
+            node,
+            callback,
+            _line_of(executor.thread),
+            self.seconds,
+            executor.running_period(),
+            executor.runs_for_an_ended_node(),
         )
 
     def _progress(self) -> tuple[tuple[str, str] | None, int]:

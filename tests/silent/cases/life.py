@@ -5,7 +5,22 @@ _UNSPUN = (
     f"{_SERVER}n = Node('caller'); c = n.create_client(Trigger, 'work'); c.wait_for_service()\n"
 )
 
+# A subscription, and a timer whose callback does not return.
+_HELD = (
+    'from rclpy.callback_groups import MutuallyExclusiveCallbackGroup\n'
+    'from rclpy.executors import MultiThreadedExecutor\n'
+    'free, begun = threading.Event(), threading.Event()\n'
+    'def tick(): begun.set(); free.wait()\n'
+    "n = Node('own'); n.create_subscription(String, 'chatter', heard, 10)\n"
+    'n.create_timer(0.01, tick{group}); e = MultiThreadedExecutor(2); e.add_node(n)\n'
+    'threading.Thread(target=e.spin, daemon=True).start(); begun.wait(); time.sleep(2.1)'
+)
+
 CASES = {
+    'life.held-executor': (
+        _HELD.format(group=''),
+        f'free.set()\n{_HELD}'.format(group=', MutuallyExclusiveCallbackGroup()'),
+    ),
     'life.rate-unspun': (
         "n = Node('sleepy'); r = n.create_rate(10)\n"
         'threading.Thread(target=r.sleep, daemon=True).start()\n'
