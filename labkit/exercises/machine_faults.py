@@ -13,6 +13,7 @@ import signal
 import sys
 from collections.abc import Sequence
 
+from labkit import settings
 from labkit.errors import LabError
 from labkit.exercises.mistakes import Mistake
 
@@ -100,7 +101,7 @@ def _is_ours(module: str, importer: str) -> bool:
 
     if module.partition('.')[0] in {_import_name(name) for name in pinned()}:
         return True
-    folders = (os.path.dirname(os.path.dirname(os.path.abspath(__file__))), sys.prefix)
+    folders = (os.path.dirname(settings.__file__), sys.prefix)
     return importer.startswith(tuple(folder + os.sep for folder in folders))
 
 
