@@ -233,6 +233,11 @@ def check_node(node: object, function: str = 'lab.spin') -> None:
             f'{function}() expects a node, but got the class {node.__name__}.',
             todo=f'Make a node of it: {function}({node.__name__}())',
         )
+    if isinstance(node, str):
+        raise LabError(
+            f'{function}() expects a node, but got the text {quoted(node)}.',
+            todo='Pass the node itself: the variable that holds it, without quotation marks.',
+        )
     if not isinstance(node, Node):
         raise LabError(
             f'{function}() expects a node, but got {quoted(node)}.',

@@ -83,8 +83,21 @@ def short_traceback(error: BaseException) -> str:
     lines = list(_folded(calls))
     if isinstance(error, LabError):
         return '\n'.join([*lines, f'{type(error).__name__}: {error}'])
-    said = map(str.rstrip, traceback.format_exception_only(error))
+    said = map(str.rstrip, _said(error))
     return '\n'.join([*lines, *said, *map(str.strip, _hint(error, error.__traceback__))])
+
+
+def _said(error: BaseException) -> list[str]:
+    """Return what Python says of an error, with the cell in place of its file."""
+    said = traceback.format_exception_only(error)
+    if isinstance(error, SyntaxError) and said[0].lstrip().startswith('File "'):
+        # What splits a cell into words does not know where these come from.
+        cell = cell_name(error.filename or '') or 'Cell' * (error.filename == '<tokenize>')
+        said[0] = f'  {cell}, line {error.lineno}\n' if cell else said[0]
+    if 'incompatible function arguments.' in said[-1]:
+        # What follows is about the types of C++.
+        said[-1] = said[-1].partition(' The following argument types')[0]
+    return said
 
 
 def _folded(calls: list[str]) -> Iterator[str]:

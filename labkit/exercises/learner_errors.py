@@ -11,6 +11,7 @@ from typing import Any
 
 from labkit import settings
 from labkit.errors import LabError, cell_name
+from labkit.exercises.first_slips import SLIPS, unquoted
 from labkit.exercises.machine_faults import machine_fault
 from labkit.exercises.mistakes import Mistake
 from labkit.exercises.verdict import LearnerError
@@ -139,7 +140,10 @@ def explain_error(error: BaseException) -> Mistake | None:
     text = str(error)
     if isinstance(error, SyntaxError):
         text = f'{text}\n{error.text or ""}'
-    for types, pattern, mistake in _KNOWN:
+    slip = unquoted(error)
+    if slip is not None:
+        return slip
+    for types, pattern, mistake in (*_KNOWN, *SLIPS):
         match = re.search(pattern, text) if type(error).__name__ in types else None
         if match:
             return mistake.of(**{key: value or '' for key, value in match.groupdict().items()})
