@@ -297,7 +297,7 @@ class IncludeLaunchDescription(Action):
             )
         source = launch_description_source
         self.source = source if isinstance(source, Source) else Source(source)
-        self.launch_arguments = pairs_in(launch_arguments)
+        self.launch_arguments = list(launch_arguments or ())
 
     def execute(self, context: Context) -> Sequence[Action]:
         path = os.path.abspath(perform(context, self.source.path))
@@ -312,6 +312,8 @@ class IncludeLaunchDescription(Action):
         arguments = [SetLaunchConfiguration(*pair) for pair in self.launch_arguments]
         for argument in arguments:
             argument.place = self.place
+        if not self.source.is_file:
+            return [*arguments, description]
         return [
             *arguments,
             _Step(lambda context: context.files.append(path)),
@@ -321,7 +323,7 @@ class IncludeLaunchDescription(Action):
 
     def _check_arguments(self, context: Context, description: LaunchDescription) -> None:
         """Raise a LaunchError if an argument that the file must be given is not given here."""
-        given = {perform(context, name) for name, _ in self.launch_arguments}
+        given = {perform(context, pieces(name)) for name, _ in self.launch_arguments}
         known: set[str] = set()
         for argument, includes in declared([description]):
             if argument.name in known or argument.default_value is not None:
@@ -335,7 +337,7 @@ class IncludeLaunchDescription(Action):
     def argument_names(self) -> set[str]:
         """Return the names of the arguments that it gives, as far as they are known already."""
         try:
-            return {perform(Context(), name) for name, _ in self.launch_arguments}
+            return {perform(Context(), pieces(name)) for name, _ in self.launch_arguments}
         except LaunchError:
             return set()
 
@@ -351,6 +353,7 @@ class Source:
     """The path of a launch file, and in which form it is; by default as its name says."""
 
     form = ''
+    is_file = True
 
     def __init__(self, launch_file_path: Any) -> None:
         self.path = pieces(launch_file_path)

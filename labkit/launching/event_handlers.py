@@ -118,8 +118,8 @@ class OnActionEventBase(BaseEventHandler):
             or callable(action_matcher)
         ):
             raise LaunchError(
-                f'{self.words[0]} of {type(self).__name__} is a {target_action_cls.__name__}, or '
-                f'a function, and this is {action_matcher!r}.',
+                f'{self.words[0]} of {type(self).__name__} is an action of the class '
+                f'{target_action_cls.__name__}, or a function, and this is {action_matcher!r}.',
                 place=placed(),
             )
         if not callable(on_event):

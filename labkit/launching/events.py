@@ -177,7 +177,7 @@ def matches_action(target_action: Action) -> Matcher:
 
 def matches_pid(pid: int) -> Matcher:
     """Return a function that chooses the program with a process id."""
-    return lambda action: action.process_details and action.process_details['pid'] == pid
+    return lambda action: action.process_details and action.process_details.get('pid') == pid
 
 
 def matches_name(name: str) -> Matcher:

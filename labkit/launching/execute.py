@@ -146,8 +146,7 @@ class ExecuteLocal(Action):
         options: See `_Options`.
 
     Attributes:
-        process_details: What is known of the program since it was started: name, pid, cmd, cwd,
-            env.
+        process_details: What is known of the program: name, cmd, cwd, env, and pid once it runs.
     """
 
     is_node = False
@@ -196,6 +195,12 @@ class ExecuteLocal(Action):
         if self.on_exit is not None:
             handler = OnProcessExit(target_action=self, on_exit=self.on_exit)
             context.register_event_handler(handler)
+        self.process_details = {
+            'name': start.name,
+            'cmd': [str(word) for word in start.command],
+            'cwd': start.cwd,
+            'env': start.environment,
+        }
         context.starts.append(start)
 
     def words(self, context: Context) -> tuple[str, list[str | Written]]:

@@ -1,9 +1,9 @@
 """The safe evaluator of `$(eval ...)` and `PythonExpression`, and of `ros2 topic echo --filter`.
 
 The real ones call Python's `eval`. Here an expression is arithmetic, comparisons, `and`, `or`,
-`not`, `if` and texts, and it can not grow without bounds. That of a launch file can not call
-anything. A filter knows the message `m` and its fields, and calls a few functions that are listed
-here.
+`not`, `if`, texts, lists and dictionaries, and it can not grow without bounds. It calls a few
+functions and methods of texts, which are listed here. That of a launch file knows the names of the
+module `math`, a filter the message `m` and its fields.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from __future__ import annotations
 import ast
 import math
 import operator
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
@@ -23,7 +24,6 @@ __all__ = ['evaluate', 'message_filter']
 
 # The longest expression, text and list, and the most bits of a whole number.
 LONGEST = 10_000
-_NAMES = {'pi': math.pi, 'e': math.e, 'tau': math.tau, 'inf': math.inf, 'nan': math.nan}
 _BINARY: dict[type, Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
@@ -40,20 +40,50 @@ _BINARY: dict[type, Callable[[Any, Any], Any]] = {
     ast.GtE: operator.ge,
     ast.In: lambda one, other: one in other,
     ast.NotIn: lambda one, other: one not in other,
+    ast.Is: operator.is_,
+    ast.IsNot: operator.is_not,
+    ast.BitOr: operator.or_,
+    ast.BitAnd: operator.and_,
+    ast.BitXor: operator.xor,
+    ast.LShift: operator.lshift,
+    ast.RShift: operator.rshift,
 }
 _UNARY: dict[type, Callable[[Any], Any]] = {
     ast.Not: operator.not_,
     ast.USub: operator.neg,
     ast.UAdd: operator.pos,
+    ast.Invert: operator.invert,
 }
-# What makes no more out of what it gets: not round(), which can take hours.
+
+
+def _round(number: float, ndigits: int | None = None) -> float:
+    """Round a number, to so few digits that it takes no time."""
+    if ndigits is not None and abs(ndigits) > 300:
+        raise LaunchError('round() takes up to 300 digits.')
+    return round(number, ndigits)
+
+
+# What makes little more out of what it gets.
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
-    each.__name__: each for each in (abs, all, any, bool, float, int, len, max, min, str, sum)
+    'round': _round,
+    **{
+        each.__name__: each
+        for each in (abs, all, any, bool, chr, float, int, len, max, min, ord, sorted, str, sum)
+    },
 }
 _OF_TEXTS = (
-    *('endswith', 'lower', 'partition', 'rpartition', 'rstrip', 'split', 'startswith', 'strip'),
-    'upper',
+    *('capitalize', 'count', 'endswith', 'find', 'isdigit', 'lower', 'lstrip', 'partition'),
+    *('removeprefix', 'removesuffix', 'rpartition', 'rstrip', 'split', 'startswith', 'strip'),
+    *('title', 'upper'),
 )
+# A conversion of %, with a width of up to three digits.
+_CONVERSION = re.compile(r'%[-+ #0]*\d{0,3}(\.\d{0,3})?[sriduxXofFeEgGc%]')
+# Of `math`, but what makes large whole numbers.
+_NAMES: dict[str, Any] = {
+    name: value
+    for name, value in vars(math).items()
+    if not name.startswith('_') and name not in ('comb', 'factorial', 'perm', 'prod')
+}
 _FAULTS = (ArithmeticError, LookupError, TypeError, ValueError, RecursionError, MemoryError)
 
 
@@ -64,15 +94,17 @@ class _Scope:
     Attributes:
         names: The names with their values.
         takes: What it is made of, for messages.
-        of_message: Whether it has fields, indices and functions.
+        of_message: Whether there is a message with fields.
     """
 
     names: Mapping[str, Any]
-    takes: str = 'numbers, texts, + - * / // % **, comparisons, in, and, or, not, if'
+    takes: str
     of_message: bool = False
 
 
-_OF_LAUNCH = _Scope(_NAMES)
+_TAKES = 'numbers, texts, + - * / // % **, comparisons, in, and, or, not, if'
+_CALLS = ', '.join(f'{name}()' for name in _FUNCTIONS)
+_OF_LAUNCH = _Scope(_NAMES, f'{_TAKES}, the names of math, {_CALLS}')
 
 
 def message_filter(expression: str, sample: Any) -> Callable[[Any], bool]:
@@ -98,8 +130,7 @@ def message_filter(expression: str, sample: Any) -> Callable[[Any], bool]:
             f'{quoted(expression)} is no expression: {why}.',
             todo='Such as "m.data > 5": m is the message.',
         ) from error
-    calls = ', '.join(f'{name}()' for name in _FUNCTIONS)
-    takes = f'm (the message) and its fields, {_OF_LAUNCH.takes}, {calls}'
+    takes = f'm (the message) and its fields, {_TAKES}, {_CALLS}'
 
     def value_for(message: Any) -> bool:
         try:
@@ -140,21 +171,20 @@ def evaluate(expression: str) -> str:
 
 
 def _value(node: ast.expr, scope: _Scope) -> Any:
-    if isinstance(node, ast.Constant) and isinstance(node.value, (bool, int, float, str)):
+    known = (bool, int, float, str, type(None))
+    if isinstance(node, ast.Constant) and isinstance(node.value, known):
         return node.value
-    if isinstance(node, (ast.List, ast.Tuple)):
+    if isinstance(node, (ast.List, ast.Tuple, ast.Set)):
         items = [_value(item, scope) for item in node.elts]
-        return items if isinstance(node, ast.List) else tuple(items)
+        makes = {ast.List: list, ast.Tuple: tuple, ast.Set: set}
+        return makes[type(node)](items)
+    if isinstance(node, ast.Dict) and None not in node.keys:
+        keys = [_value(key, scope) for key in node.keys if key is not None]
+        return dict(zip(keys, (_value(value, scope) for value in node.values), strict=True))
+    if isinstance(node, ast.JoinedStr) and not scope.of_message:
+        return _formatted(node, scope)
     if isinstance(node, ast.Name):
-        if node.id in scope.names:
-            return scope.names[node.id]
-        meant = {'true': 'True', 'false': 'False'}.get(node.id, f"'{node.id}'")
-        raise LaunchError(
-            f'{node.id} is no name in it.',
-            todo=f'Python writes {meant}.'
-            if meant in ('True', 'False')
-            else f'A text needs quotation marks: {meant}',
-        )
+        return _named(node.id, scope)
     if isinstance(node, ast.UnaryOp) and type(node.op) in _UNARY:
         return _UNARY[type(node.op)](_value(node.operand, scope))
     if isinstance(node, ast.BinOp) and type(node.op) in _BINARY:
@@ -164,24 +194,66 @@ def _value(node: ast.expr, scope: _Scope) -> Any:
     if isinstance(node, ast.IfExp):
         return _value(node.body if _value(node.test, scope) else node.orelse, scope)
     if isinstance(node, ast.Compare) and all(type(op) in _BINARY for op in node.ops):
-        left = _value(node.left, scope)
-        for op, comparator in zip(node.ops, node.comparators, strict=True):
-            right = _value(comparator, scope)
-            if not _BINARY[type(op)](left, right):
-                return False
-            left = right
-        return True
-    if scope.of_message and isinstance(node, ast.Attribute):
-        return _plain(_field(_value(node.value, scope), node.attr))
-    if scope.of_message and isinstance(node, ast.Subscript):
+        return _compared(node, scope)
+    if isinstance(node, ast.Subscript):
         return _plain(_value(node.value, scope)[_index(node.slice, scope)])
-    if scope.of_message and isinstance(node, ast.Call) and not node.keywords:
+    if isinstance(node, ast.Call) and not node.keywords:
         function = _function(node.func, scope)
         if function is not None:
-            return function(*(_value(each, scope) for each in node.args))
+            return _bounded(function(*(_value(each, scope) for each in node.args)))
+    if isinstance(node, ast.Attribute) and scope.of_message:
+        return _plain(_field(_value(node.value, scope), node.attr))
+    if _is_of_math(node, scope):
+        return scope.names[node.attr]  # type: ignore[attr-defined]
     raise LaunchError(
         f'{ast.unparse(node)} is not allowed in it.', todo=f'It takes {scope.takes}.'
     )
+
+
+def _is_of_math(node: ast.expr, scope: _Scope) -> bool:
+    """Return whether an expression is `math.pi` or another of its names."""
+    return (
+        isinstance(node, ast.Attribute)
+        and isinstance(node.value, ast.Name)
+        and node.value.id == 'math'
+        and not scope.of_message
+        and node.attr in scope.names
+    )
+
+
+def _named(name: str, scope: _Scope) -> Any:
+    if name in scope.names:
+        return scope.names[name]
+    meant = {'true': 'True', 'false': 'False'}.get(name, f"'{name}'")
+    raise LaunchError(
+        f'{name} is no name in it.',
+        todo=f'Python writes {meant}.'
+        if meant in ('True', 'False')
+        else f'A text needs quotation marks: {meant}',
+    )
+
+
+def _formatted(node: ast.JoinedStr, scope: _Scope) -> str:
+    """Return the text of an f-string without forms such as `:.2f`."""
+    parts = []
+    for part in node.values:
+        if isinstance(part, ast.FormattedValue):
+            if part.format_spec is not None or part.conversion != -1:
+                raise LaunchError('An f-string has no forms after : and ! in it.')
+            parts.append(str(_value(part.value, scope)))
+        else:
+            parts.append(str(_value(part, scope)))
+    return str(_bounded(''.join(parts)))
+
+
+def _compared(node: ast.Compare, scope: _Scope) -> bool:
+    left = _value(node.left, scope)
+    for op, comparator in zip(node.ops, node.comparators, strict=True):
+        right = _value(comparator, scope)
+        if not _BINARY[type(op)](left, right):
+            return False
+        left = right
+    return True
 
 
 def _field(message: Any, name: str) -> Any:
@@ -210,15 +282,53 @@ def _index(node: ast.expr, scope: _Scope) -> Any:
 
 
 def _function(node: ast.expr, scope: _Scope) -> Callable[..., Any] | None:
-    """Return a function, or a method of a text, that may be called."""
-    if isinstance(node, ast.Name):
-        return _FUNCTIONS.get(node.id)
-    if isinstance(node, ast.Attribute) and node.attr in _OF_TEXTS:
-        text = _value(node.value, scope)
-        if type(text) is str:
-            method: Callable[..., Any] = getattr(text, node.attr)
-            return method
+    """Return a function, or a method of a text or a dictionary, that may be called."""
+    if isinstance(node, ast.Name) and (node.id in _FUNCTIONS or not scope.of_message):
+        found = _FUNCTIONS.get(node.id) or scope.names.get(node.id)
+        return found if callable(found) else None
+    if _is_of_math(node, scope):
+        found = scope.names[node.attr]  # type: ignore[attr-defined]
+        return found if callable(found) else None
+    if isinstance(node, ast.Attribute):
+        return _method(_value(node.value, scope), node.attr)
     return None
+
+
+def _method(value: Any, name: str) -> Callable[..., Any] | None:
+    if type(value) is dict and name == 'get':
+        return value.get
+    if type(value) is not str:
+        return None
+    if name == 'join':
+        return lambda texts: _joined_by(value, texts)
+    if name == 'replace':
+        return lambda old, new: _replaced(value, old, new)
+    method: Callable[..., Any] | None = getattr(value, name) if name in _OF_TEXTS else None
+    return method
+
+
+def _joined_by(sign: str, texts: Sequence[str]) -> str:
+    _check_length(sum(len(sign) + len(text) for text in texts))
+    return sign.join(texts)
+
+
+def _replaced(text: str, old: str, new: str) -> str:
+    _check_length(len(text) + text.count(old) * len(new))
+    return text.replace(old, new)
+
+
+def _check_length(length: int) -> None:
+    if length > LONGEST:
+        raise LaunchError(f'It would have more than {LONGEST} characters.')
+
+
+def _bounded(value: Any) -> Any:
+    """Return a value, unless it is too long."""
+    if isinstance(value, int) and value.bit_length() > LONGEST:
+        raise LaunchError('The number is too large.')
+    if isinstance(value, (str, list, tuple)):
+        _check_length(len(value))
+    return value
 
 
 def _any_or_all(node: ast.BoolOp, scope: _Scope) -> Any:
@@ -235,18 +345,17 @@ def _joined(op: ast.operator, left: Any, right: Any) -> Any:
     """Return `left op right`, unless it would become too long."""
     numbers = isinstance(left, (int, float)) and isinstance(right, (int, float))
     if isinstance(op, ast.Mod) and not numbers:
-        raise LaunchError('% takes numbers.')  # a format can ask for any width
+        if isinstance(left, str) and '%' not in _CONVERSION.sub('', left):
+            return _bounded(left % right)
+        raise LaunchError('% takes numbers, or a text with conversions such as %d.')
     whole = isinstance(left, int) and isinstance(right, int)
     if isinstance(op, ast.Pow) and whole and left.bit_length() * abs(right) > LONGEST:
         raise LaunchError(f'{left} ** {right} is too large.')
+    if isinstance(op, ast.LShift) and whole and left.bit_length() + right > LONGEST:
+        raise LaunchError(f'{left} << {right} is too large.')
     if isinstance(op, ast.Mult) and not numbers:
         length = [one for one in (left, right) if not isinstance(one, (int, float))]
         times = [one for one in (left, right) if isinstance(one, int)]
-        if length and times and len(length[0]) * times[0] > LONGEST:
-            raise LaunchError(f'It would have more than {LONGEST} characters.')
-    value = _BINARY[type(op)](left, right)
-    if isinstance(value, int) and value.bit_length() > LONGEST:
-        raise LaunchError('The number is too large.')
-    if isinstance(value, (str, list, tuple)) and len(value) > LONGEST:
-        raise LaunchError(f'It would have more than {LONGEST} characters.')
-    return value
+        if length and times:
+            _check_length(len(length[0]) * times[0])
+    return _bounded(_BINARY[type(op)](left, right))

@@ -40,14 +40,14 @@ _PARTS = {
     'reset': ('keep',),
 }
 # Tags with actions in them.
-_WITH_ACTIONS = ('launch', 'group', 'timer')
+_WITH_ACTIONS = ('launch', 'group', 'ros_timer', 'timer')
+# Numbers that YAML has to write with a point.
+_FLOATS = ('period', 'respawn_delay', 'sigkill_timeout', 'sigterm_timeout')
 _REFUSED = {
     'node_container': 'nodes that share a process are programs in C++',
     'composable_node': 'nodes that share a process are programs in C++',
     'load_composable_node': 'nodes that share a process are programs in C++',
     'lifecycle_node': 'nodes with a life cycle are not part of this course',
-    'ros_timer': 'it waits for the time of ROS; take <timer>',
-    'set_ros_log_dir': 'set ROS_LOG_DIR before the launch',
     'set_use_sim_time': 'take <set_parameter name="use_sim_time" value="true"/>',
     # ROS 1.
     'rosparam': 'that is ROS 1; ROS 2 writes <param from="file.yaml"/> in a <node>',
@@ -106,9 +106,14 @@ class Entity:
 
     def setting(self, name: str) -> Any:
         """Return an attribute that is a number or a truth value."""
-        if self.has(name) and not isinstance(self.values[name], str):
-            return self.values[name]
-        return self.pieces(name)
+        if not self.has(name) or isinstance(self.values[name], str):
+            return self.pieces(name)
+        value = self.values[name]
+        if name in _FLOATS and not isinstance(value, float):
+            raise self.wrong(
+                f'has {name}: {value}, and a float is needed', todo=f'{name}: {value}.0'
+            )
+        return value
 
     def named(self, tag: str) -> list[Entity]:
         """Return the nested entities with a tag."""
@@ -361,6 +366,10 @@ def _include(entity: Entity) -> Action:
     )
 
 
+def _ros_timer(entity: Entity) -> Action:
+    return ros_actions.ROSTimer(period=entity.setting('period'), actions=_actions(entity))
+
+
 def _timer(entity: Entity) -> Action:
     return actions.TimerAction(
         period=entity.setting('period'),
@@ -531,9 +540,11 @@ _BUILDERS: dict[str, Callable[[Entity], Action]] = {
     'push_ros_namespace': _with(ros_actions.PushROSNamespace, 'namespace'),
     'reset': _reset,
     'reset_env': lambda entity: actions.ResetEnvironment(),
+    'ros_timer': _ros_timer,
     'set_env': _with(actions.SetEnvironmentVariable, 'name', 'value'),
     'set_parameter': _with(ros_actions.SetParameter, 'name', 'value'),
     'set_parameters_from_file': _with(ros_actions.SetParametersFromFile, 'filename'),
+    'set_ros_log_dir': _with(ros_actions.SetROSLogDir, 'new_log_dir'),
     'set_remap': _with(ros_actions.SetRemap, 'from', 'to'),
     'shutdown': lambda entity: actions.Shutdown(**_given(entity, reason='reason')),
     'timer': _timer,

@@ -210,6 +210,10 @@ class Action:
         """Return the actions in it, and whether it is open if they will be visited."""
         return ()
 
+    def get_sub_entities(self) -> list[Action]:
+        """Return the actions in it."""
+        return [action for inner, _ in self.inside() for action in inner]
+
     def describe(self) -> str:
         """Return one line for `--print-description`."""
         return type(self).__name__
@@ -264,6 +268,7 @@ class Context:
         argv: Arguments of the command line.
         files: The launch files that are being visited, the innermost last.
         starts: Processes that are to be started.
+        uses_sim_time: Whether timers of ROS are to go by the time of a simulator.
         rehearsing: Whether nothing is to happen, because only faults are looked for.
         say: Shows a line: level, who, text.
     """
@@ -276,6 +281,7 @@ class Context:
     timers: list[Timer] = field(default_factory=list)
     handlers: list[BaseEventHandler] = field(default_factory=list)
     events: list[Any] = field(default_factory=list)
+    uses_sim_time: bool = False
     rehearsing: bool = False
     is_shutdown: bool = False
     say: Callable[[str, str, str], None] = lambda level, who, text: None

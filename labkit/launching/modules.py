@@ -59,10 +59,6 @@ LEFT_OUT: dict[str, dict[str, str]] = {
         'NodeActionExtension': _INSIDE,
         'LifecycleNode': _LIFECYCLE,
         'LifecycleTransition': _LIFECYCLE,
-        'ROSTimer': 'it waits for the time of ROS; take TimerAction',
-        'RosTimer': 'it waits for the time of ROS; take TimerAction',
-        'SetROSLogDir': 'set ROS_LOG_DIR before the launch',
-        'SetUseSimTime': "take SetParameter('use_sim_time', True)",
     },
     'launch_ros.descriptions': {'ComposableNode': _COMPONENTS},
     'launch_ros.event_handlers': {'OnStateTransition': _LIFECYCLE},
@@ -74,7 +70,6 @@ LEFT_OUT: dict[str, dict[str, str]] = {
     'launch_ros.ros_adapters': dict.fromkeys(
         ('ROSAdapter', 'get_ros_adapter', 'get_ros_node'), _GRAPH
     ),
-    'launch_ros.substitutions': {'Parameter': 'take LaunchConfiguration'},
     'launch_ros.utilities': dict.fromkeys(
         (
             *('PluginException', 'add_node_name', 'evaluate_parameters', 'get_node_name_count'),
@@ -154,6 +149,7 @@ class LaunchDescriptionSource(actions.Source):
     ) -> None:
         super().__init__(location)
         self.description = launch_description
+        self.is_file = launch_description is None
 
     def load(self, path: str) -> LaunchDescription:
         return super().load(path) if self.description is None else self.description
@@ -283,9 +279,16 @@ def _functions(module: ModuleType) -> dict[str, Callable[..., Any]]:
 
 
 def _of_launch_ros() -> dict[str, dict[str, Any]]:
-    ros = {**_public(ros_actions), 'PushRosNamespace': ros_actions.PushROSNamespace}
+    ros = {
+        **_public(ros_actions),
+        'PushRosNamespace': ros_actions.PushROSNamespace,
+        'RosTimer': ros_actions.ROSTimer,
+    }
     values = {name: ros.pop(name) for name in ('Parameter', 'ParameterFile', 'ParameterValue')}
-    packages = ('ExecutableInPackage', 'FindPackage', 'FindPackagePrefix', 'FindPackageShare')
+    of_ros = (
+        *('ExecutableInPackage', 'FindPackage', 'FindPackagePrefix', 'FindPackageShare'),
+        'Parameter',
+    )
     joined = ros_actions.joined_namespace
     return {
         'launch_ros': {},
@@ -293,7 +296,7 @@ def _of_launch_ros() -> dict[str, dict[str, Any]]:
         'launch_ros.descriptions': values,
         'launch_ros.event_handlers': {},
         'launch_ros.events': {},
-        'launch_ros.substitutions': {name: vars(substitutions)[name] for name in packages},
+        'launch_ros.substitutions': {name: vars(substitutions)[name] for name in of_ros},
         'launch_ros.utilities': {
             'is_namespace_absolute': lambda ns: ns.startswith('/'),
             'is_root_namespace': lambda ns: ns == '/',

@@ -9,7 +9,7 @@ from typing import Any
 import yaml
 
 from labkit.files import read_limited
-from labkit.launching.actions import setting
+from labkit.launching.actions import TimerAction, setting
 from labkit.launching.execute import ExecuteProcess, Written
 from labkit.launching.model import (
     Action,
@@ -21,6 +21,7 @@ from labkit.launching.model import (
     check_node_name,
     perform,
     pieces,
+    placed,
 )
 from labkit.launching.parameter_types import SCALARS, coerce, is_value
 from labkit.rosgraph.packages import executable
@@ -33,9 +34,12 @@ __all__ = [
     'ParameterFile',
     'ParameterValue',
     'PushROSNamespace',
+    'ROSTimer',
     'SetParameter',
     'SetParametersFromFile',
+    'SetROSLogDir',
     'SetRemap',
+    'SetUseSimTime',
 ]
 
 
@@ -137,14 +141,23 @@ class Node(ExecuteProcess):
         super().__init__(cmd=[], name=exec_name, **options)
         if not isinstance(ros_arguments or [], list):
             raise LaunchError('ros_arguments is a list of texts.', place=self.place)
-        self.executable = pieces(executable)
-        self.package = None if package is None else pieces(package)
-        self.node_name = None if name is None else pieces(name)
-        self.node_namespace = None if namespace is None else pieces(namespace)
+        self.node_executable, self.node_package = executable, package
+        self._executable = pieces(executable)
+        self._package = None if package is None else pieces(package)
+        self._name = None if name is None else pieces(name)
+        self._namespace = None if namespace is None else pieces(namespace)
+        self._full_name = ''
         self.parameters = _parameters(parameters or [], self)
         self.remappings = [self._pair(one) for one in remappings or ()]
         self.ros_arguments = [pieces(word) for word in ros_arguments or ()]
         self.arguments = [pieces(word) for word in arguments or ()]
+
+    @property
+    def node_name(self) -> str:
+        """Its full name, once it was started."""
+        if not self._executed:
+            raise LaunchError("cannot access 'node_name' before executing action", place=placed())
+        return self._full_name
 
     def _pair(self, given: Any) -> tuple[Text, Text]:
         if not isinstance(given, tuple) or len(given) != 2:
@@ -158,12 +171,13 @@ class Node(ExecuteProcess):
     def words(self, context: Context) -> tuple[str, list[str | Written]]:
         namespace = joined_namespace(
             context.launch_configurations.get('ros_namespace'),
-            None if self.node_namespace is None else perform(context, self.node_namespace),
+            None if self._namespace is None else perform(context, self._namespace),
         )
-        name = '' if self.node_name is None else perform(context, self.node_name)
-        if self.node_name is not None:
+        name = '' if self._name is None else perform(context, self._name)
+        if self._name is not None:
             check_node_name(name)
         full = f'{namespace or "/"}/{name}'.replace('//', '/') if name else ''
+        self._full_name = full
         # A node without a namespace of its own may be in any that its program is given.
         key = full if namespace is not None and name else '/**'
         program, command = self._program(context)
@@ -188,10 +202,10 @@ class Node(ExecuteProcess):
 
     def _program(self, context: Context) -> tuple[str, list[str | Written]]:
         """Return the name of the program, and how to start it."""
-        name = perform(context, self.executable)
-        if self.package is None:
+        name = perform(context, self._executable)
+        if self._package is None:
             return os.path.basename(name), [name]
-        found = executable(perform(context, self.package), name)
+        found = executable(perform(context, self._package), name)
         return name, list(found.command)
 
     def _parameter_words(self, context: Context, full: str, key: str) -> Iterable[str | Written]:
@@ -228,7 +242,7 @@ class Node(ExecuteProcess):
             )
 
     def describe(self) -> str:
-        shown = {'package': self.package, 'executable': self.executable, 'name': self.node_name}
+        shown = {'package': self._package, 'executable': self._executable, 'name': self._name}
         words = [
             f'{word}={"".join(part.describe() for part in text)}'
             for word, text in shown.items()
@@ -302,6 +316,45 @@ class SetRemap(Action):
 
     def execute(self, context: Context) -> None:
         _add(context, 'ros_remaps', (perform(context, self.src), perform(context, self.dst)))
+
+
+class SetROSLogDir(Action):
+    """Set where programs that follow write their log files; within the folder until now."""
+
+    def __init__(self, new_log_dir: Any, **options: Any) -> None:
+        super().__init__(**options)
+        self.log_dir = pieces(new_log_dir)
+
+    def execute(self, context: Context) -> None:
+        home = context.environment.get('ROS_HOME') or os.path.expanduser('~/.ros')
+        folder = context.environment.get('ROS_LOG_DIR') or os.path.join(home, 'log')
+        new = perform(context, self.log_dir)
+        context.environment['ROS_LOG_DIR'] = os.path.join(folder, new)
+
+
+class SetUseSimTime(Action):
+    """Let `ROSTimer` go by the time of a simulator."""
+
+    def __init__(self, value: bool, **options: Any) -> None:
+        super().__init__(**options)
+        self.value = value
+
+    def execute(self, context: Context) -> None:
+        if self.value is not True:
+            raise LaunchError('SetUseSimTime takes True.')
+        context.uses_sim_time = True
+
+
+class ROSTimer(TimerAction):
+    """Visit actions after a time of ROS, which here is that of the clock: `<ros_timer>`."""
+
+    def execute(self, context: Context) -> None:
+        if context.uses_sim_time:
+            raise LaunchError(
+                'A ROSTimer that goes by the time of a simulator is not supported here.',
+                todo='Take TimerAction, or leave SetUseSimTime out.',
+            )
+        super().execute(context)
 
 
 def _add(context: Context, name: str, *values: Any) -> None:

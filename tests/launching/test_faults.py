@@ -102,6 +102,7 @@ YAML = [
     ('- log: {message: a, if: true}', 2, "if: 'true'"),
     ('- log: {message: a}\n  let: {name: a, value: b}', 1, 'each item is one name'),
     ('- log: [a', 3, 'This is no YAML'),
+    ('- timer:\n    period: 1\n    children: []', 3, 'period: 1.0'),
     ('- node:\n    pkg: toys\n    exec: echo_args\n    param:\n    - name: a', 6, "'value'"),
     ('- group:\n    scoped: "true"', 3, "'children'"),
     ('\t- log: {message: a}', 2, 'This is no YAML'),
@@ -123,6 +124,42 @@ PYTHON = [
     ('from launch_ros.actions import LifecycleNode\nLifecycleNode(name="a")', 2, 'life cycle'),
     ('from launch import LaunchService\nLaunchService()', 2, 'this launch runs already'),
     ('from launch.utilities import is_an', 1, 'Did you mean is_a?'),
+    (
+        'from launch import LaunchDescription\n'
+        'from launch_ros.actions import RosTimer, SetUseSimTime\n'
+        'def generate_launch_description():\n'
+        '    return LaunchDescription([SetUseSimTime(True),\n'
+        '        RosTimer(period=1.0, actions=[])])',
+        5,
+        'leave SetUseSimTime out',
+    ),
+    (
+        'from launch_ros.actions import Node\n'
+        "Node(package='toys', executable='echo_args').node_name",
+        2,
+        "cannot access 'node_name' before executing action",
+    ),
+    ('from launch.actions import TimerAction\nTimerAction(period=1, actions=[])', 2, 'period=1.0'),
+    (
+        'from launch.actions import IncludeLaunchDescription\n'
+        "IncludeLaunchDescription('a.launch.py', launch_arguments={'a': '1'})",
+        2,
+        'launch_arguments={...}.items()',
+    ),
+    (
+        'from launch_ros.actions import Node\n'
+        "Node(package='toys', executable='echo_args', remappings=[['a', 'b']])",
+        2,
+        "remappings=[('old', 'new'), ...]",
+    ),
+    (
+        'from launch.actions import LogInfo, RegisterEventHandler\n'
+        'from launch.event_handlers import OnProcessExit\n'
+        "log = LogInfo(msg='a')\n"
+        'RegisterEventHandler(OnProcessExit(target_action=log, on_exit=[log]))',
+        4,
+        'target_action of OnProcessExit is an action of the class ExecuteLocal',
+    ),
     ('import launch\nimport xacro', 2, 'pip install xacro'),
     ('from nav2_common.launch import RewrittenYaml', 1, 'apt install ros-jazzy-nav2-common'),
     ('\nimport lab_not_there', 2, 'ModuleNotFoundError'),

@@ -234,11 +234,12 @@ def test_timers(launch):
             '<timer period="0.05"><log message="second"/><executable cmd="echo"/></timer>',
             '<log message="first"/>',
             '<timer period="0.01"><timer period="0.01"><log message="inner"/></timer></timer>',
+            '<ros_timer period="0.01"><log message="third"/></ros_timer>',
         )
     )
     assert one.end() == 0
     said = [line.rpartition(' ')[2] for line in one.lines if 'launch.user' in line]
-    assert said[0] == 'first' and sorted(said[1:]) == ['inner', 'second']
+    assert said[0] == 'first' and sorted(said[1:]) == ['inner', 'second', 'third']
     assert '[echo-1]: process has finished cleanly' in one.shown
 
 

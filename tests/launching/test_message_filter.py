@@ -42,7 +42,7 @@ def test_filter(expression, message, passes):
         ('m.data.center(10 ** 9)', 'is not allowed'),
         ("__import__('os')", 'is not allowed'),
         ("open('x')", 'is not allowed'),
-        ('round(1, -10 ** 9)', 'is not allowed'),
+        ('round(1, -10 ** 9)', 'takes up to 300 digits'),
         ('max(m.data, key=len)', 'is not allowed'),
         ('[x for x in m.data]', 'is not allowed'),
         ("f'{m}'", 'is not allowed'),
