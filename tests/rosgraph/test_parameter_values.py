@@ -60,8 +60,7 @@ def test_a_parameter_may_have_the_name_of_a_group(tmp_path):
         assert {name: parameter.value for name, parameter in found.items()} == values
         rclpy.init(args=['--ros-args', '--params-file', str(path)])
         try:
-            declare = {'automatically_declare_parameters_from_overrides': True}
-            node = Node('lamp', **declare)
+            node = Node('lamp', automatically_declare_parameters_from_overrides=True)
             assert [node.get_parameter(name).value for name in order] == list(range(6))
             node.destroy_node()
         finally:

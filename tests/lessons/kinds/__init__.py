@@ -27,7 +27,7 @@ import yaml
 from cases import answers_of
 
 from labkit.exercises import Clause, Exercise, Outcome
-from labkit.exercises.lesson import all_lessons, load
+from labkit.exercises.found_lessons import all_lessons, load
 
 __all__ = ['KINDS', 'fields', 'main', 'stale', 'table_of', 'trouble']
 
