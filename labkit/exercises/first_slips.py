@@ -8,99 +8,58 @@ import traceback
 
 from labkit.background.tracebacks import is_learners
 from labkit.exercises.mistakes import Mistake
+from labkit.exercises.words import words_of
 
 __all__ = ['SLIPS', 'unquoted']
+
+WORDS = words_of(__file__)
 
 # Names of the exception, what its text looks like, the misconception; see `learner_errors`.
 SLIPS: tuple[tuple[tuple[str, ...], str, Mistake], ...] = (
     (
         ('TabError',),
         r'.',
-        Mistake(
-            'error/tabs',
-            'Tabs and spaces are mixed at the beginnings of lines. They look alike, and Python '
-            'counts them otherwise.',
-            'Write spaces alone: four for each step to the right.',
-        ),
+        WORDS.mistake('error/tabs'),
     ),
     (
         ('IndentationError',),
         r'unexpected indent',
-        Mistake(
-            'error/too-far-right',
-            'This line begins further to the right than the one before it, and that one does not '
-            'end with a colon.',
-            'Let the lines of one block begin exactly below each other.',
-        ),
+        WORDS.mistake('error/too-far-right'),
     ),
     (
         ('IndentationError',),
         r'expected an indented block',
-        Mistake(
-            'error/no-block',
-            'After a line that ends with a colon, what belongs to it begins further to the right.',
-            'Put four more spaces before this line.',
-        ),
+        WORDS.mistake('error/no-block'),
     ),
     (
         ('IndentationError',),
         r'unindent does not match',
-        Mistake(
-            'error/between-blocks',
-            'This line begins in a column in which no line before it begins, so nobody knows to '
-            'which block it belongs.',
-            'Let it begin exactly below the other lines of its block.',
-        ),
+        WORDS.mistake('error/between-blocks'),
     ),
     (
         ('SyntaxError',),
         r"'(?P<bracket>[(\[{])' was never closed",
-        Mistake(
-            'error/open-bracket',
-            'The bracket {bracket} is opened in this line, and never closed.',
-            'Write its other half.',
-        ),
+        WORDS.mistake('error/open-bracket'),
     ),
     (
         ('SyntaxError',),
         r'unterminated (triple-quoted )?(f-)?string literal',
-        Mistake(
-            'error/open-text',
-            'A text begins in this line, and its end is missing.',
-            'End it with the quotation mark with which it begins.',
-        ),
+        WORDS.mistake('error/open-text'),
     ),
     (
         ('SyntaxError',),
         r"expected ':'",
-        Mistake(
-            'error/no-colon',
-            'A line with class, def, if, for, while or with ends with a colon.',
-            'Write a : at the end of this line.',
-        ),
+        WORDS.mistake('error/no-colon'),
     ),
     (
         ('TypeError',),
         r'^rclpy_logging_rcutils_log\(\): incompatible function arguments',
-        Mistake(
-            'error/logs-no-text',
-            'A log line is a text, and the logger got something else.',
-            "Make a text of it: info(f'{{value}}'). The text of a message is msg.data.",
-        ),
+        WORDS.mistake('error/logs-no-text'),
     ),
 )
 
-_UNQUOTED = Mistake(
-    'error/no-quotes',
-    '{name} stands here without quotation marks, so Python takes it for a variable.',
-    'A text has quotation marks: {name!r}',
-)
-_UNKNOWN = Mistake(
-    'error/unknown-name',
-    'Python does not know the name {name}: it is misspelt, not imported, or a text without '
-    'quotation marks.',
-    'Correct it, import it, or write {name!r} if it is a text.',
-)
+_UNQUOTED = WORDS.mistake('error/no-quotes')
+_UNKNOWN = WORDS.mistake('error/unknown-name')
 # Where a text is asked for: the name of a node, topic or service, and the text of a message.
 _TEXTS = (
     r'(?:\bNode|__init__|create_node)\(\s*{name}\b',

@@ -16,35 +16,21 @@ from collections.abc import Sequence
 from labkit import settings
 from labkit.errors import LabError
 from labkit.exercises.mistakes import Mistake
+from labkit.exercises.words import words_of
 
 __all__ = ['machine_fault', 'refuse_machine_fault']
+
+WORDS = words_of(__file__)
 
 _MISSING = re.compile(r"ModuleNotFoundError: No module named '(?P<name>\w+)")
 _FILE = re.compile(r'^\s*File "(?P<path>[^"]+)", line \d+')
 _NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
 _KILLED = (-signal.SIGKILL, 128 + signal.SIGKILL)
 
-_INSTALL = (
-    'Run python3 -m labkit doctor in a terminal: it names all that is missing, and what to do.'
-)
-NO_PACKAGE = Mistake(
-    'machine/no-package', 'The package {name} is missing from this environment.', _INSTALL
-)
-NO_SPACE = Mistake(
-    'machine/no-space',
-    'There is no space left on the disk of this machine.',
-    'Delete what is not needed any more, and run this cell again.',
-)
-NO_MEMORY = Mistake(
-    'machine/no-memory',
-    'There was not enough memory on this machine.',
-    'Close notebooks and programs that are not needed, and run this cell again.',
-)
-KILLED = Mistake(
-    'machine/killed',
-    'A program was killed from outside (SIGKILL). The system does that when memory runs out.',
-    'Close notebooks and programs that are not needed. Start the program again, then check.',
-)
+NO_PACKAGE = WORDS.mistake('machine/no-package')
+NO_SPACE = WORDS.mistake('machine/no-space')
+NO_MEMORY = WORDS.mistake('machine/no-memory')
+KILLED = WORDS.mistake('machine/killed')
 
 
 def machine_fault(error: BaseException) -> Mistake | None:
