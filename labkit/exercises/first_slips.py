@@ -6,7 +6,6 @@ import linecache
 import re
 import traceback
 
-from labkit.background.tracebacks import is_learners
 from labkit.exercises.mistakes import Mistake
 from labkit.exercises.words import words_of
 
@@ -75,6 +74,8 @@ def unquoted(error: BaseException) -> Mistake | None:
     Args:
         error: What was raised; None is returned if it is no NameError of the learner's code.
     """
+    from labkit.background.tracebacks import is_learners
+
     if type(error) is not NameError:
         return None
     frames = [

@@ -9,12 +9,12 @@ __all__ = ['ANSWERS']
 ANSWERS = [
     wrong(
         'only x',
-        'away',
+        'distance and direction of the goal',
         ('math.hypot(dx, dy) <', 'abs(dx) <'),
     ),
     wrong(
         'only y',
-        'away',
+        'distance and direction of the goal',
         ('math.hypot(dx, dy) <', 'abs(dy) <'),
     ),
     wrong(
