@@ -58,8 +58,9 @@ def blocks_of(path: Path) -> list[str]:
 def files_of(path: Path) -> list[str]:
     """Return the files that a lesson makes: in a cell, or in an editor, as a task asks."""
     sources = [cell.source for cell in cells_of(path)]
-    written = [re.findall(r'^%%writefile (\S+)', source) for source in sources]
-    asked = [re.findall(r'^- .*`python3 (\S+\.py)`', source, flags=re.M) for source in sources]
+    pattern = r"^(?:%%writefile |Path\('|cat > )([\w/]+\.py)(?:'\)\.write_text| <<|$)"
+    written = [re.findall(pattern, source, flags=re.M) for source in sources]
+    asked = [re.findall(r'^- .*`python3 (\S+\.py)', source, flags=re.M) for source in sources]
     return [name for names in (*written, *asked) for name in names]
 
 

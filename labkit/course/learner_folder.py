@@ -51,7 +51,7 @@ _LANGUAGE = {
     'file_extension': '.py',
 }
 # Files next to the lessons that belong to tests, or are made by running them.
-_NOT_FOR_LEARNERS = re.compile(r'\.|(__pycache__|bags|legs_ws|ros2_ws)$')
+_NOT_FOR_LEARNERS = re.compile(r'\.|(__pycache__|bags|legs_ws|nodes|ros2_ws)$')
 
 
 def copy_lessons() -> list[str]:

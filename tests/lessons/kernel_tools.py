@@ -56,11 +56,14 @@ def mark() -> None:
 
 
 def _build_once() -> None:
-    """Let `colcon` be the one of `built_once`, and `lab.build` build the same text once."""
+    """Let `colcon` be the one of `built_once`, and `lab.build` build the same text once.
+
+    `python3` is that of the environment, as in a terminal of JupyterLab.
+    """
     workspace.colcon = _colcon_once
-    folder = str(_HERE / '.colcon')
+    first = [str(_HERE / '.colcon'), str(Path(sys.executable).parent)]
     paths = os.environ.get('PATH', os.defpath).split(os.pathsep)
-    os.environ['PATH'] = os.pathsep.join([folder, *(path for path in paths if path != folder)])
+    os.environ['PATH'] = os.pathsep.join([*first, *(path for path in paths if path not in first)])
 
 
 def _colcon_once(folder: Path, packages: list[str], **options: Any) -> None:

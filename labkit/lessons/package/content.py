@@ -30,6 +30,7 @@ from labkit.exercises.expect.timing import FOUND_SEC
 from labkit.exercises.machine_faults import refuse_machine_fault
 from labkit.exercises.messages_heard import Lived
 from labkit.exercises.observation import Life, live
+from labkit.lessons._terminal import APPEAR_SEC
 from labkit.lessons.package.learner_workspace import workspace
 
 if TYPE_CHECKING:
@@ -37,8 +38,6 @@ if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = [
-    'APPEAR_SEC',
-    'NODE_NAME',
     'TESTED',
     'Built',
     'InAWorkspace',
@@ -50,7 +49,6 @@ __all__ = [
 
 WORDS = words_of(__file__)
 
-APPEAR_SEC = 15.0
 # How long a node is watched that keeps a time of its own, s of real time.
 WATCH_SEC = 8.0
 # The packages of the lesson, some of which have names that are close to each other.

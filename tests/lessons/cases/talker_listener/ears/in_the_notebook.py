@@ -1,7 +1,7 @@
-import rclpy
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from std_msgs.msg import String
+
+import labkit as lab
 
 
 class Ear(Node):
@@ -11,11 +11,8 @@ class Ear(Node):
         self.timer = self.create_timer(0.2, self.listen)
 
     def listen(self):
-        self.publisher.publish(String(data=f'{self.get_name()} hears rain'))
+        self.publisher.publish(String(data=f'{self.get_name()}: a dog'))
 
 
-rclpy.init()
-executor = SingleThreadedExecutor()
-for ear in [Ear('left_ear'), Ear('right_ear')]:
-    executor.add_node(ear)
-executor.spin()
+left_ear = lab.spin(Ear('left_ear'))
+right_ear = lab.spin(Ear('right_ear'))
