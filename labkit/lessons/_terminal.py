@@ -29,6 +29,8 @@ __all__ = ['APPEAR_SEC', 'InATerminal', 'RunsFile']
 APPEAR_SEC = 15.0
 # In so many seconds a new client finds a node also on a busy machine.
 ANSWER_SEC = 4.0
+# What an editor makes, and may have made in the place of a file of Python.
+_TEXTS = ('.py', '.txt')
 # The start of a process is known to a second.
 _OFF_SEC = 1.5
 
@@ -269,8 +271,8 @@ class RunsFile(GraphClause):
                 NO_FILE.of(file=self.file),
             )
         folder, name = self._path.parent, self._path.name
-        found = [path for place in (folder, Path.cwd()) for path in place.glob('*')]
-        near = nearest(name, sorted(path.name for path in found if path.is_file()))
+        found = [path for place in (folder, Path.cwd()) for path in place.glob('*.*')]
+        near = nearest(name, sorted(path.name for path in found if path.suffix in _TEXTS))
         if near:
             seen = next(path for path in found if path.name == near).relative_to(Path.cwd())
             raise Fail(f'the file {self.file}', f'the file {seen}', MISPLACED)

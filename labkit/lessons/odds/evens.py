@@ -1,10 +1,11 @@
-"""Exercise: hear the odd numbers, and publish even ones."""
+"""Exercise: a program in a file that hears the odd numbers, and publishes even ones."""
 
 from __future__ import annotations
 
 from labkit.exercises import Exercise, anything, words_of
 from labkit.exercises.clauses import WITHIN, Answers
 from labkit.exercises.draws import draw_int16s
+from labkit.lessons._terminal import RunsFile
 
 __all__ = ['exercise']
 
@@ -24,6 +25,7 @@ MISTAKES = (
 exercise = Exercise(
     words=WORDS,
     clauses=(
+        RunsFile('nodes/evens.py', ['/evens']),
         Answers(
             '/odds',
             '/evens',

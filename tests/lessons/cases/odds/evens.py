@@ -2,11 +2,47 @@
 
 from __future__ import annotations
 
-from cases import ERROR, right, wrong
+from cases import right, wrong
 
 __all__ = ['ANSWERS']
 
+RUN = 'python3 nodes/evens.py > evens.log 2>&1 &\n'
+
 ANSWERS = [
+    wrong('in the notebook', 'A node of a notebook ends with the notebook.'),
+    wrong('not started', 'No program of that name runs on this machine', (RUN, '')),
+    wrong(
+        'without the line with export',
+        'it has none: domain 0',
+        (RUN, f'env -u ROS_DOMAIN_ID {RUN}'),
+    ),
+    wrong(
+        'changed while it runs',
+        'A program keeps the code with which it was started.',
+        (RUN, f'{RUN}touch -d "5 seconds" nodes/evens.py\n'),
+    ),
+    wrong(
+        'does not spin', 'If it ends at once, read there why.', ('rclpy.spin(Evens())', 'Evens()')
+    ),
+    wrong(
+        'another node name',
+        'The name of the node is what super().__init__() gets.',
+        ("__init__('evens')", "__init__('even')"),
+    ),
+    wrong('another file', 'the file nodes/even.py', ('> nodes/evens.py', '> nodes/even.py')),
+    wrong(
+        'another topic',
+        'names must be equal to the last letter',
+        ("Int16, 'evens'", "Int16, 'event'"),
+    ),
+    wrong(
+        'publishes twice',
+        'A message is answered more than once.',
+        (
+            '        self.publisher.publish(even)\n',
+            '        self.publisher.publish(even)\n        self.publisher.publish(even)\n',
+        ),
+    ),
     wrong(
         'counts by itself',
         'does not depend on the number that came',
@@ -18,7 +54,6 @@ ANSWERS = [
         'The node hears what it says itself',
         ("Int16, 'evens', 10", "Int16, 'odds', 10"),
     ),
-    wrong('another topic', 'names must be equal to the last letter'),
     wrong(
         'forgot to publish',
         'its callback did not publish',
@@ -29,54 +64,6 @@ ANSWERS = [
         'create_publisher() for this topic has not been called',
         ("        self.publisher = self.create_publisher(Int16, 'evens', 10)\n", ''),
         ('        self.publisher.publish(even)\n', ''),
-    ),
-    wrong(
-        'publisher made in the callback',
-        'makes a publisher again and again',
-        ("        self.publisher = self.create_publisher(Int16, 'evens', 10)\n", ''),
-        ('self.publisher.pub', "self.create_publisher(Int16, 'evens', 10).pub"),
-    ),
-    wrong(
-        'adds to the message',
-        'A message object (Int16) is not the value in it.',
-        ('msg.data + 1', 'msg + 1'),
-        outcome=ERROR,
-    ),
-    wrong(
-        'adds a float',
-        'takes values of type int',
-        ('msg.data + 1', 'msg.data + 1.0'),
-        outcome=ERROR,
-    ),
-    wrong('callback called', 'A callback is passed, not called', outcome=ERROR),
-    wrong(
-        'blocks in the callback',
-        'While a callback runs, no other one can',
-        ('    def on_odd(self, msg):\n', '    def on_odd(self, msg):\n        sleep(3)\n'),
-        ('from rclpy', 'from time import sleep\n\nfrom rclpy'),
-    ),
-    wrong('publishes twice', 'A message is answered more than once.'),
-    wrong(
-        'a message at its beginning',
-        # Odd numbers may have come before the line that publishes.
-        '1 more on /evens since /evens was made: data = 2',
-        (
-            "Int16, 'evens', 10)\n",
-            "Int16, 'evens', 10)\n        self.publisher.publish(Int16(data=2))\n",
-        ),
-    ),
-    wrong(
-        'a message half a second after its beginning',
-        '1 more on /evens since /evens was made: data = 2',
-        (
-            "Int16, 'evens', 10)\n",
-            "Int16, 'evens', 10)\n        self.timer = self.create_timer(0.5, self.on_timer)\n",
-        ),
-        (
-            '    def on_odd',
-            '    def on_timer(self):\n        self.timer.cancel()\n'
-            '        self.publisher.publish(Int16(data=2))\n\n    def on_odd',
-        ),
     ),
     wrong(
         'passes on, and answers',
@@ -110,17 +97,6 @@ ANSWERS = [
         ),
     ),
     wrong(
-        'ends after five',
-        # The five may be of the lesson's own nodes, before the check.
-        'nothing on /evens',
-        ("super().__init__('evens')\n", "super().__init__('evens')\n        self.count = 0\n"),
-        (
-            '        even = Int16()\n',
-            '        self.count += 1\n        if self.count > 5:\n            return\n'
-            '        even = Int16()\n',
-        ),
-    ),
-    wrong(
         'answers another topic, too',
         'What comes on /ones is answered, too.',
         (
@@ -146,7 +122,6 @@ ANSWERS = [
             '        self.waiting.clear()\n',
         ),
     ),
-    wrong('wrong type', 'Use the same type on both sides', outcome=ERROR),
     wrong(
         'not the same again',
         'were answered correctly, the others were not',
@@ -166,7 +141,6 @@ ANSWERS = [
             '        even = Int16()\n',
         ),
     ),
-    right('functions'),
     right(
         'two steps with a topic of their own in between',
         (
@@ -181,23 +155,15 @@ ANSWERS = [
             '        even = Int16()\n',
         ),
     ),
+    right('functions'),
     right('a list and a timer'),
-    right('a thread that takes from a queue'),
+    right('in the folder', (RUN, f'cd nodes\n{RUN.replace("nodes/", "")}')),
     right(
-        'a name that the lesson has used',
-        ("super().__init__('evens')", "super().__init__('announcer')"),
-    ),
-    right(
-        'an executor of its own, in a thread',
+        'an executor with many threads',
+        ('rclpy.spin(Evens())', 'rclpy.spin(Evens(), executor=MultiThreadedExecutor())'),
         (
-            'from rclpy.node',
-            'import threading\n\nfrom rclpy.executors import MultiThreadedExecutor\n'
-            'from rclpy.node',
-        ),
-        (
-            'evens = lab.spin(Evens())\n',
-            'executor = MultiThreadedExecutor()\nexecutor.add_node(Evens())\n'
-            'threading.Thread(target=executor.spin, daemon=True).start()\n',
+            'import ExternalShutdownException',
+            'import ExternalShutdownException, MultiThreadedExecutor',
         ),
     ),
 ]

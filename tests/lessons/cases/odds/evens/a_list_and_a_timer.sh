@@ -1,12 +1,13 @@
+mkdir -p nodes
+cat > nodes/evens.py << END
+import rclpy
 from rclpy.node import Node
 from std_msgs.msg import Int16
-
-import labkit as lab
 
 
 class Postman(Node):
     def __init__(self):
-        super().__init__('postman')
+        super().__init__('evens')
         self.waiting = []
         self.create_subscription(Int16, 'odds', self.waiting.append, 10)
         self.publisher = self.create_publisher(Int16, 'evens', 10)
@@ -17,4 +18,7 @@ class Postman(Node):
             self.publisher.publish(Int16(data=self.waiting.pop(0).data + 1))
 
 
-postman = lab.spin(Postman())
+rclpy.init()
+rclpy.spin(Postman())
+END
+python3 nodes/evens.py > evens.log 2>&1 &

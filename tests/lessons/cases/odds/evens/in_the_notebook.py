@@ -11,9 +11,7 @@ class Evens(Node):
         self.subscription = self.create_subscription(Int16, 'odds', self.on_odd, 10)
 
     def on_odd(self, msg):
-        even = Int16()
-        even.data = msg.data + 1
-        self.publisher.publish(even)
+        self.publisher.publish(Int16(data=msg.data + 1))
 
 
 evens = lab.spin(Evens())
