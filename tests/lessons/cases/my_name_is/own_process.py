@@ -6,110 +6,89 @@ from cases import right, wrong
 
 __all__ = ['ANSWERS']
 
+RUN = 'python3 nodes/stage_one.py > stage_one.log 2>&1 &\n'
+SAYS = "        self.publisher.publish(String(data='My name is '))\n"
+# As if the file had been changed a while after the start.
+LATER = 'touch -d "5 seconds" nodes/stage_one.py\n'
+
 ANSWERS = [
+    wrong('in the notebook', 'A node of a notebook ends with the notebook.'),
+    wrong('not started', 'No program of that name runs on this machine', (RUN, '')),
     wrong(
-        'in the notebook',
-        'lab.spin() runs a node in the process of this notebook.',
-        ('rclpy.init()\nrclpy.spin(Opener())', 'lab.spin(Opener())'),
-        of='a script, started by hand',
+        'without the line with export',
+        'it has none: domain 0',
+        (RUN, f'env -u ROS_DOMAIN_ID {RUN}'),
     ),
     wrong(
-        'does not spin, started by subprocess', 'rclpy.spin(node) in the last line keeps it going'
+        'changed while it runs',
+        'A program keeps the code with which it was started.',
+        (RUN, f'{RUN}{LATER}'),
     ),
     wrong(
-        'ends, a while after its node',
-        'A program ends when its last line is done',
-        (
-            'rclpy.spin(Opener())',
-            'import time\nnode = Opener()\ntime.sleep(1.0)\n'
-            'node.destroy_node()\nrclpy.shutdown()\ntime.sleep(8.0)',
-        ),
+        'does not spin',
+        'If it ends at once, read there why.',
+        ('rclpy.spin(StageOne())', 'StageOne()'),
+    ),
+    wrong(
+        'no call of main()', 'If it ends at once, read there why.', ('\n    main()', '\n    pass')
     ),
     wrong(
         'an import is missing',
-        "its last line is: NameError: name 'Node' is not defined",
+        'If it ends at once, read there why.',
         ('from rclpy.node import Node\n', ''),
+    ),
+    wrong(
+        'another node name',
+        'The name of the node is what super().__init__() gets.',
+        ("'stage_one')", "'opener')"),
+    ),
+    wrong(
+        'another file',
+        'the file nodes/stage1.py',
+        ('> nodes/stage_one.py', '> nodes/stage1.py'),
     ),
     wrong(
         'space missing',
         'A space is missing at the end of the text.',
         ("'My name is '", "'My name is'"),
-        of='a script, started by hand',
-        run='process',
-    ),
-    wrong(
-        'two copies running',
-        'Two copies of the node run at once',
-        ('rclpy.spin(', 'copy = Opener()\nrclpy.spin('),
-        of='a script, started by hand',
-        run='process',
     ),
     wrong(
         'three times in two seconds',
         'times too slow',
         ('create_timer(0.5,', 'create_timer(0.6,'),
-        of='a script, started by hand',
-        run='process',
     ),
     wrong(
         'every 2 s',
         'A rate in Hz and a period in seconds were mixed up',
         ('create_timer(0.5,', 'create_timer(2,'),
-        of='a script, started by hand',
-        run='process',
     ),
     wrong(
         'ends after fifty',
         'They stop coming.',
-        ("super().__init__('opener')\n", "super().__init__('opener')\n        self.n = 0\n"),
-        (
-            "        self.publisher.publish(String(data='My name is '))\n",
-            '        self.n += 1\n        if self.n < 50:\n'
-            "            self.publisher.publish(String(data='My name is '))\n",
-        ),
-        of='a script, started by hand',
-        run='process',
+        ("'stage_one')\n", "'stage_one')\n        self.n = 0\n"),
+        (SAYS, f'        self.n += 1\n        if self.n < 50:\n    {SAYS}'),
     ),
-    wrong(
-        'twice each time',
-        'Twice as many messages come as were asked for',
-        (
-            "        self.publisher.publish(String(data='My name is '))\n",
-            "        self.publisher.publish(String(data='My name is '))\n"
-            "        self.publisher.publish(String(data='My name is '))\n",
-        ),
-        of='a script, started by hand',
-        run='process',
-    ),
+    wrong('twice each time', 'Twice as many messages come', (SAYS, SAYS + SAYS)),
     wrong(
         'another callback',
         'publish() was called too early, once, or never',
         ('create_timer(0.5, self.on_timer)', 'create_timer(0.5, print)'),
-        of='a script, started by hand',
-        run='process',
     ),
-    right('a script, started by hand', run='process'),
-    right('a loop', run='process'),
+    right('a loop'),
+    right('a clock in seconds, asked often'),
+    right('in the folder', (RUN, f'cd nodes\n{RUN.replace("nodes/", "")}')),
     right(
         'a fast timer, and every fifth call counts',
-        ("super().__init__('opener')\n", "super().__init__('thermometer')\n        self.n = 0\n"),
+        ("'stage_one')\n", "'stage_one')\n        self.n = 0\n"),
         ('create_timer(0.5,', 'create_timer(0.1,'),
-        (
-            "        self.publisher.publish(String(data='My name is '))\n",
-            '        self.n += 1\n        if self.n % 5 == 0:\n'
-            "            self.publisher.publish(String(data='My name is '))\n",
-        ),
-        of='a script, started by hand',
-        run='process',
+        (SAYS, f'        self.n += 1\n        if self.n % 5 == 0:\n    {SAYS}'),
     ),
     right(
         'an executor with many threads',
-        ('rclpy.spin(Opener())', 'rclpy.spin(Opener(), executor=MultiThreadedExecutor())'),
-        ('from rclpy.node', 'from rclpy.executors import MultiThreadedExecutor\nfrom rclpy.node'),
-        of='a script, started by hand',
-        run='process',
+        ('rclpy.spin(StageOne())', 'rclpy.spin(StageOne(), executor=MultiThreadedExecutor())'),
+        (
+            'import ExternalShutdownException',
+            'import ExternalShutdownException, MultiThreadedExecutor',
+        ),
     ),
-    right('a clock in seconds, asked often', run='process'),
-    right('started by subprocess', of='a script, started by hand', run='subprocess'),
-    right('started by asyncio', of='a script, started by hand', run='asyncio'),
 ]

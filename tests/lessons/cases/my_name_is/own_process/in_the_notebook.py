@@ -1,11 +1,12 @@
-import rclpy
 from rclpy.node import Node
 from std_msgs.msg import String
 
+import labkit as lab
 
-class Opener(Node):
+
+class StageOne(Node):
     def __init__(self):
-        super().__init__('opener')
+        super().__init__('stage_one')
         self.publisher = self.create_publisher(String, 'incomplete', 10)
         self.timer = self.create_timer(0.5, self.on_timer)
 
@@ -13,5 +14,4 @@ class Opener(Node):
         self.publisher.publish(String(data='My name is '))
 
 
-rclpy.init()
-rclpy.spin(Opener())
+stage_one = lab.spin(StageOne())
