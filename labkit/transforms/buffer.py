@@ -7,8 +7,8 @@ real one waits in vain; this one does not wait there, and says so.
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, cast
 
 from geometry_msgs.msg import TransformStamped
@@ -51,7 +51,6 @@ class Buffer(BufferCore, BufferInterface):
         BufferCore.__init__(self, cache_time)
         BufferInterface.__init__(self)
         self._waiting: list[Callable[[], None]] = []
-        self._waiting_lock = threading.RLock()
         if node is not None:
             # Built when it is first asked for.
             from tf2_msgs.srv import FrameGraph
@@ -265,19 +264,19 @@ class Buffer(BufferCore, BufferInterface):
 
         def on_data() -> None:
             try:
-                if not future.done() and look()[0]:
+                if not future.done() and not future.cancelled() and look()[0]:
                     future.set_result(find())
             except Exception as error:  # to be raised where it is awaited
                 future.set_exception(error)
             if future.done() or future.cancelled():
-                self._waiting.remove(on_data)
+                # Two threads may bring transforms at the same time.
+                with suppress(ValueError):
+                    self._waiting.remove(on_data)
 
-        with self._waiting_lock:
-            self._waiting.append(on_data)
-            on_data()
+        self._waiting.append(on_data)
+        on_data()
         return cast(Future, future)
 
     def _tell(self) -> None:
-        with self._waiting_lock:
-            for on_data in tuple(self._waiting):
-                on_data()
+        for on_data in tuple(self._waiting):
+            on_data()

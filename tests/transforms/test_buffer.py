@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+
 import pytest
 import rclpy
 from geometry_msgs.msg import TransformStamped
@@ -82,3 +84,21 @@ def test_an_answer_may_come_with_its_reason(buffer):
     assert (
         buffer.lookup_transform_full(*full, timeout=Duration(seconds=9)).child_frame_id == 'base'
     )
+
+
+def test_what_a_future_calls_may_wait_for_another_thread_that_uses_the_buffer(buffer):
+    future = buffer.wait_for_transform_async('odom', 'base', Time())
+    asked = []
+
+    def in_thread():
+        buffer.wait_for_transform_async('odom', 'base', Time())
+        asked.append(buffer.can_transform('odom', 'base', Time()))
+
+    def on_done(future):
+        thread = threading.Thread(target=in_thread)
+        thread.start()
+        thread.join(timeout=60)
+
+    future.add_done_callback(on_done)
+    put(buffer, 1)
+    assert asked == [True]

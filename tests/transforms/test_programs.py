@@ -182,6 +182,7 @@ def test_a_script_that_does_not_know_labkit_runs(script):
     stand_ins = str(Path(stand_in.__file__).with_name('stand_ins'))
     done = script(f'import sys\nsys.path.append({stand_ins!r})\n{NODES}{SCRIPT}')
     assert (done.stdout, done.exit_code) == ('11.0\n', 0), done.stderr
+    assert 'Traceback' not in done.stderr
 
 
 def test_a_notebook_has_one_thread_that_spins(kernel):
