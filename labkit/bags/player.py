@@ -86,6 +86,7 @@ class Playing(Session):
         # Requests of other threads, and a signal to look at them.
         self._changed = threading.Condition()
         self._paused = paused
+        self._steps = 0
         self._seek_sec: float | None = None
         # Time in the bag, s, at a time of `time.monotonic()`.
         self._base_sec, self._base_at, self._moving = start_offset, 0.0, False
@@ -116,8 +117,27 @@ class Playing(Session):
         """Continue after `pause()`."""
         with self._changed:
             if self._paused:
-                self._base_at, self._paused = time.monotonic(), False
+                self._base_at, self._paused, self._steps = time.monotonic(), False, 0
                 self._changed.notify_all()
+
+    def play_next(self) -> None:
+        """Publish the next message, and stay paused; without effect while it plays."""
+        with self._changed:
+            if self._paused:
+                self._steps += 1
+                self._changed.notify_all()
+
+    def set_rate(self, rate: float) -> None:
+        """Change the playback speed.
+
+        Args:
+            rate: As a multiple of real time; more than 0.
+        """
+        _check_positive('rate', rate)
+        with self._changed:
+            self._base_sec, self._base_at = self.position_sec, time.monotonic()
+            self.rate = float(rate)
+            self._changed.notify_all()
 
     def seek(self, sec: float) -> None:
         """Continue from another position.
@@ -239,6 +259,10 @@ class Playing(Session):
                     target, self._seek_sec = self._seek_sec, None
                     self._base_sec, self._base_at = target, time.monotonic()
                     return target
+                if self._steps and self._paused:
+                    self._steps -= 1
+                    self._base_sec = sec
+                    break
                 now = time.monotonic()
                 passed = 0.0 if self._paused else (now - self._base_at) * self.rate
                 left = (sec - self._base_sec - passed) / self.rate

@@ -6,19 +6,21 @@ import argparse
 import re
 import time
 from argparse import Namespace
-from collections.abc import Iterable
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from labkit import settings
 from labkit.background.wait import wait_for
 from labkit.bags.choice import SERVICE_EVENTS, TopicChoice
 from labkit.bags.finding import is_bag
-from labkit.bags.player import CLOCK, NODE_NAME, start_playing
+from labkit.bags.player import CLOCK, NODE_NAME, Playing, start_playing
 from labkit.bags.reader import Bag, open_bag
 from labkit.bags.writer import STORAGES
 from labkit.errors import LabError, quoted
 from labkit.progress_bar import ProgressBar
 from labkit.ros2.graph_queries import asking_node, full_name
+from labkit.ros2.keys import DOWN, RIGHT, SPACE, UP, pressed_keys
 from labkit.ros2.parser import Parser, Usage, Verb, positive_float
 from labkit.ros2.streams import Stop, log
 from labkit.rosgraph.qos_profiles import read_overrides
@@ -26,6 +28,13 @@ from labkit.rosgraph.qos_profiles import read_overrides
 __all__ = ['PLAY', 'add_reader_arguments', 'bag_paths', 'check_storage']
 
 _CLOCK_HZ = 40.0
+_KEYS = {
+    'SPACE': 'Pause/Resume',
+    'CURSOR_RIGHT': 'Play Next Message',
+    'CURSOR_UP': 'Increase Rate 10%',
+    'CURSOR_DOWN': 'Decrease Rate 10%',
+}
+_FASTER = {UP: 1.1, DOWN: 0.9}
 
 
 def play_back(args: Namespace) -> str | None:
@@ -60,9 +69,11 @@ def play_back(args: Namespace) -> str | None:
     for name, why in playing.skipped.items():
         log('WARN', NODE_NAME, f'Ignoring a topic {quoted(name)}, reason: {why}.')
     length, stop = playing.bag.duration_sec, limit()
-    with playing, suppress(KeyboardInterrupt):
+    with playing, _keys(args) as pressed, suppress(KeyboardInterrupt):
 
         def is_over() -> bool:
+            for key in pressed():
+                _obey(key, playing)
             at = playing.position_sec
             bar.show(at / length if length else None, f'{at:.0f} of {length:.0f} s')
             return playing.done or (stop is not None and stop.reached)
@@ -70,6 +81,30 @@ def play_back(args: Namespace) -> str | None:
         wait_for(is_over, None)
     bar.close()
     return str(playing.error) if playing.error is not None else None
+
+
+@contextmanager
+def _keys(args: Namespace) -> Iterator[Callable[[], list[str]]]:
+    """Give a function that returns the keys pressed in the terminal, if there is one."""
+    if args.disable_keyboard_controls or settings.in_kernel():
+        yield list
+        return
+    with pressed_keys() as pressed:
+        for name, does in _KEYS.items() if pressed else ():
+            log('INFO', NODE_NAME, f'Press {name} for {does}')
+        yield pressed or list
+
+
+def _obey(key: str, playing: Playing) -> None:
+    """Do what a key asks for."""
+    if key == SPACE:
+        (playing.resume if playing.paused else playing.pause)()
+        log('INFO', NODE_NAME, 'Pausing play.' if playing.paused else 'Resuming play.')
+    elif key == RIGHT:
+        playing.play_next()
+    elif key in _FASTER:
+        playing.set_rate(playing.rate * _FASTER[key])
+        log('INFO', NODE_NAME, f'Set rate to {playing.rate:g}')
 
 
 def _chosen(args: Namespace) -> tuple[list[str], float | None]:
@@ -209,7 +244,7 @@ def _more_arguments(parser: Parser) -> None:
         parser.add(name, type=kind, default=-1, metavar='N', help=words)
     for name in ('--read-ahead-queue-size', '--log-level', '--wait-for-all-acked'):
         parser.accept(name)
-    parser.accept('--disable-keyboard-controls', flag=True)
+    parser.flag('--disable-keyboard-controls', 'Do not read keys from the terminal.')
     parser.accept('--disable-loan-message', flag=True)
     for name, why in _REFUSED.items():
         parser.refuse(name, why=why)
@@ -274,6 +309,8 @@ PLAY = Verb(
     'Play back ROS data from a bag',
     play_back,
     _arguments,
-    'It waits until those who subscribe already are connected. There are no keys to press: '
-    'lab.play(...) in a cell can be paused, resumed and sent elsewhere.',
+    'It waits until those who subscribe already are connected. In a terminal, keys pause it, '
+    'play the next message and change the rate. In a cell there are none: lab.play(...) can do '
+    'that, and go elsewhere. The services of /rosbag2_player are not here: their types are in no '
+    'wheel.',
 )

@@ -122,6 +122,22 @@ def test_it_stands_still_goes_on_and_elsewhere(drive: Path, hearer: Hearer) -> N
     assert in_order(hearer.heard) == ALL[90:]
 
 
+def test_it_goes_on_one_by_one_and_faster(drive: Path, hearer: Hearer) -> None:
+    with lab.play(drive, paused=True, rate=0.001) as playing:
+        for number in range(1, 4):
+            playing.play_next()
+            lab.wait_until(lambda number=number: len(hearer.heard) == number, timeout_sec=60)
+        assert playing.paused and in_order(hearer.heard) == ALL[:3]
+        assert playing.position_sec == pytest.approx(0.002)
+        with pytest.raises(LabError, match='rate must be a number above 0, but it is 0'):
+            playing.set_rate(0)
+        playing.resume()
+        playing.play_next()  # it plays: without effect
+        playing.set_rate(10)
+        playing.wait(60)
+    assert in_order(hearer.heard) == ALL
+
+
 def test_it_is_sent_back_while_it_plays(drive: Path, hearer: Hearer) -> None:
     count = 0
 

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
+import fcntl
+import os
+import select
 import subprocess
 import sys
+import termios
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -511,3 +516,44 @@ talker.create_timer(0.01, lambda: publisher.publish(String(data='hi')))
 def test_words_are_completed(drive: Path, line: str, words: list[str]) -> None:
     made.make_mcap(Path('inner/other'), [('/count', 0, made.int16(1))])
     assert complete_line(line)[1] == words
+
+
+@pytest.mark.slow('starts a process of its own')
+@pytest.mark.parametrize(
+    ('keys', 'said'),
+    [
+        (' ', ['Resuming play.']),
+        ('\x1b[C' * 20, []),  # each of its messages
+        ('\x1b[A\x1b[B ', ['Set rate to 1.1', 'Set rate to 0.99', 'Resuming play.']),
+    ],
+)
+def test_keys_of_a_terminal_let_a_paused_bag_go_on(
+    drive: Path, lab_env: dict[str, str], keys: str, said: list[str]
+) -> None:
+    above, terminal = os.openpty()
+    command = [sys.executable, '-m', 'labkit.ros2', 'bag', 'play', '-p', 'drive']
+    with subprocess.Popen(
+        command, stdin=terminal, stdout=terminal, stderr=terminal, env=lab_env,
+        start_new_session=True, preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),
+    ) as player:  # fmt: skip
+        os.close(terminal)
+        try:
+            text = read_until(above, 'CURSOR_DOWN for Decrease Rate 10%')
+            assert 'Press SPACE for Pause/Resume' in text
+            os.write(above, keys.encode())
+            text = read_until(above, None)
+            assert player.wait(60) == 0, text
+        finally:
+            player.kill()
+            os.close(above)
+    assert [line for line in said if line not in text] == []
+
+
+def read_until(terminal: int, words: str | None) -> str:
+    """Read from a terminal until it has said some words, or its program has ended."""
+    text = ''
+    with contextlib.suppress(OSError):  # nobody has the other end any more
+        while words is None or words not in text:
+            assert select.select([terminal], [], [], 60)[0], text
+            text += os.read(terminal, 4096).decode()
+    return text
