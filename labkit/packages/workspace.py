@@ -18,11 +18,12 @@ import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from labkit.errors import LabError
+from labkit.errors import LabError, first_few
 from labkit.progress_bar import ProgressBar
 from labkit.rosgraph.workspaces import (
     any_failed_build,
     build_result,
+    other_python,
     setup_fails,
     source_of,
 )
@@ -84,8 +85,9 @@ def source(workspace: str | os.PathLike[str]) -> list[str]:
         The names of the packages, sorted.
 
     Raises:
-        LabError: Nothing was built there; or a package was imported already, and has changed
-            since: then the kernel has to be restarted.
+        LabError: Nothing was built there; or for another Python, and what is compiled for that can
+            not be loaded; or a package was imported already, and has changed since: then the
+            kernel has to be restarted.
     """
     install = Path(workspace).resolve() / 'install'
     found = {
@@ -98,6 +100,7 @@ def source(workspace: str | os.PathLike[str]) -> list[str]:
             f'Nothing was built in {install.parent}.',
             todo=any_failed_build(install.parent) or 'Build it: lab.build(workspace)',
         )
+    _compare_pythons(install.parent, found)
     for name, prefix in found.items():
         now = _fingerprint(prefix)
         if name in sys.modules and _sourced.get(name) != now:
@@ -110,6 +113,22 @@ def source(workspace: str | os.PathLike[str]) -> list[str]:
         _use(prefix)
     importlib.invalidate_caches()
     return sorted(found)
+
+
+def _compare_pythons(workspace: Path, found: Mapping[str, Path]) -> None:
+    """Say, or raise, that packages were built for another Python than this one."""
+    others = {name: other for name, prefix in found.items() if (other := other_python(prefix))}
+    if not others:
+        return
+    own = f'{sys.version_info[0]}.{sys.version_info[1]}'
+    built = f'built for Python {min(others.values())}, and this notebook runs Python {own}'
+    compiled = [name for name in others if any(found[name].glob('lib/python3*/**/*.so'))]
+    if compiled:
+        raise LabError(
+            f'{first_few(compiled)}: {built}. What is compiled for that one can not be loaded.',
+            todo=f'Build it here: lab.build({str(workspace)!r})',
+        )
+    print(f'{first_few(list(others))}: {built}. Its programs are run by this one.')
 
 
 def _use(prefix: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,7 @@ from ament_index_python import get_packages_with_prefixes
 
 from labkit.errors import LabError, did_you_mean, nearest, quoted
 from labkit.rosgraph import interfaces
-from labkit.rosgraph.workspaces import why_missing, why_not_in
+from labkit.rosgraph.workspaces import other_python, why_missing, why_not_in
 
 __all__ = [
     'Executable',
@@ -117,14 +118,23 @@ def executables(package: str) -> list[Executable]:
             Executable(package, Path(name), (sys.executable, '-m', *words), own=True)
             for name, words in sorted(_OWN[package].items())
         ]
-    found = []
-    for folder, folders, files in os.walk(prefix_of(package) / 'lib' / package):
+    found, prefix = [], prefix_of(package)
+    # The Python that is named in a script of another tree has none of ROS: this one does it.
+    interpreter = (sys.executable,) if other_python(prefix) else ()
+    for folder, folders, files in os.walk(prefix / 'lib' / package):
         folders[:] = sorted(name for name in folders if not name.startswith('.'))
         for name in files:
             path = Path(folder, name)
             if os.access(path, os.X_OK):
-                found.append(Executable(package, path, (str(path),)))
+                command = (*interpreter, str(path)) if _is_python(path) else (str(path),)
+                found.append(Executable(package, path, command))
     return sorted(found, key=lambda one: one.path)
+
+
+def _is_python(path: Path) -> bool:
+    """Return whether a file is a script that names a Python in its first line."""
+    with path.open('rb') as file:
+        return re.match(rb'#!.*python', file.read(256)) is not None
 
 
 def executable(package: str, name: str) -> Executable:

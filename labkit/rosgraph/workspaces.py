@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import re
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -18,6 +19,7 @@ __all__ = [
     'any_failed_build',
     'build_result',
     'failed_build',
+    'other_python',
     'setup_fails',
     'source_of',
     'why_missing',
@@ -65,6 +67,14 @@ def any_failed_build(workspace: Path) -> str:
         if (failed := failed_build(workspace, path.name)) and source_of(workspace, path.name):
             return failed
     return ''
+
+
+def other_python(prefix: Path) -> str:
+    """Return for which other Python a package is installed, such as `'3.12'`; `''` if for ours."""
+    folders = sorted(path.parent.name for path in prefix.glob('lib/python3*/site-packages'))
+    versions = [name.removeprefix('python') for name in folders]
+    own = f'{sys.version_info[0]}.{sys.version_info[1]}'
+    return versions[0] if versions and own not in versions else ''
 
 
 def setup_fails(workspace: Path, package: str) -> bool:

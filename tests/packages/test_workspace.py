@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 import sysconfig
 from pathlib import Path
@@ -237,3 +238,49 @@ def test_of_a_failed_build_the_reason_is_shown():
     shown = list(workspace._reasons(said))
     assert "InvalidFieldDefinition: Could not parse the line 'int32'" in shown[0]
     assert not any('File "' in line or '-- Found' in line for line in shown)
+
+
+OTHER = """
+import labkit as lab
+print(lab.source({folder!r}), flush=True)
+from labkit.ros2.shell import run_line
+run_line('run lamps lamp')
+"""
+
+
+def other_tree(folder: Path) -> Path:
+    """Make what colcon leaves of a package of Python, with a Python that is not here."""
+    prefix = folder / 'install/lamps'
+    modules = prefix / 'lib/python3.99/site-packages'
+    marks = prefix / 'share/ament_index/resource_index/packages'
+    for place in (marks, modules, prefix / 'lib/lamps'):
+        place.mkdir(parents=True)
+    (marks / 'lamps').touch()
+    (modules / 'lamps.py').write_text(
+        'import rclpy, sys\nprint("lit", sys.version_info < (3, 99))\n'
+    )
+    script = prefix / 'lib/lamps/lamp'
+    script.write_text('#!/opt/other/bin/python3.99\nimport lamps\n')
+    script.chmod(0o755)
+    return modules
+
+
+def run(folder: Path, env: dict[str, str]) -> subprocess.CompletedProcess[str]:
+    code = OTHER.format(folder=str(folder))
+    command = [sys.executable, '-c', code]
+    return subprocess.run(command, env=env, capture_output=True, text=True, timeout=240)
+
+
+@pytest.mark.slow('starts processes of its own')
+def test_a_tree_of_another_python_is_told_and_run_by_this_one(
+    tmp_path: Path, lab_env: dict[str, str]
+) -> None:
+    modules = other_tree(tmp_path)
+    done = run(tmp_path, lab_env)
+    own = f'{sys.version_info[0]}.{sys.version_info[1]}'
+    assert f'lamps: built for Python 3.99, and this notebook runs Python {own}.' in done.stdout
+    assert "['lamps']\nlit True\n" in done.stdout and done.returncode == 0, done.stderr
+    (modules / 'lamps.cpython-399.so').touch()
+    done = run(tmp_path, lab_env)
+    assert 'What is compiled for that one can not be loaded.' in done.stderr
+    assert f'Build it here: lab.build({str(tmp_path)!r})' in done.stderr
