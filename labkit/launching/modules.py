@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
-from typing import Any, NoReturn
+from typing import Any, ClassVar, NoReturn
 
 from labkit.launching import (
     actions,
@@ -34,7 +34,6 @@ _INSIDE = 'it is a part of the real launch that has no counterpart here'
 # What the real modules have, and this course leaves out: by module, the names and why.
 LEFT_OUT: dict[str, dict[str, str]] = {
     'launch': {'LaunchService': _RUNS, 'LaunchIntrospector': 'ros2 launch --print shows the tree'},
-    'launch.actions': {'OpaqueCoroutine': 'take OpaqueFunction'},
     'launch.event_handlers': {'OnIncludeLaunchDescription': 'take IncludeLaunchDescription'},
     'launch.events': {'IncludeLaunchDescription': 'take the action of that name'},
     'launch.frontend': dict.fromkeys(('Entity', 'ExtractSubstitution', 'Parser'), _INSIDE),
@@ -54,19 +53,8 @@ LEFT_OUT: dict[str, dict[str, str]] = {
         ('AsyncSafeSignalManager', 'visit_all_entities_and_collect_futures'), _INSIDE
     ),
     'launch_ros.actions': {
-        'ComposableNodeContainer': _COMPONENTS,
-        'LoadComposableNodes': _COMPONENTS,
         'NodeActionExtension': _INSIDE,
-        'LifecycleNode': _LIFECYCLE,
-        'LifecycleTransition': _LIFECYCLE,
     },
-    'launch_ros.descriptions': {'ComposableNode': _COMPONENTS},
-    'launch_ros.event_handlers': {'OnStateTransition': _LIFECYCLE},
-    'launch_ros.events': {'matches_node_name': _LIFECYCLE},
-    'launch_ros.events.lifecycle': dict.fromkeys(
-        ('ChangeState', 'StateTransition', 'matches_node_name'), _LIFECYCLE
-    ),
-    'launch_ros.events.matchers': {'matches_node_name': _LIFECYCLE},
     'launch_ros.ros_adapters': dict.fromkeys(
         ('ROSAdapter', 'get_ros_adapter', 'get_ros_node'), _GRAPH
     ),
@@ -80,6 +68,24 @@ LEFT_OUT: dict[str, dict[str, str]] = {
     ),
     'launch_xml': dict.fromkeys(('Entity', 'Parser'), _INSIDE),
     'launch_yaml': dict.fromkeys(('Entity', 'Parser'), _INSIDE),
+}
+# Actions that it leaves out: told when their turn comes, since many stand below a condition.
+ACTIONS_LEFT_OUT: dict[str, dict[str, str]] = {
+    'launch.actions': {'OpaqueCoroutine': 'take OpaqueFunction'},
+    'launch_ros.actions': {
+        'ComposableNodeContainer': _COMPONENTS,
+        'LoadComposableNodes': _COMPONENTS,
+        'LifecycleNode': _LIFECYCLE,
+        'LifecycleTransition': _LIFECYCLE,
+    },
+}
+# What only these actions, or their events, are made of.
+_OF_THEM = {
+    'launch_ros.descriptions': ('ComposableNode',),
+    'launch_ros.event_handlers': ('OnStateTransition',),
+    'launch_ros.events': ('matches_node_name',),
+    'launch_ros.events.lifecycle': ('ChangeState', 'StateTransition', 'matches_node_name'),
+    'launch_ros.events.matchers': ('matches_node_name',),
 }
 # Modules in which the real packages keep what a module above them has too.
 _WITHIN = {
@@ -192,6 +198,12 @@ def contents() -> dict[str, dict[str, Any]]:
     for module, names in LEFT_OUT.items():
         for name, why in names.items():
             found.setdefault(module, {})[name] = _LeftOut(name, (), {'why': why})
+    for module, names in ACTIONS_LEFT_OUT.items():
+        for name, why in names.items():
+            found[module][name] = type(name, (_ActionLeftOut,), {'why': why})
+    for module, parts in _OF_THEM.items():
+        for name in parts:
+            found.setdefault(module, {})[name] = type(name, (_OfThem,), {})
     found['launch_ros.parameter_descriptions'] = found['launch_ros.descriptions']
     for module, inside in _WITHIN.items():
         for name in inside.split():
@@ -211,6 +223,29 @@ class _LeftOut(type):
         if name.startswith('__'):
             raise AttributeError(name)
         cls()
+
+
+class _ActionLeftOut(model.Action):
+    """The basis of actions that can be made, and say why when their turn comes."""
+
+    why: str
+
+    def __init__(self, *args: Any, condition: model.Condition | None = None, **_: Any) -> None:
+        super().__init__(condition=condition)
+
+    def execute(self, context: model.Context) -> NoReturn:
+        name = next(one.__name__ for one in type(self).__mro__ if 'why' in vars(one))
+        raise LaunchError(f'{name} is not supported here: {self.why}.')
+
+
+class _OfThem(events.Event, event_handlers.BaseEventHandler):
+    """The basis of what such actions are made of: nothing ever comes of it."""
+
+    valid_states: ClassVar[dict[int, str]] = {}
+    valid_transitions: ClassVar[dict[int, str]] = {}
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(matcher=lambda event: False)
 
 
 def _of_launch() -> dict[str, dict[str, Any]]:

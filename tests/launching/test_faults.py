@@ -120,8 +120,6 @@ def test_yaml(body: str, line: int, words: str, tmp_path: Path, toys: Path):
 
 PYTHON = [
     ('from launch.actions import LogInf', 1, 'Did you mean LogInfo?'),
-    ('from launch_ros.actions import ComposableNodeContainer as C\n\nC()', 3, 'programs in C++'),
-    ('from launch_ros.actions import LifecycleNode\nLifecycleNode(name="a")', 2, 'life cycle'),
     ('from launch import LaunchService\nLaunchService()', 2, 'this launch runs already'),
     ('from launch.utilities import is_an', 1, 'Did you mean is_a?'),
     (

@@ -31,6 +31,46 @@ def test_what_is_left_out_can_be_imported_and_says_so_when_it_is_used(tmp_path: 
             assert str(caught.value) == f'{path}, line 3: {name} is not supported here: {why}.'
 
 
+CONDITIONAL = """\
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, EmitEvent, GroupAction, RegisterEventHandler
+from launch.conditions import IfCondition
+from launch.events import matches_action
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import LifecycleNode, LoadComposableNodes
+from launch_ros.descriptions import ComposableNode
+from launch_ros.event_handlers import OnStateTransition
+from launch_ros.events.lifecycle import ChangeState
+from lifecycle_msgs.msg import Transition
+
+
+def generate_launch_description():
+    node = LifecycleNode(package='a', executable='b', name='c', namespace='')
+    return LaunchDescription([
+        DeclareLaunchArgument('composed', default_value='false'),
+        DeclareLaunchArgument('managed', default_value='false'),
+        GroupAction(condition=IfCondition(LaunchConfiguration('composed')), actions=[
+            LoadComposableNodes(target_container='c', composable_node_descriptions=[
+                ComposableNode(package='a', plugin='b::C', name='c')])]),
+        GroupAction(condition=IfCondition(LaunchConfiguration('managed')), actions=[node]),
+        RegisterEventHandler(OnStateTransition(
+            target_lifecycle_node=node, goal_state='active', entities=[])),
+        EmitEvent(event=ChangeState(
+            lifecycle_node_matcher=matches_action(node),
+            transition_id=Transition.TRANSITION_CONFIGURE)),
+    ])
+"""
+
+
+def test_an_action_that_is_left_out_may_stand_below_a_condition(tmp_path: Path):
+    path = write(tmp_path, {'main.launch.py': CONDITIONAL})
+    assert visit(path).started == []
+    with pytest.raises(LabError, match=r'line 19: LoadComposableNodes is not supported here: '):
+        visit(path, 'composed:=true')
+    with pytest.raises(LabError, match=r'line 14: LifecycleNode is not supported here: '):
+        visit(path, 'managed:=true')
+
+
 def test_a_left_out_class_may_be_named_for_the_types(tmp_path: Path):
     text = (
         'from launch import LaunchDescription\n'
