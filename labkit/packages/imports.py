@@ -41,9 +41,13 @@ _UNAVAILABLE = {
         _REAL.format('cv-bridge'),
     ),
     **dict.fromkeys(
-        ('launch', 'launch_ros', 'launch_xml', 'launch_yaml', 'launch_testing', 'launch_pytest'),
+        ('launch', 'launch_ros', 'launch_xml', 'launch_yaml'),
         ('what launch files are written with. Here, lab.launch starts such a file', ''),
     ),
+    **{
+        name: ('what launch files are tested with', _REAL.format(name.replace('_', '-')))
+        for name in ('launch_pytest', 'launch_testing', 'launch_testing_ros')
+    },
     'rospy': (
         'ROS 1, which has another interface. Lesson 01 has a table of what is what in rclpy',
         'ROS 1 is not supported any more.',
