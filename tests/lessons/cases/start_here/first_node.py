@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cases import ERROR, NOT_ATTEMPTED, right, wrong
+from cases import ERROR, right, wrong
 
 __all__ = ['ANSWERS']
 
@@ -32,14 +32,14 @@ ANSWERS = [
     ),
     wrong(
         'no quotation marks',
-        'Python does not know the name hello_robot here',
+        'hello_robot stands here without quotation marks',
         ("'hello_robot'", 'hello_robot'),
         outcome=ERROR,
         refused='The name is not defined.',
     ),
     wrong(
         'a text is not a node',
-        "lab.spin() expects a node, but got 'hello_robot'",
+        "lab.spin() expects a node, but got the text 'hello_robot'",
         ("Node('hello_robot')", "'hello_robot'"),
         outcome=ERROR,
     ),
@@ -57,9 +57,8 @@ ANSWERS = [
     wrong('a program that does not spin', 'Its program does something else', run='process'),
     wrong(
         'ended again',
-        'Not attempted yet',
+        'The cell ran to its end, and has left no node',
         ('robot = lab.spin(HelloRobot())', 'lab.remove(lab.spin(HelloRobot()))'),
-        outcome=NOT_ATTEMPTED,
         of='class',
     ),
     right('class'),
