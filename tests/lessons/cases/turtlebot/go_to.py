@@ -9,12 +9,12 @@ __all__ = ['ANSWERS']
 ANSWERS = [
     wrong(
         'only x',
-        'distance and direction of the goal',
+        'it stands at x = ',
         ('math.hypot(dx, dy) <', 'abs(dx) <'),
     ),
     wrong(
         'only y',
-        'distance and direction of the goal',
+        'it stands at x = ',
         ('math.hypot(dx, dy) <', 'abs(dy) <'),
     ),
     wrong(
