@@ -10,8 +10,8 @@ A check has been taken in by answers of eight kinds, see `KINDS`. For each claus
   is drawn for this clause;
 - a sentence, which ends with a full stop: why it can't occur there.
 
-What holds for each clause of a class stands once, in `usual.yaml`. `python tests/lessons/kinds`
-prints the table, and what is missing in it.
+What holds for each clause of a class, and of those made of it, stands once, in `usual.yaml`.
+`python tests/lessons/kinds` prints the table, and what is missing in it.
 """
 
 from __future__ import annotations
@@ -61,7 +61,10 @@ def _usual() -> dict[str, dict[str, str]]:
 def fields(exercise: Exercise, clause: Clause[Any]) -> dict[str, str]:
     """Return the fields of a clause, by kind: its own ones, and the usual ones of its class."""
     own = table_of(exercise.lesson).get(exercise.name, {}).get(clause.text, {})
-    return {**_usual().get(type(clause).__name__, {}), **own}
+    usual = _usual()
+    classes = [each.__name__ for each in reversed(type(clause).__mro__)]
+    known = {kind: said for name in classes for kind, said in usual.get(name, {}).items()}
+    return {**known, **own}
 
 
 def stale(exercise: Exercise) -> list[str]:
@@ -85,7 +88,7 @@ def trouble(exercise: Exercise, clause: Clause[Any], kind: str) -> str:
         return '' if said in _wrong(exercise) else said
     lesson, _, other = place.partition('/')
     found: Exercise = getattr(load(lesson), other)
-    same = any(type(each) is type(clause) for each in found.clauses)
+    same = any(isinstance(clause, type(each)) for each in found.clauses)
     return '' if same and name in _wrong(found) else said
 
 

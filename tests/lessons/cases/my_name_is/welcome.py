@@ -75,6 +75,35 @@ ANSWERS = [
         ('msg.data + self', "'My name is ' + self"),
     ),
     wrong(
+        'nothing for a namesake',
+        'were answered correctly, the others were not',
+        (APPENDS, f"        if not msg.data.startswith('Ada'):\n    {APPENDS}"),
+    ),
+    wrong(
+        'the first 1000 letters',
+        'What goes out does not hold the text that came in',
+        ('msg.data + self', 'msg.data[:1000] + self'),
+    ),
+    wrong(
+        'thirty texts and no more',
+        'were answered correctly, the others were not',
+        (
+            APPENDS,
+            "        self.count = getattr(self, 'count', 0) + 1\n"
+            f'        if self.count <= 30:\n    {APPENDS}',
+        ),
+    ),
+    wrong(
+        'at most ten a second',
+        'were answered correctly, the others were not',
+        (
+            APPENDS,
+            '        now = self.get_clock().now().nanoseconds\n'
+            "        if now - getattr(self, 'before', 0) < 1e8:\n            return\n"
+            f'        self.before = now\n{APPENDS}',
+        ),
+    ),
+    wrong(
         'space too many',
         'There is a space too many beside the name.',
         ('msg.data + self', "msg.data + ' ' + self"),
