@@ -44,6 +44,7 @@ __all__ = [
     'Runs',
     'Work',
     'dependencies',
+    'own_files',
     'refuse_program',
 ]
 
@@ -62,6 +63,7 @@ OTHER_NAME = WORDS.mistake('package/other-name')
 NOT_BUILT = WORDS.mistake('package/not-built')
 FAILED_BUILD = WORDS.mistake('package/failed-build')
 OLD_BUILD = WORDS.mistake('package/old-build')
+CHANGED_BUILD = WORDS.mistake('package/changed-build')
 NO_TEST_SINCE = WORDS.mistake('package/no-test-since')
 TEST_FAILED = WORDS.mistake('package/test-failed')
 NO_TEST = WORDS.mistake('package/no-test')
@@ -252,6 +254,16 @@ class Built(Clause[Work]):
                 'files in src that are newer than the last build that went well',
                 OLD_BUILD,
             )
+        # That is the last file which a build writes.
+        built = _written(work.build / 'colcon_build.rc')
+        for path in share.parents[1].rglob('*'):
+            if '__pycache__' in path.parts or not path.is_file() or _written(path) <= built:
+                continue
+            raise Fail(
+                wanted,
+                f'{path.relative_to(work.folder)} was changed after the build',
+                CHANGED_BUILD.of(package=self.package),
+            )
         return ''
 
 
@@ -436,6 +448,19 @@ def _why_ended(last: str, code: int | None) -> Mistake:
     if last.startswith('ModuleNotFoundError'):
         return NO_MODULE
     return RETURNED if code == 0 else RAISED
+
+
+def own_files(folder: Path) -> list[Path]:
+    """Return the files in a folder that no program leaves there by itself."""
+    return [
+        path
+        for path in sorted(folder.rglob('*'))
+        if path.is_file() and not any(map(_is_left, path.relative_to(folder).parts))
+    ]
+
+
+def _is_left(name: str) -> bool:
+    return name.startswith('.') or name == '__pycache__' or name.endswith(('~', '.egg-info'))
 
 
 def _is_source(path: Path) -> bool:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from labkit.exercises import Exercise, Fail, NotAttempted, words_of
 from labkit.exercises.clauses import Asked
-from labkit.lessons.package.content import InAWorkspace, Work
+from labkit.lessons.package.content import InAWorkspace, Work, own_files
 from labkit.lessons.your_own_machine.made import COURIER
 
 __all__ = ['exercise']
@@ -73,8 +73,7 @@ def _has_files(work: Work) -> None:
     if VERSION not in tags:
         raise Fail(wanted, f'tags: {", ".join(tags)}' if tags else 'no tag', NO_TAG)
     tagged, folder = _tagged(work), f'src/{COURIER}'
-    own = [path for path in work.source.rglob('*') if path.suffix in ('.py', '.xml', '.cfg')]
-    names = sorted(str(path.relative_to(work.folder)) for path in own)
+    names = sorted(str(path.relative_to(work.folder)) for path in own_files(work.source))
     lost = [name for name in names if name not in tagged]
     if lost:
         raise Fail(wanted, f'without {lost[0]}', NOT_ADDED)

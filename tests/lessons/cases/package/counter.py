@@ -60,6 +60,16 @@ ANSWERS = [
         ('Float64(data=self.count / 2)', 'Int16(data=self.count // 2)'),
         ('Float64, Int16', 'Int16'),
     ),
+    wrong(
+        'half of the number before',
+        'It is not half of the count',
+        ('self.count / 2', 'max(0, self.count - 1) / 2'),
+    ),
+    wrong(
+        'half of the next number',
+        'It is not half of the count',
+        ('self.count / 2', '(self.count + 1) / 2'),
+    ),
     right(
         'the whole workspace',
         (

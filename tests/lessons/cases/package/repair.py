@@ -20,6 +20,16 @@ ANSWERS = [
         (f'; {NAME}', ''),
     ),
     wrong('the name alone', 'Its last build has failed.', (f'{COMMA}; ', '')),
+    wrong(
+        'the name in install alone',
+        'Files in install are made by the build.',
+        (f'; {NAME}', ''),
+        (
+            BUILD,
+            BUILD
+            + "find install/broken_lab -name entry_points.txt -exec sed -i 's/mian/main/' {} +\n",
+        ),
+    ),
     wrong('without the teller', 'executables: hearer', (COMMA, '/teller:main/d')),
     wrong('without the hearer', 'executables: teller', (NAME, '/hearer:mian/d')),
     wrong(

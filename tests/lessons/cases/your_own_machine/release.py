@@ -40,8 +40,13 @@ ANSWERS = [
         (ARCHIVE, '!git archive -o ../../courier.tar.gz 1.0.0\n%cd -q ../..\n'),
     ),
     wrong(
+        'the resource file is missing',
+        'Seen: without src/courier_lab/resource/courier_lab',
+        (ADD, ADD + '!git rm -q --cached src/courier_lab/resource/courier_lab\n'),
+    ),
+    wrong(
         'a file is missing',
-        'Seen: without src/courier_lab/setup.cfg',
+        'Seen: without src/courier_lab/',
         (ADD, ADD.replace('src/courier_lab', 'src/courier_lab/package.xml src/courier_lab/c*')),
     ),
     wrong(
