@@ -70,6 +70,16 @@ ANSWERS = [
         of='a loop that sleeps, in a thread',
     ),
     wrong(
+        'stops after fifteen seconds',
+        'They stop coming.',
+        ("super().__init__('ones')\n", "super().__init__('ones')\n        self.n = 0\n"),
+        (
+            '        msg = Int16()\n',
+            '        self.n += 1\n        if self.n == 150:\n'
+            '            self.timer.cancel()\n        msg = Int16()\n',
+        ),
+    ),
+    wrong(
         'ends after ten',
         'They stop coming.',
         ("super().__init__('ones')\n", "super().__init__('ones')\n        self.n = 0\n"),
