@@ -125,7 +125,7 @@ stuck.create_timer(0.01, lambda: free.wait())
 
 @pytest.mark.slow('waits in real time')
 def test_a_stuck_callback_is_told_for_as_long_as_it_keeps_all_others(notebook: Kernel) -> None:
-    said = 'of /stuck has been running for'
+    said = '/stuck has been running for'  # after its end: of an earlier /stuck
     made = notebook.run(STUCK)
     shown = notebook.wait_for_output(made.msg_id, said)
     assert 'neither the stop button nor lab.remove(node) ends a callback' in shown
