@@ -10,7 +10,7 @@ import pytest
 
 from labkit import settings
 from labkit.errors import LabError
-from labkit.exercises import learner_errors, words
+from labkit.exercises import learner_errors, mistakes, words
 from labkit.exercises.words import TRANSLATIONS, Words, files, lacking, words_of
 
 LABKIT = Path(__file__).resolve().parent.parent.parent / 'labkit'
@@ -36,6 +36,12 @@ mistakes:
       data + 1: abs(data) + 1
     raises: "{'data'}"
 """
+
+
+@pytest.fixture(autouse=True)
+def own_mistakes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let no other test of this process know the mistakes that are made here."""
+    monkeypatch.setattr(mistakes, '_known', dict(mistakes.known_mistakes()))
 
 
 def told(folder: Path, text: str) -> Words:

@@ -50,6 +50,8 @@ def findings_of(
     wanted: dict[str, set[tuple[str, str]]] = {}
     found: dict[str, Future[Findings]] = {}
     for item in request.session.items:
+        if 'findings_of' not in getattr(item, 'fixturenames', ()):
+            continue  # of another file, which may call its parameters the same
         params = item.callspec.params if hasattr(item, 'callspec') else {}
         if isinstance(params.get('state'), Answer):
             state = params['state']
