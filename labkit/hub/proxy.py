@@ -12,7 +12,7 @@ from pathlib import Path
 
 from labkit.errors import SetupError
 from labkit.files import replaced
-from labkit.setup.environment import VENV
+from labkit.setup.environment import VENV, one_at_a_time
 from labkit.setup.installer import explain
 from labkit.setup.machine import run
 
@@ -35,14 +35,22 @@ def install_proxy() -> None:
     Raises:
         SetupError: npm could not fetch it.
     """
+    if _is_installed():
+        return
+    # Two at once would take each other's files away.
+    with one_at_a_time():
+        if _is_installed():
+            return
+        _FOLDER.parent.mkdir(parents=True, exist_ok=True)
+        print("Fetching JupyterHub's proxy with npm.", flush=True)
+        with replaced(_FOLDER):
+            _fetch()
+
+
+def _is_installed() -> bool:
     wanted, installed = _WANTED / _LOCK, _FOLDER / _LOCK
     done = _PROXY.exists() and installed.is_file()
-    if done and installed.read_bytes() == wanted.read_bytes():
-        return
-    print("Fetching JupyterHub's proxy with npm.", flush=True)
-    _FOLDER.parent.mkdir(parents=True, exist_ok=True)
-    with replaced(_FOLDER):
-        _fetch()
+    return done and installed.read_bytes() == wanted.read_bytes()
 
 
 def _fetch() -> None:

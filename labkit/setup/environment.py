@@ -30,7 +30,14 @@ from labkit.setup.machine import (
 )
 from labkit.setup.requirements import applicable
 
-__all__ = ['ROOT', 'VENV', 'environment_variables', 'existing_environment', 'make_environment']
+__all__ = [
+    'ROOT',
+    'VENV',
+    'environment_variables',
+    'existing_environment',
+    'make_environment',
+    'one_at_a_time',
+]
 
 ROOT = Path(__file__).resolve().parents[2]
 VENV = ROOT / '.venv'
@@ -70,7 +77,7 @@ def make_environment(requirements: Sequence[str] = LEARNER) -> Path:
             todo='Run this command in a complete copy (git clone) of the course.',
         )
     if _lacking(_read_stamp(), requirements):
-        with _lock():
+        with one_at_a_time():
             # Another process may have made it while this one waited.
             stamp = _read_stamp()
             lacking = _lacking(stamp, requirements)
@@ -180,7 +187,7 @@ def _interpreter_mark() -> list[Any] | None:
 
 
 @contextmanager
-def _lock() -> Iterator[None]:
+def one_at_a_time() -> Iterator[None]:
     """Let one process at a time change the environment.
 
     The lock is on a file that only its owner can open: whoever can open one can lock it for ever.

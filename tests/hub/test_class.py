@@ -7,6 +7,7 @@ import os
 import stat
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import bcrypt
@@ -18,6 +19,7 @@ from labkit.hub import command, proxy, start
 from labkit.hub.class_list import Member, read_class
 from labkit.hub.passwords import FIRST_PASSWORDS, HASHES, make_passwords
 from labkit.hub.sessions import note_hub, noted_hub
+from labkit.setup import environment
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -169,7 +171,37 @@ def test_a_proxy_that_can_not_be_fetched_costs_none(
     with pytest.raises(SetupError):
         proxy.install_proxy()
     assert (folder / 'package-lock.json').read_text() == 'of an older version'
-    assert list(folder.parent.iterdir()) == [folder]
+    assert [path for path in folder.parent.iterdir() if path.is_dir()] == [folder]
+
+
+def test_two_hubs_fetch_one_proxy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / 'share' / 'labkit-hub'
+    monkeypatch.setattr(environment, 'LOCKED', tmp_path / 'lock')
+    monkeypatch.setattr(proxy, '_FOLDER', folder)
+    monkeypatch.setattr(proxy, '_PROXY', folder / 'proxy')
+    monkeypatch.setattr(proxy, '_node', lambda: tmp_path)
+    second = threading.Thread(target=proxy.install_proxy)
+    waits = threading.Event()
+    fetched = []
+
+    def fetch(*_: object, **__: object) -> subprocess.CompletedProcess[str]:
+        fetched.append(1)
+        if len(fetched) == 1:
+            second.start()
+            assert waits.wait(60)
+        (folder / 'proxy').touch()
+        return subprocess.CompletedProcess([], 0, stdout='')
+
+    def told(*_: object, **__: object) -> None:
+        if threading.current_thread() is second:
+            waits.set()
+
+    monkeypatch.setattr(proxy, 'run', fetch)
+    # What waits says so.
+    monkeypatch.setattr('builtins.print', told)
+    proxy.install_proxy()
+    second.join()
+    assert len(fetched) == 1 and (folder / 'proxy').exists()
 
 
 def test_where_the_hub_was_is_noted(tmp_path: Path) -> None:

@@ -155,7 +155,10 @@ def test_who_is_taken_out_has_nothing_any_more(notebooks: dict[str, Notebook], h
     for person in (page, script):
         assert '/hub/login' not in person.log_in().address
     script.get_token()
-    notebooks['ben'].run(f'!setsid nohup {sys.executable} -c "while True: pass" &')
+    # His server has been ended.
+    script.start_server()
+    notebook = script.open_notebook('02_talker_listener.ipynb')
+    notebook.run(f'!setsid nohup {sys.executable} -c "while True: pass" &')
     annas = len(runs('anna'))
     hub.list.write_text('anna\nmaria teacher\n')
     hub.end('TERM')

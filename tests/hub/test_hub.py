@@ -113,6 +113,8 @@ def own_nodes(learners: Class) -> None:
     at_once(
         learners.people,
         lambda person: learners.notebooks[person.name].run(
+            # What they have started in terminals runs on, in the domain of the notebook.
+            '!pkill -f nodes/ear.py\n'
             'import os; lab.stop(); os.environ.pop("ROS_DOMAIN_ID", None); '
             'from rclpy.node import Node; '
             f'mine = lab.spin(Node("of_{person.name}")); '
