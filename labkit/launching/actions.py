@@ -269,7 +269,7 @@ class GroupAction(Action):
             begin += [ResetEnvironment(), ResetLaunchConfigurations(self.kept)]
         return [*begin, *self.actions, PopEnvironment(), PopLaunchConfigurations()]
 
-    def inside(self) -> Iterable[tuple[Sequence[Action], bool]]:
+    def inside(self, context: Context) -> Iterable[tuple[Sequence[Action], bool]]:
         return [(self.actions, self.condition is not None)]
 
 
@@ -307,7 +307,7 @@ class IncludeLaunchDescription(Action):
             raise LaunchError(
                 f'The file includes itself: {names}.', todo='Take one of the <include> out.'
             )
-        description = self.source.load(path)
+        description = self.source.load(context, path)
         self._check_arguments(context, description)
         arguments = [SetLaunchConfiguration(*pair) for pair in self.launch_arguments]
         for argument in arguments:
@@ -325,7 +325,7 @@ class IncludeLaunchDescription(Action):
         """Raise a LaunchError if an argument that the file must be given is not given here."""
         given = {perform(context, pieces(name)) for name, _ in self.launch_arguments}
         known: set[str] = set()
-        for argument, includes in declared([description]):
+        for argument, includes in declared(context, [description]):
             if argument.name in known or argument.default_value is not None:
                 known.add(argument.name)
                 continue
@@ -341,10 +341,10 @@ class IncludeLaunchDescription(Action):
         except LaunchError:
             return set()
 
-    def inside(self) -> Iterable[tuple[Sequence[Action], bool]]:
+    def inside(self, context: Context) -> Iterable[tuple[Sequence[Action], bool]]:
         try:
             path = os.path.abspath(perform(Context(), self.source.path))
-            return [([self.source.load(path)], self.condition is not None)]
+            return [([self.source.load(context, path)], self.condition is not None)]
         except LaunchError:  # known only when it is visited
             return ()
 
@@ -359,12 +359,10 @@ class Source:
         self.path = pieces(launch_file_path)
         self._loaded: dict[str, LaunchDescription] = {}
 
-    def load(self, path: str) -> LaunchDescription:
+    def load(self, context: Context, path: str) -> LaunchDescription:
         """Return the description in a file; it is read once."""
-        from labkit.launching.launch_files import load
-
         if path not in self._loaded:
-            self._loaded[path] = load(path, self.form)
+            self._loaded[path] = context.load(path, self.form)
         return self._loaded[path]
 
 
@@ -423,7 +421,7 @@ class TimerAction(Action):
             )
         )
 
-    def inside(self) -> Iterable[tuple[Sequence[Action], bool]]:
+    def inside(self, context: Context) -> Iterable[tuple[Sequence[Action], bool]]:
         return [(self.actions, True)]
 
 
@@ -444,7 +442,7 @@ class RegisterEventHandler(Action):
     def execute(self, context: Context) -> None:
         context.register_event_handler(self.event_handler)
 
-    def inside(self) -> Iterable[tuple[Sequence[Action], bool]]:
+    def inside(self, context: Context) -> Iterable[tuple[Sequence[Action], bool]]:
         return [(self.event_handler.actions, True)]
 
     def describe(self) -> str:
@@ -457,7 +455,7 @@ class UnregisterEventHandler(RegisterEventHandler):
     def execute(self, context: Context) -> None:
         context.unregister_event_handler(self.event_handler)
 
-    def inside(self) -> Iterable[tuple[Sequence[Action], bool]]:
+    def inside(self, context: Context) -> Iterable[tuple[Sequence[Action], bool]]:
         return ()
 
 
@@ -497,7 +495,9 @@ class Shutdown(EmitEvent):
 
 
 def declared(
-    actions: Iterable[Action], includes: tuple[IncludeLaunchDescription, ...] = ()
+    context: Context,
+    actions: Iterable[Action],
+    includes: tuple[IncludeLaunchDescription, ...] = (),
 ) -> Iterator[tuple[DeclareLaunchArgument, tuple[IncludeLaunchDescription, ...]]]:
     """Yield the arguments that do not depend on a condition, and the includes around each."""
     for action in actions:
@@ -508,9 +508,9 @@ def declared(
         if isinstance(action, DeclareLaunchArgument):
             yield action, includes
         around = (*includes, action) if isinstance(action, IncludeLaunchDescription) else includes
-        for inner, open_one in action.inside():
+        for inner, open_one in action.inside(context):
             if not open_one:
-                yield from declared(inner, around)
+                yield from declared(context, inner, around)
 
 
 def not_below_0(name: str, value: float) -> float:

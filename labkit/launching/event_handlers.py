@@ -13,9 +13,6 @@ __all__ = [
     'EventHandler',
     'OnActionEventBase',
     'OnExecutionComplete',
-    'OnProcessExit',
-    'OnProcessIO',
-    'OnProcessStart',
     'OnShutdown',
     'event_named',
 ]
@@ -148,72 +145,6 @@ class OnActionEventBase(BaseEventHandler):
     @property
     def actions(self) -> Sequence[Action]:
         return () if callable(self._todo) else entities_in(self._todo)
-
-
-def _program() -> type[Action]:
-    """Return the class of actions that start programs."""
-    from labkit.launching.execute import ExecuteLocal
-
-    return ExecuteLocal
-
-
-class OnProcessStart(OnActionEventBase):
-    """Handle the start of a program."""
-
-    words = ('target_action', 'on_start')
-
-    def __init__(self, *, target_action: Any = None, on_start: Any, **options: Any) -> None:
-        super().__init__(
-            action_matcher=target_action,
-            on_event=on_start,
-            target_event_cls=events.ProcessStarted,
-            target_action_cls=_program(),
-            **options,
-        )
-
-
-class OnProcessExit(OnActionEventBase):
-    """Handle the end of a program."""
-
-    words = ('target_action', 'on_exit')
-
-    def __init__(self, *, target_action: Any = None, on_exit: Any, **options: Any) -> None:
-        super().__init__(
-            action_matcher=target_action,
-            on_event=on_exit,
-            target_event_cls=events.ProcessExited,
-            target_action_cls=_program(),
-            **options,
-        )
-
-
-class OnProcessIO(OnActionEventBase):
-    """Handle what a program writes; the functions take the event alone."""
-
-    words = ('target_action', 'on_stdout')
-
-    def __init__(
-        self,
-        *,
-        target_action: Any = None,
-        on_stdin: Any = None,
-        on_stdout: Any = None,
-        on_stderr: Any = None,
-        **options: Any,
-    ) -> None:
-        functions = {0: on_stdin, 1: on_stdout, 2: on_stderr}
-
-        def on_event(event: events.ProcessIO, _: Context) -> Any:
-            function = functions[event.fd]
-            return None if function is None else function(event)
-
-        super().__init__(
-            action_matcher=target_action,
-            on_event=on_event,
-            target_event_cls=events.ProcessIO,
-            target_action_cls=_program(),
-            **options,
-        )
 
 
 class OnExecutionComplete(OnActionEventBase):

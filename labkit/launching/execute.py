@@ -1,4 +1,4 @@
-"""The actions that start programs: `<executable>`, and what nodes have in common with it."""
+"""Programs: the actions that start them, and the handlers of what happens to them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import Any
 from labkit.errors import did_you_mean
 from labkit.launching import events
 from labkit.launching.actions import not_below_0, pairs_in, setting
-from labkit.launching.event_handlers import OnProcessExit, entities_in
+from labkit.launching.event_handlers import OnActionEventBase, entities_in
 from labkit.launching.model import (
     Action,
     Condition,
@@ -25,7 +25,16 @@ from labkit.launching.model import (
     placed,
 )
 
-__all__ = ['Executable', 'ExecuteLocal', 'ExecuteProcess', 'Start', 'Written']
+__all__ = [
+    'Executable',
+    'ExecuteLocal',
+    'ExecuteProcess',
+    'OnProcessExit',
+    'OnProcessIO',
+    'OnProcessStart',
+    'Start',
+    'Written',
+]
 
 OUTPUTS = ('log', 'screen', 'both', 'own_log', 'full')
 
@@ -275,7 +284,7 @@ class ExecuteLocal(Action):
             )
         return None
 
-    def inside(self) -> Iterable[tuple[Sequence[Action], bool]]:
+    def inside(self, context: Context) -> Iterable[tuple[Sequence[Action], bool]]:
         if self.on_exit is None or callable(self.on_exit):
             return ()
         return [(entities_in(self.on_exit), True)]
@@ -329,3 +338,62 @@ class ExecuteProcess(ExecuteLocal):
     def additional_env(self) -> Any:
         """Environment variables besides those of the launch."""
         return self.process_description.additional_env
+
+
+class OnProcessStart(OnActionEventBase):
+    """Handle the start of a program."""
+
+    words = ('target_action', 'on_start')
+
+    def __init__(self, *, target_action: Any = None, on_start: Any, **options: Any) -> None:
+        super().__init__(
+            action_matcher=target_action,
+            on_event=on_start,
+            target_event_cls=events.ProcessStarted,
+            target_action_cls=ExecuteLocal,
+            **options,
+        )
+
+
+class OnProcessExit(OnActionEventBase):
+    """Handle the end of a program."""
+
+    words = ('target_action', 'on_exit')
+
+    def __init__(self, *, target_action: Any = None, on_exit: Any, **options: Any) -> None:
+        super().__init__(
+            action_matcher=target_action,
+            on_event=on_exit,
+            target_event_cls=events.ProcessExited,
+            target_action_cls=ExecuteLocal,
+            **options,
+        )
+
+
+class OnProcessIO(OnActionEventBase):
+    """Handle what a program writes; the functions take the event alone."""
+
+    words = ('target_action', 'on_stdout')
+
+    def __init__(
+        self,
+        *,
+        target_action: Any = None,
+        on_stdin: Any = None,
+        on_stdout: Any = None,
+        on_stderr: Any = None,
+        **options: Any,
+    ) -> None:
+        functions = {0: on_stdin, 1: on_stdout, 2: on_stderr}
+
+        def on_event(event: events.ProcessIO, _: Context) -> Any:
+            function = functions[event.fd]
+            return None if function is None else function(event)
+
+        super().__init__(
+            action_matcher=target_action,
+            on_event=on_event,
+            target_event_cls=events.ProcessIO,
+            target_action_cls=ExecuteLocal,
+            **options,
+        )

@@ -10,7 +10,15 @@ from labkit.errors import LabError, did_you_mean
 from labkit.files import read_limited
 from labkit.launching.actions import DeclareLaunchArgument
 from labkit.launching.markup import from_xml, from_yaml
-from labkit.launching.model import Action, LaunchDescription, LaunchError, Place, at, too_deep
+from labkit.launching.model import (
+    Action,
+    Context,
+    LaunchDescription,
+    LaunchError,
+    Place,
+    at,
+    too_deep,
+)
 from labkit.rosgraph.packages import prefix_of
 from labkit.rosgraph.workspaces import why_not_in
 
@@ -105,7 +113,7 @@ def arguments(
     for action in actions:
         if isinstance(action, DeclareLaunchArgument):
             yield action, conditional or action.condition is not None
-        for inner, open_one in action.inside():
+        for inner, open_one in action.inside(Context(load=load)):
             yield from arguments(inner, conditional=conditional or open_one)
 
 
@@ -114,5 +122,5 @@ def tree(actions: Sequence[Action], start: str = '') -> Iterator[str]:
     for number, action in enumerate(actions, 1):
         last = number == len(actions)
         yield f'{start}{"└── " if last else "├── "}{action.describe()}'
-        for inner, _ in action.inside():
+        for inner, _ in action.inside(Context(load=load)):
             yield from tree(list(inner), start + ('    ' if last else '│   '))

@@ -25,6 +25,7 @@ from labkit.errors import LabError
 from labkit.launching import events
 from labkit.launching.event_handlers import BaseEventHandler, entities_in
 from labkit.launching.execute import Start, Written
+from labkit.launching.launch_files import load
 from labkit.launching.model import Action, Context, Timer, raised
 
 __all__ = ['Service']
@@ -85,7 +86,9 @@ class Service:
         self._interactive, self._debug = interactive, debug
         self._tell = tell or (lambda event: None)
         self._quiet = tell is not None
-        self._context = Context(argv=list(argv), noninteractive=not interactive, say=self._say)
+        self._context = Context(
+            argv=list(argv), noninteractive=not interactive, say=self._say, load=load
+        )
         self._programs: list[_Program] = []
         self._timers: dict[asyncio.TimerHandle, Timer] = {}
         self._asked_to_end = self._shutting_down = self._interrupted = False

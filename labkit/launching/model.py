@@ -206,13 +206,17 @@ class Action:
         """Do it, and return what is to be visited next."""
         raise NotImplementedError
 
-    def inside(self) -> Iterable[tuple[Sequence[Action], bool]]:
-        """Return the actions in it, and whether it is open if they will be visited."""
+    def inside(self, context: Context) -> Iterable[tuple[Sequence[Action], bool]]:
+        """Return the actions in it, and whether it is open if they will be visited.
+
+        Args:
+            context: Loads the files that it includes; nothing else of it is looked at.
+        """
         return ()
 
     def get_sub_entities(self) -> list[Action]:
         """Return the actions in it."""
-        return [action for inner, _ in self.inside() for action in inner]
+        return [action for inner, _ in self.inside(Context()) for action in inner]
 
     def describe(self) -> str:
         """Return one line for `--print-description`."""
@@ -236,7 +240,7 @@ class LaunchDescription(Action):
     def execute(self, context: Context) -> Sequence[Action]:
         return self.entities
 
-    def inside(self) -> Iterable[tuple[Sequence[Action], bool]]:
+    def inside(self, context: Context) -> Iterable[tuple[Sequence[Action], bool]]:
         return [(self.entities, False)]
 
 
@@ -255,6 +259,10 @@ class Timer:
     configurations: Mapping[str, Any] = field(default_factory=dict)
 
 
+def _nothing_loads(path: str, form: str) -> LaunchDescription:
+    raise LaunchError(f'Nothing here loads {path}.')
+
+
 @dataclass
 class Context:
     """What is known while a description is visited, and what it has asked for.
@@ -271,6 +279,8 @@ class Context:
         uses_sim_time: Whether timers of ROS are to go by the time of a simulator.
         rehearsing: Whether nothing is to happen, because only faults are looked for.
         say: Shows a line: level, who, text.
+        load: Returns the description in a launch file: its path, and its form, `''` if that is
+            to be seen. It is handed in, because the forms are made of the actions that include.
     """
 
     launch_configurations: dict[str, Any] = field(default_factory=dict)
@@ -285,6 +295,7 @@ class Context:
     rehearsing: bool = False
     is_shutdown: bool = False
     say: Callable[[str, str, str], None] = lambda level, who, text: None
+    load: Callable[[str, str], LaunchDescription] = _nothing_loads
     counter: int = 0
     node_names: list[str] = field(default_factory=list)
     log_dir: str = ''
@@ -357,6 +368,7 @@ class Context:
             files=list(self.files),
             rehearsing=True,
             log_dir=self.log_dir,
+            load=self.load,
         )
 
     @property

@@ -157,8 +157,8 @@ class LaunchDescriptionSource(actions.Source):
         self.description = launch_description
         self.is_file = launch_description is None
 
-    def load(self, path: str) -> LaunchDescription:
-        return super().load(path) if self.description is None else self.description
+    def load(self, context: model.Context, path: str) -> LaunchDescription:
+        return super().load(context, path) if self.description is None else self.description
 
 
 class PythonLaunchDescriptionSource(actions.Source):
@@ -283,7 +283,8 @@ def _of_launch() -> dict[str, dict[str, Any]]:
         },
         'launch.descriptions': {'Executable': execute.Executable},
         'launch.event_handlers': {
-            name: handlers[name] for name in event_handlers.__all__ if name[:2] in ('On', 'ev')
+            **{name: vars(execute)[name] for name in execute.__all__ if name[:2] == 'On'},
+            **{name: handlers[name] for name in event_handlers.__all__ if name[0] in 'Oe'},
         },
         'launch.events': {
             name: happened[name]

@@ -24,6 +24,7 @@ from labkit.launching.model import (
     placed,
 )
 from labkit.launching.parameter_types import SCALARS, coerce, is_value
+from labkit.launching.templates import template
 from labkit.rosgraph.packages import executable
 from labkit.rosgraph.parameter_files import is_meant, sections_in
 from labkit.rosgraph.yaml_loading import load_yaml
@@ -92,8 +93,6 @@ class ParameterFile:
         path = perform(context, self.path)
         text = _read(path)
         if setting(context, self.allow_substs, 'bool'):
-            from labkit.launching.templates import template
-
             text = perform(context, template(text))
         keys = _keys(text, path)
         if node and not any(is_meant(key, node) for key in keys):

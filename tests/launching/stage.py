@@ -13,6 +13,7 @@ import yaml
 
 from labkit.launching.actions import IncludeLaunchDescription, Source
 from labkit.launching.execute import Written
+from labkit.launching.launch_files import load
 from labkit.launching.model import Context
 
 # A package with one program, which shows its arguments.
@@ -56,7 +57,7 @@ def visit(path: Path, *arguments: str) -> Visit:
     def say(level: str, who: str, text: str) -> None:
         (found.said if who == 'launch.user' else found.warned).append(text)
 
-    found.context = context = Context(argv=list(arguments), say=say)
+    found.context = context = Context(argv=list(arguments), say=say, load=load)
     pairs = [one.partition(':=')[::2] for one in arguments]
     with mock.patch.dict(os.environ):  # as if it were a process of its own
         context.visit([IncludeLaunchDescription(Source(str(path)), launch_arguments=pairs)])
