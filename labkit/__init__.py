@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from labkit.packages.export import export
     from labkit.packages.workspace import build, source
     from labkit.programs.child_processes import processes
+    from labkit.sharing.domain import domain
     from labkit.sharing.joining import join
     from labkit.sim.turtlebot import Turtlebot
     from labkit.teaching.classroom import classroom
@@ -59,6 +60,7 @@ __all__ = [
     'classroom',
     'dock',
     'doctor',
+    'domain',
     'export',
     'graph',
     'image',
@@ -95,6 +97,7 @@ _HOMES = {
     'classroom': 'labkit.teaching.classroom',
     'dock': 'labkit.views.dock',
     'doctor': 'labkit.checkup.report',
+    'domain': 'labkit.sharing.domain',
     'export': 'labkit.packages.export',
     'graph': 'labkit.views.graph',
     'image': 'labkit.views.image',

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+import shlex
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from labkit.errors import LabError
@@ -22,6 +23,7 @@ __all__ = [
     'choose_profile',
     'counts_ports',
     'first_port',
+    'how_to_join',
     'is_ours',
     'ports',
     'ports_of_participants',
@@ -198,9 +200,21 @@ def is_ours(profile: str) -> bool:
     return Path(profile).name in (PROFILE.name, THIS_MACHINE.name)
 
 
-def counts_ports() -> bool:
+def counts_ports(variables: Mapping[str, str] = os.environ) -> bool:
     """Return whether the variables name the profile of the domains between."""
-    return Path(os.environ.get(PROFILES_FILE, '')).name == PROFILE.name
+    return Path(variables.get(PROFILES_FILE, '')).name == PROFILE.name
+
+
+def how_to_join(domain_id: int, *, profile: Path | None = None) -> str:
+    """Return the line that lets what a terminal starts join a domain, also plain `python3`.
+
+    Args:
+        domain_id: The domain.
+        profile: The profile that is set even if the domain needs none.
+    """
+    profile = PROFILE if domain_id in BETWEEN else profile
+    more = f' {PROFILES_FILE}={shlex.quote(str(profile))}' if profile else ''
+    return f'export ROS_DOMAIN_ID={domain_id}{more}'
 
 
 def choose_profile() -> None:

@@ -29,6 +29,11 @@ def test_each_piece_prints_what_the_page_says(tmp_path: Path):
         assert done.stdout == expected, code
 
 
+def test_no_piece_leaves_anything_that_ros_reads_in_the_terminal():
+    for code, _ in PIECE.findall((NOTEBOOKS / 'Shell.md').read_text('utf-8')):
+        assert not re.search(r'\b(ROS|RMW|RCUTILS|FASTRTPS)_', code), code
+
+
 def test_it_is_linked_where_a_learner_meets_a_terminal_first():
     for number in ('02', '11'):
         (path,) = NOTEBOOKS.glob(f'{number}_*.ipynb')

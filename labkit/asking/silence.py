@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 __all__ = ['Failures', 'offers_service', 'stuck_callback', 'why_silent', 'why_unanswered']
 
 GET_STATE = 'lifecycle_msgs/srv/GetState'
-# How long a node may take to tell its state, s.
+# Two requests, since one may be lost (`AGAIN_SEC`), s. A node that answers later is not told to be
+# inactive: the next reason is said in its place, and no verdict hangs on that.
 STATE_SEC = 1.0
 
 

@@ -7,7 +7,7 @@ finds any process: by its command line, and by the id of the process in the ids 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -153,7 +153,7 @@ class InATerminal:
                 and not is_missing(bytes(info.endpoint_gid), helper)
             ]
 
-        here = [each for each in mine if self._domain(each) is None]
+        here = [each for each in mine if not self.elsewhere(each)]
         # A file may be run several times. `ros2 run` may stay beside its program, without a node.
         enough = any if self.joins else all
 
@@ -171,32 +171,31 @@ class InATerminal:
         alive = list(filter(_is_alive, mine))
         if not alive:
             raise Fail(self.wanted, 'no such node', self._of(NOT_RUNNING))
-        domain = next((d for d in map(self._domain, alive) if d is not None), None)
-        if domain is not None:
-            own = os.environ.get('ROS_DOMAIN_ID', '')
-            raise Fail(
-                f'{self.wanted}, with ROS_DOMAIN_ID={own}',
-                f'it runs with ROS_DOMAIN_ID={domain}' if domain else 'it has none: domain 0',
-                OTHER_DOMAIN.of(variables=_variables()),
-            )
+        seen = next(filter(None, map(self.elsewhere, alive)), '')
+        if seen:
+            line = _how_to_join(alive)
+            raise Fail(f'{self.wanted}, after {line}', seen, OTHER_DOMAIN.of(line=line))
         others = _nodes(probe, alive)
         if others:
             mistake = REMAPPED if '__node:=' in self.command else NODE_NAME
             raise Fail(self.wanted, ', '.join(sorted(others)), self._of(mistake))
         raise Fail(self.wanted, 'it runs, and no node has come', self._of(NOT_FOUND))
 
-    def _domain(self, process: Any) -> str | None:
-        """Return the domain that a process was given, None if it is that of this notebook.
+    def elsewhere(self, process: Any) -> str:
+        """Say which other domain than this notebook's a process was given, '' if none.
 
-        '' if it was given none.
+        A number alone does not tell: with the profile of the domains between, it counts ports.
         """
-        import psutil  # type: ignore[import-untyped]
-
-        with suppress(psutil.Error):
-            domain: str = process.environ().get('ROS_DOMAIN_ID', '')
-            if domain != os.environ.get('ROS_DOMAIN_ID', '') and (domain or not self.joins):
-                return domain
-        return None
+        given = _variables(process)
+        if given is None or (self.joins and not given.get('ROS_DOMAIN_ID')):
+            return ''
+        domain = given.get('ROS_DOMAIN_ID', '')
+        if domain != os.environ.get('ROS_DOMAIN_ID', ''):
+            return f'it runs with ROS_DOMAIN_ID={domain}' if domain else 'it has none: domain 0'
+        if self.joins or domain_ids.counts_ports(given) == domain_ids.counts_ports():
+            return ''
+        profile = given.get(domain_ids.PROFILES_FILE)
+        return f'it runs with {domain_ids.PROFILES_FILE}={profile or "nothing"}'
 
 
 @dataclass(frozen=True)
@@ -284,7 +283,7 @@ class RunsFile(GraphClause):
 
 def _is_alive(process: Any) -> bool:
     """Tell whether a process, one of psutil, has not ended."""
-    import psutil
+    import psutil  # type: ignore[import-untyped]
 
     with suppress(psutil.Error):
         return bool(process.is_running() and process.status() != psutil.STATUS_ZOMBIE)
@@ -321,9 +320,19 @@ def _nodes(probe: Probe, processes: Sequence[Any]) -> set[str]:
     return {name for name in found if UNKNOWN_NODE not in name}
 
 
-def _variables() -> str:
-    """Return what a terminal has to set for the domain of this notebook."""
-    found = f'ROS_DOMAIN_ID={os.environ.get("ROS_DOMAIN_ID", "")}'
-    if domain_ids.counts_ports():
-        found += f' {domain_ids.PROFILES_FILE}={domain_ids.PROFILE}'
-    return found
+def _variables(process: Any) -> Mapping[str, str] | None:
+    """Return the variables that a process was started with, None if it has ended."""
+    import psutil
+
+    with suppress(psutil.Error):
+        found: Mapping[str, str] = process.environ()
+        return found
+    return None
+
+
+def _how_to_join(processes: Sequence[Any]) -> str:
+    """Return what is to be typed in the terminals of processes before they are started again."""
+    found = filter(None, map(_variables, processes))
+    # A profile that is set there and does not belong here has to be replaced.
+    profile = domain_ids.THIS_MACHINE if any(map(domain_ids.counts_ports, found)) else None
+    return domain_ids.how_to_join(domain_ids.read_domain_id() or 0, profile=profile)

@@ -96,10 +96,9 @@ def choose_domain() -> str:
     domain_ids.set_domain(first)
     told = ', '.join(f'{number} ({notebooks[number]})' for number in others)
     why = 'used' if used[first] else 'started'
-    profile = f' {domain_ids.PROFILES_FILE}={domain_ids.PROFILE}'
     return (
         f'Domain {first}, of the notebook {why} last: {notebooks[first]}. Others: {told}. To '
-        f'choose: export ROS_DOMAIN_ID={others[0]}' + profile * (others[0] in domain_ids.BETWEEN)
+        f'choose: {domain_ids.how_to_join(others[0])}'
     )
 
 

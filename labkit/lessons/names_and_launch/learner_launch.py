@@ -29,7 +29,8 @@ WORDS = words_of(__file__)
 
 EMPTY = '<launch>\n  <!-- ... -->\n</launch>'
 _FORMS = ('xml', 'yaml', 'py')
-# So long a program that is about to make a node may wait for something else, s.
+# A program on its way to a node runs, or waits for a processor or a disk, but for moments: in this
+# time there are a hundred looks, s.
 AT_WORK_SEC = 1.0
 
 RUNS_ALREADY = WORDS.mistake('launch/runs-already')
