@@ -68,6 +68,9 @@ class Sent:
         looked_at: Of the last one that was looked at, see `keep_counting`.
         found: What was found in that.
         stamp: Time in its header, ns; None if it has none.
+        frame: The frame in its header; '' if it has none.
+        each: Whether each message is looked at, since one does not say what the others say.
+        parts: What was noted of the parts of messages, by their names.
     """
 
     count: int = 0
@@ -76,6 +79,9 @@ class Sent:
     looked_at: float = 0.0
     found: Mapping[str, str] = field(default_factory=dict)
     stamp: int | None = None
+    frame: str = ''
+    each: bool = False
+    parts: dict[Any, Any] = field(default_factory=dict)
 
 
 # Looks into a message now and then, see `keep_counting`.
@@ -154,7 +160,7 @@ def _publish(publisher: Publisher, msg: Any) -> None:
     ended = time.time_ns()
     for note in tuple(_notes):
         note(Publication(publisher, began, ended, _caller()), msg)
-    if _look is not None and (sent.count == 1 or now - sent.looked_at >= LOOK_SEC):
+    if _look is not None and (sent.each or sent.count == 1 or now - sent.looked_at >= LOOK_SEC):
         sent.looked_at = now
         _look(publisher, msg, sent)
 
@@ -169,7 +175,7 @@ def keep_counting(look: Callable[[Publisher, Any, Sent], None]) -> None:
 
     Args:
         look: Called after a message was published, for the first one of a publisher, and from then
-            on at most once in `LOOK_SEC`.
+            on at most once in `LOOK_SEC`, or for each one once it has set `Sent.each`.
     """
     global _look
     _look = look

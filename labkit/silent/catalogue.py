@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from labkit.silent.frame_faults import look_at_frames
 from labkit.silent.kinds import KINDS, Fault
 from labkit.silent.matching_faults import look_at_history, look_at_pairs, look_at_servers
 from labkit.silent.message_faults import look_at_messages
@@ -35,7 +36,7 @@ AT_GRAPH: tuple[Look, ...] = (
 AT_NODES: tuple[Look, ...] = (
     *(look_at_history, look_at_parameters, look_at_files, look_at_rules, look_at_clocks),
     *(look_at_timers, look_at_callbacks, look_at_spinning, look_at_calls, look_at_ends),
-    *(look_at_executors, look_at_readers, look_at_messages),
+    *(look_at_executors, look_at_readers, look_at_messages, look_at_frames),
 )
 """What is looked at each time: it is about this process alone."""
 
@@ -48,6 +49,7 @@ _TITLES = {
     'time': 'Time',
     'life': 'Life of nodes, calls and callbacks',
     'messages': 'Content of messages',
+    'frames': 'Frames',
 }
 _ALIKE = tuple(
     f'names.{way}'
@@ -61,8 +63,8 @@ Nothing arrives, nothing happens, and there is no error message. The notebook se
 says what is wrong: under the cell that made the node, on the node's card, in `lab.graph()`,
 `lab.monitor()`, `lab.doctor()` and `%ros2 doctor`. It goes away when it is mended.
 
-There are {all} kinds. Each can happen with rclpy alone, and has a test. {alone} are told by
-nobody else: neither by rclpy nor by `ros2` nor by another tool of ROS.
+There are {all} kinds. Each can happen with rclpy, and tf2 for frames, and has a test. {alone} are
+told by nobody else: neither by rclpy nor by `ros2` nor by another tool of ROS.
 """
 
 # What was wrong, number of questions, whether a program of rclpy can do it, kinds that tell it.
@@ -76,7 +78,7 @@ STUDY = (
     ('other values that do not go together', 17, True, ()),
     ('profiles that do not match', 1, True, ('qos.reliability',)),
     ('two nodes of one name', 1, True, ('names.double',)),
-    ('frames without, or with two, parents', 11, False, ()),
+    ('frames without, or with two, parents', 11, True, ('frames.two-parents', 'frames.apart')),
     ('a surrounding for which the node is not made', 2, False, ()),
 )
 _STUDY = """\
@@ -86,11 +88,11 @@ P. Canelas and others have sorted questions of ROS Answers (ISSTA 2024, arXiv:24
 kinds and 50 sub-kinds of misconfiguration, 27 of which no tool finds. The list of the 50 was not
 at hand for this page, so the two lists are not laid beside each other. The authors have published
 {all} such questions as specifications for a tool (github.com/pcanelas/rospec). Sorted by the first
-fault that it reports: {made} can be made in a program of rclpy alone, and {told} are of a sort
+fault that it reports: {made} can be made in a program of rclpy and tf2, and {told} are of a sort
 that is told here, if both ends are there to be seen. The rest needs what only the author of a node
-knows (which values go together, how many publishers are meant), or `tf2`, which has no wheel.
+knows (which values go together, how many publishers are meant).
 
-| What was wrong | Questions | Can be made in rclpy | Told here |
+| What was wrong | Questions | Can be made here | Told here |
 |---|---|---|---|
 """
 

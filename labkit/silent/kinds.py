@@ -53,11 +53,12 @@ class Fault:
     Attributes:
         kind: What kind of fault it is.
         nodes: Full names of the nodes that take part. The first one can be mended.
-        about: What it is about: a topic, a parameter, a callback.
+        about: What it is about: a topic, a parameter, a callback, a frame.
         text: What was seen, as a sentence.
         todo: What to do.
         aloud: Whether it is shown under its cell, see `Kind`.
         cell: The execution under which it is shown, None for the one that made the node.
+        topic: The topic on which it passes, if it is about something else.
     """
 
     kind: Kind
@@ -67,11 +68,17 @@ class Fault:
     todo: str = field(compare=False, default='')
     aloud: bool = field(compare=False, default=True)
     cell: Any = field(compare=False, default=None)
+    topic: str = field(compare=False, default='')
 
     @property
     def is_aloud(self) -> bool:
         """Whether it is shown under its cell."""
         return self.aloud and self.kind.aloud
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names at which it is shown: of nodes, and what it is about."""
+        return (*self.nodes, self.about, self.topic)
 
     def __str__(self) -> str:
         guess = f' This is a guess: {self.kind.guess}.' if self.kind.guess else ''

@@ -14,7 +14,7 @@ from typing import Any
 from labkit.silent.kinds import Fault, Kind, kind
 from labkit.silent.scene import Scene
 
-__all__ = ['checks_of', 'look_at_messages', 'stamp_of']
+__all__ = ['NO_STAMP', 'SLASH_FRAME', 'checks_of', 'frame_of', 'look_at_messages', 'stamp_of']
 
 _OTHERS = 'tf2 and RViz complain, if they are there'
 
@@ -252,6 +252,11 @@ def stamp_of(msg_type: type) -> Callable[[Any], int] | None:
     if kinds.get('header') != 'std_msgs/Header':
         return None
     return lambda message: message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
+
+
+def frame_of(message: Any) -> str:
+    """Return the frame in which a message is given; '' if it has none, or needs none."""
+    return message.header.frame_id if type(message).__name__ in _NEEDS_FRAME else ''
 
 
 def _itself(message: Any) -> Any:

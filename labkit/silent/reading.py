@@ -9,7 +9,7 @@ import math
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
@@ -34,6 +34,7 @@ from labkit.silent.rereading import reads_only_in_init
 from labkit.silent.scene import (
     Client,
     Held,
+    Listening,
     LongCall,
     OwnNode,
     ParameterFile,
@@ -45,6 +46,7 @@ from labkit.silent.scene import (
     Subscription,
     Timer,
 )
+from labkit.transforms.listeners import listeners
 
 if TYPE_CHECKING:
     from labkit.background.nodes import NodeEntry
@@ -117,6 +119,7 @@ class Reader:
             _running(),
             tuple(_held(nodes)),
             time.monotonic(),
+            tuple(_listening()),
         )
 
     def _node(self, node: Node, running: object, sent: Mapping[str, list[Sent]]) -> OwnNode:
@@ -252,6 +255,23 @@ def _publishers(node: Node) -> Iterator[Publisher]:
             sent.last,
             sent.found,
             sent.stamp,
+            sent.frame,
+            tuple(replace(each) for each in tuple(sent.parts.values())),
+        )
+
+
+def _listening() -> Iterator[Listening]:
+    for listener in tuple(listeners):
+        buffer, name = listener.buffer, full_name(listener.node)
+        if not name or is_hidden(name):
+            continue
+        tree = buffer.tree
+        yield Listening(
+            name,
+            tuple(tree.edges()),
+            frozenset(tree.names()),
+            {child: tuple(moves) for child, moves in tuple(tree.moves.items())},
+            buffer.in_vain(),
         )
 
 

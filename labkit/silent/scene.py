@@ -9,10 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from labkit.rosgraph.snapshot import Graph
+    from labkit.transforms.tree import Edge
 
 __all__ = [
+    'Broadcast',
     'Client',
     'Held',
+    'Listening',
     'LongCall',
     'OwnNode',
     'ParameterFile',
@@ -36,6 +39,54 @@ class Timer:
     is_canceled: bool = False
 
 
+@dataclass
+class Broadcast:
+    """What a publisher of this process has said of one frame in one parent.
+
+    Attributes:
+        parent: The parent.
+        child: The frame.
+        first: `time.monotonic()` of the first message with it.
+        last: Of the last one.
+        count: Number of messages with it.
+        looked_at: Of the last one whose numbers were looked at.
+        stamp: Time in that, ns.
+        place: Where the frame was in it: translation, m, and quaternion.
+        changes: How often that was another one than before.
+        found: What is odd about that one: id of a kind -> words.
+    """
+
+    parent: str
+    child: str
+    first: float = 0.0
+    last: float = 0.0
+    count: int = 0
+    looked_at: float = -math.inf
+    stamp: int = 0
+    place: tuple[float, ...] = ()
+    changes: int = 0
+    found: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Listening:
+    """A transform listener of this process, and what its buffer knows.
+
+    Attributes:
+        node: The node that listens.
+        edges: The frames that have a parent.
+        names: All frames.
+        moves: The last changes of the parent of a frame: `time.monotonic()`, and both parents.
+        asked: Pairs of frames between which callbacks look in vain, and for how long, s.
+    """
+
+    node: str
+    edges: tuple[Edge, ...] = ()
+    names: frozenset[str] = frozenset()
+    moves: Mapping[str, tuple[tuple[float, str, str], ...]] = field(default_factory=dict)
+    asked: Mapping[tuple[str, str], float] = field(default_factory=dict)
+
+
 @dataclass(frozen=True)
 class Publisher:
     """A publisher, and what it has published.
@@ -49,6 +100,8 @@ class Publisher:
         last: Of the last one.
         found: What is odd about the last message that was looked at: id of a kind -> words.
         stamp: Time in its header, ns; None if it has none.
+        frame: The frame in its header; '' if it has none, or needs none.
+        broadcasts: What it has said of frames, if it is one of transforms.
     """
 
     topic: str
@@ -59,6 +112,8 @@ class Publisher:
     last: float = 0.0
     found: Mapping[str, str] = field(default_factory=dict)
     stamp: int | None = None
+    frame: str = ''
+    broadcasts: tuple[Broadcast, ...] = ()
 
     @property
     def interval(self) -> float:
@@ -248,6 +303,7 @@ class Scene:
         running: The callback that is running in the background, None if none is.
         held: The callbacks that hold up executors of the learner's own.
         now: `time.monotonic()`.
+        listeners: The transform listeners of this process.
     """
 
     graph: Graph
@@ -257,6 +313,7 @@ class Scene:
     running: Running | None = None
     held: tuple[Held, ...] = ()
     now: float = 0.0
+    listeners: tuple[Listening, ...] = ()
 
     def own(self, name: str) -> OwnNode | None:
         """Return the node of this process of a full name, None if there is none."""

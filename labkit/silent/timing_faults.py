@@ -8,7 +8,7 @@ from labkit.settings import LONG_SEC, SHORT_SEC
 from labkit.silent.kinds import Fault, kind
 from labkit.silent.scene import OwnNode, Scene
 
-__all__ = ['look_at_callbacks', 'look_at_clocks', 'look_at_timers']
+__all__ = ['FUTURE', 'OFF_SEC', 'look_at_callbacks', 'look_at_clocks', 'look_at_timers']
 
 NO_CLOCK = kind(
     'time.no-clock',
@@ -87,7 +87,7 @@ STUCK = kind(
 )
 
 # What is off by more than this is no matter of when it was looked at, s.
-_OFF_SEC = 1.0
+OFF_SEC = 1.0
 _YEARS_SEC = 1e8
 _USUAL_RATES = (10, 15, 20, 25, 30, 40, 50, 60, 100)
 
@@ -121,7 +121,7 @@ def _stamps(node: OwnNode) -> Iterator[Fault]:
         if not pub.stamp or not node.now:
             continue
         ahead = (pub.stamp - node.now) * 1e-9
-        if ahead > _OFF_SEC:
+        if ahead > OFF_SEC:
             yield Fault(
                 FUTURE,
                 (node.name,),

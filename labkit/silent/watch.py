@@ -24,10 +24,11 @@ from labkit.asking.traffic import Sent, keep_counting
 from labkit.background import compat
 from labkit.background.console import Cell
 from labkit.background.runtime import runtime
+from labkit.silent.broadcasts import MOVING, STATIC, note_transforms
 from labkit.silent.catalogue import AT_GRAPH, AT_NODES
 from labkit.silent.kinds import Fault, in_words
 from labkit.silent.matching_faults import DEPTH
-from labkit.silent.message_faults import checks_of, stamp_of
+from labkit.silent.message_faults import checks_of, frame_of, stamp_of
 from labkit.silent.reading import Reader
 from labkit.silent.scene import Scene
 from labkit.silent.timing_faults import OVERRUN
@@ -209,8 +210,13 @@ def _look_into(publisher: Any, message: Any, sent: Sent) -> None:
     if isinstance(message, bytes):
         return
     try:
+        if publisher.msg_type.__name__ == 'TFMessage':
+            if publisher.topic_name in (MOVING, STATIC):
+                note_transforms(sent, message.transforms, publisher.topic_name)
+            return
         take = stamp_of(publisher.msg_type)
         sent.stamp = take(message) if take is not None else None
+        sent.frame = frame_of(message)
         sent.found = {
             kind.id: words
             for check in checks_of(publisher.msg_type)
@@ -236,9 +242,9 @@ def faults() -> tuple[Fault, ...]:
 
 def about(name: str) -> list[Fault]:
     """Return the faults of a node, or about a topic, by its full name."""
-    return [fault for fault in faults() if name in (*fault.nodes, fault.about)]
+    return [fault for fault in faults() if name in fault.names]
 
 
 def seen_about(name: str) -> list[Fault]:
     """Return what the last look in the background found about a node or a topic."""
-    return [fault for fault in watch.seen if name in (*fault.nodes, fault.about)]
+    return [fault for fault in watch.seen if name in fault.names]

@@ -7,8 +7,8 @@ real one waits in vain; this one does not wait there, and says so.
 
 from __future__ import annotations
 
+import time as clocks
 from collections.abc import Callable
-from contextlib import suppress
 from typing import Any, cast
 
 from geometry_msgs.msg import TransformStamped
@@ -30,6 +30,13 @@ __all__ = ['Buffer']
 
 _NO_TIME = Duration()
 _Answer = tuple[bool, str]
+_Pair = tuple[str, str]
+# A future, the pairs of frames between which it waits, and since when.
+_Wanted = tuple[Future, tuple[_Pair, ...], float]
+# Pairs of frames that are remembered of those that were asked for in vain.
+_MOST_PAIRS = 50
+# What was asked for in vain, and not again for so long, is not wanted any more, s.
+WANTED_SEC = 3.0
 IN_VAIN = (
     'It was not waited for: a callback asked, and no transform is heard until it returns. Ask '
     'again in the next callback, or in one that is `async def`: '
@@ -50,7 +57,9 @@ class Buffer(BufferCore, BufferInterface):
     def __init__(self, cache_time: Duration | None = None, node: Node | None = None) -> None:
         BufferCore.__init__(self, cache_time)
         BufferInterface.__init__(self)
-        self._waiting: list[Callable[[], None]] = []
+        self._waiting: dict[Callable[[], None], _Wanted] = {}
+        # What callbacks have asked for in vain: frames -> since when, and when for the last time.
+        self._in_vain: dict[_Pair, tuple[float, float]] = {}
         if node is not None:
             # Built when it is first asked for.
             from tf2_msgs.srv import FrameGraph
@@ -107,7 +116,8 @@ class Buffer(BufferCore, BufferInterface):
         """
         asked = target_frame, source_frame, time
         self._wait(lambda: self.can_transform_core(*asked), timeout)
-        return self._found(lambda: self.lookup_transform_core(*asked), timeout)
+        pairs = ((target_frame, source_frame),)
+        return self._found(lambda: self.lookup_transform_core(*asked), timeout, pairs)
 
     def lookup_transform_full(
         self,
@@ -133,7 +143,8 @@ class Buffer(BufferCore, BufferInterface):
         """
         asked = target_frame, target_time, source_frame, source_time, fixed_frame
         self._wait(lambda: self.can_transform_full_core(*asked), timeout)
-        return self._found(lambda: self.lookup_transform_full_core(*asked), timeout)
+        pairs = ((target_frame, fixed_frame), (fixed_frame, source_frame))
+        return self._found(lambda: self.lookup_transform_full_core(*asked), timeout, pairs)
 
     def can_transform(
         self,
@@ -154,6 +165,8 @@ class Buffer(BufferCore, BufferInterface):
         """
         asked = target_frame, source_frame, time
         answer = self._wait(lambda: self.can_transform_core(*asked), timeout)
+        if not answer[0]:
+            self._note((target_frame, source_frame))
         return answer if return_debug_tuple else answer[0]
 
     def can_transform_full(
@@ -179,6 +192,8 @@ class Buffer(BufferCore, BufferInterface):
         """
         asked = target_frame, target_time, source_frame, source_time, fixed_frame
         answer = self._wait(lambda: self.can_transform_full_core(*asked), timeout)
+        if not answer[0]:
+            self._note((target_frame, fixed_frame), (fixed_frame, source_frame))
         return answer if return_debug_tuple else answer[0]
 
     def _wait(self, look: Callable[[], _Answer], timeout: Duration) -> _Answer:
@@ -194,13 +209,45 @@ class Buffer(BufferCore, BufferInterface):
             answer = look()
         return answer
 
-    def _found(self, look: Callable[[], TransformStamped], timeout: Duration) -> TransformStamped:
+    def _found(
+        self, look: Callable[[], TransformStamped], timeout: Duration, pairs: tuple[_Pair, ...]
+    ) -> TransformStamped:
         try:
             return look()
         except TransformException as error:
+            self._note(*pairs)
             if timeout.nanoseconds > 0 and runtime.called_by_callback():
                 raise type(error)(error.message, todo=IN_VAIN) from None
             raise
+
+    # -- in vain --------------------------------------------------------------------------------
+
+    def _note(self, *pairs: _Pair) -> None:
+        """Note what a callback has asked for in vain; a cell is told by the error itself."""
+        if not runtime.called_by_callback():
+            return
+        now = clocks.monotonic()
+        for pair in pairs:
+            first, last = self._in_vain.get(pair, (now, now))
+            if pair in self._in_vain or len(self._in_vain) < _MOST_PAIRS:
+                self._in_vain[pair] = (first if now - last < WANTED_SEC else now, now)
+
+    def in_vain(self) -> dict[_Pair, float]:
+        """Return the pairs of frames between which callbacks look, or wait, without success.
+
+        Returns:
+            For how long, in s; of those who look again and again, since they began.
+        """
+        now = clocks.monotonic()
+        found = {
+            pair: last - first
+            for pair, (first, last) in tuple(self._in_vain.items())
+            if now - last < WANTED_SEC
+        }
+        for future, pairs, since in tuple(self._waiting.values()):
+            if not future.cancelled():  # type: ignore[no-untyped-call]
+                found.update(dict.fromkeys(pairs, now - since))
+        return found
 
     # -- in coroutines --------------------------------------------------------------------------
 
@@ -233,7 +280,9 @@ class Buffer(BufferCore, BufferInterface):
         """
         asked = target_frame, source_frame, time
         return self._future(
-            lambda: self.can_transform_core(*asked), lambda: self.lookup_transform_core(*asked)
+            lambda: self.can_transform_core(*asked),
+            lambda: self.lookup_transform_core(*asked),
+            ((target_frame, source_frame),),
         )
 
     def wait_for_transform_full_async(
@@ -257,9 +306,15 @@ class Buffer(BufferCore, BufferInterface):
         return self._future(
             lambda: self.can_transform_full_core(*asked),
             lambda: self.lookup_transform_full_core(*asked),
+            ((target_frame, fixed_frame), (fixed_frame, source_frame)),
         )
 
-    def _future(self, look: Callable[[], _Answer], find: Callable[[], TransformStamped]) -> Future:
+    def _future(
+        self,
+        look: Callable[[], _Answer],
+        find: Callable[[], TransformStamped],
+        pairs: tuple[_Pair, ...],
+    ) -> Future:
         future: Any = Future()  # type: ignore[no-untyped-call]
 
         def on_data() -> None:
@@ -270,10 +325,9 @@ class Buffer(BufferCore, BufferInterface):
                 future.set_exception(error)
             if future.done() or future.cancelled():
                 # Two threads may bring transforms at the same time.
-                with suppress(ValueError):
-                    self._waiting.remove(on_data)
+                self._waiting.pop(on_data, None)
 
-        self._waiting.append(on_data)
+        self._waiting[on_data] = future, pairs, clocks.monotonic()
         on_data()
         return cast(Future, future)
 

@@ -78,6 +78,10 @@ class BufferCore:
                 'listed at http://wiki.ros.org/tf/Errors%20explained'
             )
 
+    def in_vain(self) -> dict[tuple[str, str], float]:
+        """Return the pairs of frames between which callbacks look in vain: not noted here."""
+        return {}
+
     # -- looking --------------------------------------------------------------------------------
 
     def lookup_transform_core(

@@ -14,6 +14,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from labkit import settings
 from labkit.background.runtime import runtime
 from labkit.transforms.buffer_core import BufferCore
+from labkit.transforms.listeners import listeners
 
 __all__ = ['TransformListener']
 
@@ -61,6 +62,7 @@ class TransformListener:
         self.tf_static_sub = node.create_subscription(
             TFMessage, '/tf_static', self.static_callback, static_qos, callback_group=self.group
         )
+        listeners.add(self)
         if spin_thread and settings.in_kernel():
             runtime.add(node)
         elif spin_thread:
@@ -75,6 +77,7 @@ class TransformListener:
 
     def unregister(self) -> None:
         """Stop listening."""
+        listeners.discard(self)
         self.node.destroy_subscription(self.tf_sub)
         self.node.destroy_subscription(self.tf_static_sub)
 

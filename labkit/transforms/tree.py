@@ -7,6 +7,8 @@ tf2/src/buffer_core.cpp. Nothing here needs ROS: times are whole nanoseconds, 0 
 from __future__ import annotations
 
 import threading
+import time as clocks
+from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
 from operator import mul
@@ -35,6 +37,8 @@ __all__ = ['Edge', 'Place', 'Tree']
 
 # A longer way is a loop.
 MAX_DEPTH = 1000
+# Changes of a frame's parent that are remembered.
+_MOVES = 4
 NO_PARENT = 'NO_PARENT'
 Place = tuple[Vector, Quaternion]
 """Where a frame is in another one, and how it is turned."""
@@ -52,6 +56,7 @@ class Edge:
         rate: Samples in a second, Hz; 10,000 for a single one, as tf2 counts.
         latest: Time of the newest sample, ns; 0 for a static frame.
         oldest: Time of the oldest sample, ns.
+        heard: `time.monotonic()` when the last sample came.
     """
 
     child: str
@@ -60,6 +65,7 @@ class Edge:
     rate: float
     latest: int
     oldest: int
+    heard: float = 0.0
 
 
 class Tree:
@@ -67,13 +73,19 @@ class Tree:
 
     Args:
         limit: How long a moving frame is remembered, from its newest sample back, ns.
+
+    Attributes:
+        moves: The last changes of the parent, for each frame that has had one: `time.monotonic()`,
+            the parent before, and then.
     """
 
     def __init__(self, limit: int) -> None:
         self._limit = limit
         # Frames in the order in which they were first named; None for one without a parent.
         self._frames: dict[str, MovingCache | StaticCache | None] = {}
-        self._authorities: dict[str, str] = {}
+        # Who has said where a frame is, and when.
+        self._said: dict[str, tuple[str, float]] = {}
+        self.moves: dict[str, deque[tuple[float, str, str]]] = {}
         self._lock = threading.RLock()
 
     def __contains__(self, frame: str) -> bool:
@@ -100,14 +112,19 @@ class Tree:
             Whether it is new enough to be remembered.
         """
         with self._lock:
+            now = clocks.monotonic()
             cache = self._frames.get(child)
+            before = cache.latest_parent if cache is not None else ''
+            if before and before != sample.parent:
+                moves = self.moves.setdefault(child, deque(maxlen=_MOVES))
+                moves.append((now, before, sample.parent))
             if cache is None or isinstance(cache, StaticCache) is not is_static:
                 cache = StaticCache(sample) if is_static else MovingCache(self._limit)
                 self._frames[child] = cache
             self._frames.setdefault(sample.parent, None)
             is_new = cache.insert(time, sample)
             if is_new:
-                self._authorities[child] = authority
+                self._said[child] = authority, now
             return is_new
 
     def clear(self) -> None:
@@ -315,10 +332,11 @@ class Tree:
                 Edge(
                     child=name,
                     parent=cache.latest_parent,
-                    authority=self._authorities[name],
+                    authority=self._said[name][0],
                     rate=len(cache) * 1e9 / max(cache.latest - cache.oldest, 100_000),
                     latest=cache.latest,
                     oldest=cache.oldest,
+                    heard=self._said[name][1],
                 )
                 for name, cache in self._frames.items()
                 if cache  # one without samples is false

@@ -62,7 +62,7 @@ def not_drawn(found: Iterable[Fault]) -> list[Fault]:
 
 def names_of(found: Iterable[Fault]) -> set[str]:
     """Return the nodes and topics that faults are about."""
-    return {name for one in found for name in (*one.nodes, one.about)}
+    return {name for one in found for name in one.names}
 
 
 def graph(

@@ -216,7 +216,7 @@ def _faults(topic: str, *, hears: bool) -> list[str]:
     """
     from labkit.silent.watch import seen_about
 
-    groups = ('messages.', 'time.', *(('types.', 'qos.') if hears else ()))
+    groups = ('messages.', 'time.', 'frames.', *(('types.', 'qos.') if hears else ()))
     found = [one for one in seen_about(topic) if one.kind.id.startswith(groups)]
     return [f'{fault} {fault.advice}' for fault in found]
 

@@ -12,7 +12,7 @@ from labkit.silent.catalogue import KINDS
 from tests.conftest import Kernel
 
 FOLDER = Path(__file__).parent / 'cases'
-GROUPS = ('names', 'ends', 'parameters', 'timing', 'life', 'messages')
+GROUPS = ('names', 'ends', 'parameters', 'timing', 'life', 'messages', 'frames')
 # Told by other means than a cell in one process, see `test_pure.py`.
 PURE = {'types.package', 'types.version', 'types.action', 'life.unspun'}
 

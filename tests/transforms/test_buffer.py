@@ -66,9 +66,9 @@ def test_a_future_is_done_when_the_transform_comes(buffer):
     cancelled.cancel()
     put(buffer, 8)
     assert future.result().header.stamp.sec == 7 and other.result().header.stamp.sec == 8
-    assert buffer._waiting == []
+    assert not buffer._waiting
     at_once = buffer.wait_for_transform_async('odom', 'base', Time(seconds=7))
-    assert at_once.done() and buffer._waiting == []
+    assert at_once.done() and not buffer._waiting
 
 
 def test_an_answer_may_come_with_its_reason(buffer):
