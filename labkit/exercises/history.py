@@ -100,14 +100,22 @@ class History:
 
     def __init__(self) -> None:
         self._notes: dict[str, deque[Note]] = {}
+        self._types: set[str] = set()
         self._lines: deque[Line] = deque(maxlen=MOST)
         self._owners: WeakKeyDictionary[Publisher, ReferenceType[Node]] = WeakKeyDictionary()
         self._begun = False
 
-    def follow(self, topics: Iterable[str]) -> None:
-        """Note what is published on these topics, too, as soon as ROS has been started."""
-        for topic in topics:
-            self._notes.setdefault(topic, deque(maxlen=MOST))
+    def follow(self, names: Iterable[str]) -> None:
+        """Note what is published on these topics, too, as soon as ROS has been started.
+
+        Args:
+            names: Full names of topics. The name of a type stands for all topics of that type.
+        """
+        for name in names:
+            if name.startswith('/'):
+                self._notes.setdefault(name, deque(maxlen=MOST))
+            else:
+                self._types.add(name)
         if self._begin not in settings.after_start:
             settings.after_start.append(self._begin)
         if 'labkit.background.runtime' in sys.modules:
@@ -156,10 +164,16 @@ class History:
         from rclpy.serialization import serialize_message
 
         from labkit.background.nodes import made
+        from labkit.rosgraph.interfaces import type_name
 
         publisher = publication.publisher
-        notes = self._notes.get(publisher.topic_name) if self._notes else None
-        if notes is None or isinstance(msg, bytes):
+        if isinstance(msg, bytes) or not self._notes:
+            return
+        topic = publisher.topic_name
+        if topic not in self._notes and type_name(type(msg)) in self._types:
+            self._notes[topic] = deque(maxlen=MOST)
+        notes = self._notes.get(topic)
+        if notes is None:
             return
         owner = self._owner(publisher)
         node = owner() if owner is not None else None

@@ -47,7 +47,10 @@ class Clause(Generic[Seen]):
 
     @property
     def listens(self) -> Collection[str]:
-        """The topics of which it judges what was said before the check, too, see `history`."""
+        """The topics of which it judges what was said before the check, too.
+
+        Where the learner names them, it is their type, see `history`.
+        """
         return ()
 
     def find(self, seen: Seen) -> None:

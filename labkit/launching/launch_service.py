@@ -184,10 +184,15 @@ class Service:
             self._visit(lambda: timer.actions, events.TimerEvent(timer), timer.files)
             self._context.pop_configurations()
             self._settle()
+            self._tell_timers()
             self._end_if_idle()
 
         handle = self._loop.call_later(timer.seconds, fire)
         self._timers[handle] = timer
+        self._tell_timers()
+
+    def _tell_timers(self) -> None:
+        self._tell({'timers': [timer.seconds for timer in self._timers.values()]})
 
     def _visit(self, actions: Callable[[], Any], event: Any, files: Sequence[str]) -> None:
         """Visit actions while the launch runs; a fault in them ends it."""
@@ -325,6 +330,7 @@ class Service:
         again = bool(start.respawn and program.left and not program.ending)
         again = again and not self._shutting_down
         told = {'ended': start.name, 'exit_code': code, 'again': again, 'left': program.left}
+        told['delay'] = start.respawn_delay
         self._tell({**told, 'shutting_down': self._shutting_down})
         self._emit(events.ProcessExited(start.action, **program.about, returncode=code))
         self._settle()

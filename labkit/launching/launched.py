@@ -40,6 +40,7 @@ class Program:
         is_node: Whether the launch file calls it a node.
         again: Whether it has ended, and is about to be started again.
         left: How often it might be started again when it ended last; below 0 without end.
+        delay: How long after its end it is started again then, s.
     """
 
     name: str
@@ -49,6 +50,7 @@ class Program:
     is_node: bool = False
     again: bool = False
     left: int = -1
+    delay: float = 0.0
 
     def __repr__(self) -> str:
         state = 'running' if self.exit_code is None else f'ended (exit code {self.exit_code})'
@@ -63,12 +65,14 @@ class Launch(Process):
         path: The launch file.
         processes: The programs that it has started, in that order.
         shutting_down: Whether it was ending all of them when the last one ended.
+        timers: The periods of its timers that have not fired yet, s.
     """
 
     def __init__(self, name: str, path: str, arguments: Mapping[str, str], cell: Cell) -> None:
         self.path = path
         self.processes: list[Program] = []
         self.shutting_down = False
+        self.timers: list[float] = []
         self._ready = False
         self._fault: LabError | None = None
         command = [sys.executable, '-m', 'labkit.ros2', 'launch', '--noninteractive', path]
@@ -119,8 +123,11 @@ class Launch(Process):
             if announcement['exit_code'] < 0:
                 self._note_killed(program.pid)
             program.again, program.left = announcement['again'], announcement['left']
+            program.delay = announcement['delay']
             self.shutting_down = announcement['shutting_down']
             program.exit_code = announcement['exit_code']
+        elif 'timers' in announcement:
+            self.timers = announcement['timers']
         elif 'fault' in announcement:
             self._fault = LabError(announcement['fault'], todo=announcement['todo'])
         self._ready = self._ready or 'ready' in announcement

@@ -66,6 +66,27 @@ def test_message_is_kept_as_it_was_and_its_node_is_known(follows: ModuleType) ->
     assert notes[0].is_first
 
 
+def test_all_topics_of_a_type_are_followed_where_it_is_named(lab: ModuleType) -> None:
+    history._notes.clear()
+    history.follow(['std_msgs/msg/String'])
+    node = lab.spin(Node('free'))
+    node.create_publisher(String, 'of_my_own', 10).publish(String(data='Hello'))
+    node.create_publisher(Int16, 'numbers', 10).publish(Int16())
+    assert [note.message.data for note in history.on('/of_my_own') or ()] == ['Hello']
+    assert history.on('/numbers') is None
+    history._types.clear()
+
+
+def test_what_a_node_says_while_it_is_made_is_refused_whatever_else_it_has_heard(
+    follows: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # As where another process speaks on the topic, too.
+    monkeypatch.setattr(Evidence, 'heard_by', lambda *_: None)
+    follows.spin(Evens(8))
+    with pytest.raises(Fail, match=r'1 more on /evens since /evens was made: data = \[8\]'):
+        judged(ADDS)
+
+
 def test_what_a_node_says_at_first_and_in_the_cell_of_the_check_is_known(
     follows: ModuleType,
 ) -> None:

@@ -289,8 +289,11 @@ class Answers(GraphClause):
         # In this order: time goes on, and what was heard for each answer is known before it.
         said = evidence.said_by(hears.node, self.outer)
         heard = evidence.heard_by(hears.node, self.inner)
-        if heard is None or said is None or not self.lasting:
+        if said is None or not self.lasting:
             return
+        if heard is None:
+            # Whatever it has heard: what it says while it is made, nobody has asked for.
+            said, heard = [each for each in said if each.in_making], []
         node = evidence.probe.node_object(hears.node)
         others = [each for each in heard if not each.is_by(node)]
         due, rights, extra = Counter[Any](), list[Any](), list[Any]()

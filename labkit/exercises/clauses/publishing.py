@@ -13,7 +13,7 @@ from labkit.exercises import common_mistakes
 from labkit.exercises.clauses.base import Evidence, GraphClause, Stream
 from labkit.exercises.expect import spinning, timing
 from labkit.exercises.history import history
-from labkit.exercises.messages_heard import Lived, Sample, streams_of
+from labkit.exercises.messages_heard import Lived, Sample, Watch, streams_of
 from labkit.exercises.mistakes import Mistake
 from labkit.exercises.observation import Life, live
 from labkit.exercises.verdict import Fail, NotAttempted
@@ -222,9 +222,13 @@ class Publishes(GraphClause):
             self._refuse(trouble)
         young = source.node not in life.remote and probe.something_is_starting()
         began, count = time.monotonic(), max(len(nodes), 1)
-        right, watch = timing.at_rate(probe, source, self.hz, count=count, at_least=self.at_least)
+        right, watch = timing.at_rate(
+            probe, source, self.hz, count=count, at_least=self.at_least, ends=self.ends
+        )
         seconds = time.monotonic() - began
         if len(right) >= count:
+            if not self.ends:
+                self._refuse_ended(right, watch)
             real = [sample for stream in right for sample in stream]
             return Stream(self.topic, tuple(real), False, seconds)
         if young and not samples and not len(watch):
@@ -241,6 +245,20 @@ class Publishes(GraphClause):
         if watch.intervals and not _is_even(_gaps(samples), life.step):
             trouble = self._off(1 / max(statistics.median(watch.intervals), 1e-9))
         self._refuse(trouble)
+
+    def _refuse_ended(self, right: Sequence[Sequence[Sample]], watch: Watch) -> None:
+        """Raise if publishers in real time have ended, or have not shown yet that they go on."""
+        short = [stream for stream in right if not timing.lasts(stream, self.hz)]
+        if not short:
+            return
+        sent, silent = short[0][-1].number, time.monotonic() - watch.last_arrival
+        if silent > timing.PAUSE_PERIODS * self.period:
+            seen = f'{sent} messages, and then none for {silent:.1f} s'
+            self._refuse((seen, common_mistakes.STOPS))
+        raise NotAttempted(
+            f'Too early to tell: {sent} messages have come on {self.topic}, and the check waits '
+            'for more, to see that they go on. Run this cell again.'
+        )
 
     def _refuse_burst(self, earlier: Sequence[Note]) -> None:
         """Raise Fail if a node has begun with more messages than it has had time for.

@@ -22,7 +22,7 @@ from labkit.exercises.verdict import Fail, NotAttempted
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
 
-__all__ = ['at_rate', 'ends_with_node', 'messages', 'silence']
+__all__ = ['at_rate', 'ends_with_node', 'lasts', 'messages', 'silence']
 
 # How long a topic may be silent before that is a finding, s. A process that has to find the
 # subscription first, and whose first search is lost, asks again after 3 s.
@@ -31,6 +31,10 @@ FOUND_SEC = 4.0
 # asked for, and never shorter, so the quicker quarter of them counts, too.
 INTERVALS = 8
 TOLERANCE = 0.1
+# Who is silent for so many periods has ended.
+PAUSE_PERIODS = 4.0
+# Who goes on has sent so many messages, or all that are due in so long a time, s.
+MANY, MANY_SEC = 32, 20.0
 
 
 def messages(probe: Probe, source: Endpoint, *, count: int = 3) -> Watch:
@@ -67,7 +71,13 @@ def messages(probe: Probe, source: Endpoint, *, count: int = 3) -> Watch:
 
 
 def at_rate(
-    probe: Probe, source: Endpoint, hz: float, *, count: int = 1, at_least: bool = False
+    probe: Probe,
+    source: Endpoint,
+    hz: float,
+    *,
+    count: int = 1,
+    at_least: bool = False,
+    ends: bool = False,
 ) -> tuple[list[list[Sample]], Watch]:
     """Watch a topic in real time, until publishers of a rate are known or a while is over.
 
@@ -77,6 +87,8 @@ def at_rate(
         hz: Messages a second.
         count: So many publishers are waited for.
         at_least: Whether more messages a second are right, too.
+        ends: Whether they may end. Otherwise they are watched until they have sent so many that
+            they will not, see `lasts`, or have ended, or the check has no time left.
 
     Returns:
         The messages of each publisher with this rate, and all that came.
@@ -91,8 +103,22 @@ def at_rate(
             if len(stream) > enough and _fits(_intervals(stream), 1.0 / hz, at_least)
         ]
 
-    probe.wait(lambda: len(fitting()) >= count, FOUND_SEC + (enough + 1) / hz)
+    def is_over() -> bool:
+        silent = time.monotonic() - watch.last_arrival > PAUSE_PERIODS / hz
+        return silent or sum(lasts(stream, hz) for stream in fitting()) >= count
+
+    if probe.wait(lambda: len(fitting()) >= count, FOUND_SEC + (enough + 1) / hz) and not ends:
+        probe.wait(is_over)
     return fitting(), watch
+
+
+def lasts(stream: Sequence[Sample], hz: float) -> bool:
+    """Tell whether a publisher has sent so many messages that it is one that goes on.
+
+    Each message has the number that its publisher gave it, so those before the check count.
+    """
+    sent = stream[-1].number or len(stream)
+    return sent >= min(MANY, round(MANY_SEC * hz))
 
 
 def ends_with_node(probe: Probe, source: Endpoint) -> Watch:

@@ -321,10 +321,11 @@ class VirtualTime:
             return
         standstill, worked = Standstill(), self._worked
         _, before = standstill.at
+        late_at, late_what = None, None
         while not executor.settle(LOOK_SEC):
             stop_button.look()
             if self._callback_sleeps():
-                return
+                break
             stands = standstill.seconds
             running, count = standstill.at
             self._worked = worked + standstill.clock.seconds
@@ -334,10 +335,14 @@ class VirtualTime:
             self.flooded = count - before > (SLOW_FLOOD if slow else FLOOD)
             if stands > (HANG_SEC if running is not None else STILL_SEC):
                 self.hanging = standstill.what()
-            elif late and not self.flooded:
-                self.overloaded = self.overloaded or standstill.what()
+            elif late and not self.flooded and late_what is None:
+                late_at, late_what = standstill.at, standstill.what()
+            # One that returns takes too long. Whether it does, is to be seen first.
+            elif late_what is not None and standstill.at != late_at:
+                break
             if self.stopped or not executor.is_open:
                 return
+        self.overloaded = self.overloaded or late_what
 
     def _callback_sleeps(self) -> bool:
         """Tell whether a callback sleeps: nothing else runs until time has passed.

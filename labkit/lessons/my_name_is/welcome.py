@@ -96,6 +96,8 @@ class _Flows(GraphClause):
 
     text = WORDS.of(within=WITHIN).clause('flows')
     own_life = True
+    # The topics of the guests have names of the learner's.
+    listens = (STRING,)
 
     def judge(self, evidence: Evidence) -> str:
         """Judge what each of them says."""
@@ -113,13 +115,14 @@ class _Flows(GraphClause):
             if all(sample.node for sample in life.on(topic)):
                 own = replace(life, samples={**life.samples, topic: mine})
                 _completes(topic, guest).judge(replace(seen, life=own))
-        first, *_ = also
+        first, *others = also
         both = sorted(
             (sample for topic in also for sample in life.on(topic, before=True)),
             key=lambda sample: sample.at,
         )
         heard = replace(life, samples={**life.samples, first: both})
-        _welcomes(first, host).judge(replace(seen, life=heard))
+        # What the host has said before, is known of one topic at a time.
+        _welcomes(first, host, lasting=not others).judge(replace(seen, life=heard))
         evidence.streams[OUTER, ''] = Stream(OUTER, life.on(OUTER), True, life.seconds)
         return ''
 
@@ -192,9 +195,16 @@ def _completes(topic: str, guest: str) -> Answers:
     return Answers(INNER, topic, STRING, '', by=guest, **COMPLETES)
 
 
-def _welcomes(topic: str, host: str) -> Answers:
+def _welcomes(topic: str, host: str, *, lasting: bool = False) -> Answers:
     return Answers(
-        topic, OUTER, STRING, '', lambda text: f'{text}{ENDING}', by=host, mistakes=[PASSED_ON]
+        topic,
+        OUTER,
+        STRING,
+        '',
+        lambda text: f'{text}{ENDING}',
+        by=host,
+        mistakes=[PASSED_ON],
+        lasting=lasting,
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping, Sequence
+from string import ascii_lowercase
 
 from labkit.exercises import Exercise, Fail, words_of
 from labkit.exercises.clauses import Asked
@@ -21,13 +22,23 @@ __all__ = ['exercise']
 WORDS = words_of(__file__)
 
 DEFAULTS = {'robot': 'robot1', 'speed': '0.1', 'talk': 'false'}
-_NAMES = ('amy', 'bo', 'rover7', 'tina')
 
 
 def _draw() -> Sequence[Mapping[str, str]]:
-    """Return no arguments at all, and then a value for each."""
-    speed = f'0.{random.randint(12, 21)}'
-    return [{}, {'robot': random.choice(_NAMES), 'speed': speed, 'talk': 'true'}]
+    """Return no arguments at all, then a value for each, and then one or two of them."""
+    some = {
+        'robot': _name(),
+        'speed': f'0.{random.randint(12, 21)}',
+        'talk': random.choice(('true', 'false')),
+    }
+    del some[random.choice(('robot', 'talk'))]
+    return [{}, {'robot': _name(), 'speed': f'{random.randint(2, 9)}.5', 'talk': 'true'}, some]
+
+
+def _name() -> str:
+    """Return a name that no file can know."""
+    letters = random.choices(ascii_lowercase, k=random.randint(2, 9))
+    return f'{"".join(letters)}{random.choice(("", "_b", "7", "12"))}'
 
 
 ALWAYS = WORDS.mistake('arguments/always')

@@ -32,10 +32,13 @@ _FORMS = ('xml', 'yaml', 'py')
 # A program on its way to a node runs, or waits for a processor or a disk, but for moments: in this
 # time there are a hundred looks, s.
 AT_WORK_SEC = 1.0
+# What timers start within so long a time belongs to the beginning, s.
+SOON_SEC = 3.0
 
 RUNS_ALREADY = WORDS.mistake('launch/runs-already')
 DIED = WORDS.mistake('launch/died')
 HANGS = WORDS.mistake('launch/hangs')
+LATER = WORDS.mistake('launch/later')
 
 
 @dataclass
@@ -135,6 +138,16 @@ class System:
                 for program in self.launch.processes:
                     if program.pid & 0xFFFF == process_id(end.gid):
                         self.programs[end.node] = program
+
+    def refuse_later(self) -> None:
+        """Raise Fail if something is to be started that the check can not wait for."""
+        if self.launch.timers:
+            seconds = max(self.launch.timers)
+            raise Fail(
+                'all that the file starts, when it is launched',
+                f'a timer that starts something {seconds:g} s later',
+                LATER,
+            )
 
     def _refuse_late(self) -> None:
         """Raise NotAttempted if a program is about to make its node: the machine is busy."""
@@ -270,9 +283,14 @@ def _launched(
         with probe.uncounted():
             try:
                 launch.wait_until_begun(probe.spun_node, list(before.elements()))
+                # What a timer is to start was seen before anything was started.
+                if launch.timers and max(launch.timers) <= SOON_SEC:
+                    system.wait(lambda: not launch.timers or not launch.running)
+                    launch.wait_until_begun(probe.spun_node, list(before.elements()))
             except LabError as fault:
                 system.fault = fault
             else:
+                system.refuse_later()
                 system.look(before)
         yield system
     finally:

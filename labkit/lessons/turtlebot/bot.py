@@ -80,9 +80,10 @@ def _gain(drive: Drive) -> None:
 
 
 def _draw() -> list[Trial]:
-    """Return two drives, one on each side of home, one of them from where -x is a high speed."""
+    """Return drives on both sides of home, one of them from where -x is a high speed."""
     side = random.choice((-1, 1))
     ways = [side * random.uniform(0.12, 0.2), -side * random.uniform(0.3, 0.4)]
+    ways += [side * random.uniform(0.12, 0.4) for _ in range(random.randint(1, 2))]
     random.shuffle(ways)
     return [
         Trial((way, random.uniform(-0.4, 0.4), random.uniform(-0.2, 0.2)), goals=[(0.0, 0.0)])

@@ -143,19 +143,21 @@ def _arrives(drive: Drive) -> None:
 
 
 def _draw() -> list[Trial]:
-    """Return four drives: to a side, across the jump of the angle in both ways, to the other side.
+    """Return drives: to a side, across the jump of the angle in both ways, to the other side.
 
     The first one leads along y, so that x alone tells nothing of it; those in the middle along x.
+    How many more there are, to anywhere, is drawn, too.
 
     The shorter way leads from pi to -pi in one of them, and from -pi to pi in another.
     """
-    side = random.choice((-1, 1))
-    turn, aside = random.uniform(0.5, 1.2), random.uniform(0.6, 1.4)
+    uniform, side = random.uniform, random.choice((-1, 1))
+    turn, aside = uniform(0.5, 1.2), uniform(0.6, 1.4)
     return [
-        _trial(side * (random.uniform(1.4, 1.75) - aside), side * aside),
+        _trial(side * (uniform(1.4, 1.75) - aside), side * aside),
         _trial(side * (math.pi - turn / 2), side * turn),
         _trial(-side * (math.pi - turn / 2), -side * turn),
-        _trial(random.uniform(-0.6, 0.6), -side * random.uniform(0.6, 1.4)),
+        _trial(uniform(-0.6, 0.6), -side * uniform(0.6, 1.4)),
+        *(_trial(uniform(-3, 3), uniform(-3, 3)) for _ in range(random.randint(1, 2))),
     ]
 
 

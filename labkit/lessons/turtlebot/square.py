@@ -133,7 +133,7 @@ def _closes(outline: Outline, drive: Drive) -> None:
 
 
 def _draw(outline: Outline) -> list[Trial]:
-    """Return two drives. They are not along an axis: a square is one wherever it begins."""
+    """Return some drives. They are not along an axis: a square is one wherever it begins."""
     uniform = random.uniform
     return [
         Trial(
@@ -141,7 +141,7 @@ def _draw(outline: Outline) -> list[Trial]:
             goals=outline.corners[1:],
             from_start=True,
         )
-        for _ in range(2)
+        for _ in range(random.randint(3, 4))
     ]
 
 

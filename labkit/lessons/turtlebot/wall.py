@@ -135,6 +135,7 @@ def _draw() -> list[Trial]:
         # The next beam on each side is none of those ahead.
         _edge(1, AHEAD, stops=False),
         _edge(-1, AHEAD + 1, stops=False),
+        *(_slanted(random.choice((-1, 1))) for _ in range(random.randint(1, 2))),
     ]
 
 

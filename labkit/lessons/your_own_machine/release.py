@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import tarfile
 from collections.abc import Sequence
+from hashlib import sha1
 
 from labkit.exercises import Exercise, Fail, NotAttempted, words_of
 from labkit.exercises.clauses import Asked
@@ -37,9 +38,11 @@ def _git(work: Work, *words: str) -> str:
     return done.stdout if done.returncode == 0 else ''
 
 
-def _tagged(work: Work) -> list[str]:
-    """Return the names of the files that the tag holds."""
-    return sorted(_git(work, 'ls-tree', '-r', '--name-only', VERSION).splitlines())
+def _tagged(work: Work) -> dict[str, str]:
+    """Return the names of the files that the tag holds, in their order, with git's hashes."""
+    lines = _git(work, 'ls-tree', '-r', VERSION).splitlines()
+    pairs = [line.partition('\t')[::2] for line in lines]
+    return {name: about.split()[2] for about, name in sorted(pairs, key=lambda pair: pair[1])}
 
 
 def _versions(work: Work) -> tuple[str, str]:
@@ -95,17 +98,25 @@ def _is_archived(work: Work) -> None:
         raise Fail(wanted, f'no {ARCHIVE}', NO_ARCHIVE)
     try:
         with tarfile.open(path) as archive:
-            files = sorted(member.name for member in archive if member.isfile())
-            package = next((name for name in files if name.endswith('/package.xml')), '')
-            held = archive.extractfile(package) if package else None
-            text = held.read().decode() if held else ''
+            members = sorted((one for one in archive if one.isfile()), key=lambda one: one.name)
+            held = [_blob(archive, member) for member in members]
     except tarfile.TarError:
         raise Fail(wanted, f'{ARCHIVE} is not such an archive', OTHER_FILES) from None
+    names = [member.name for member in members]
     # git archive --prefix puts the same folder before each name.
-    same = len(files) == len(tagged) and all(map(str.endswith, files, tagged))
-    if not same or f'<version>{VERSION}<' not in text:
-        seen = f'{len(files)} files' if not same else 'files of another version'
-        raise Fail(wanted, seen, OTHER_FILES)
+    if len(names) != len(tagged) or not all(map(str.endswith, names, tagged)):
+        raise Fail(wanted, f'{len(names)} files', OTHER_FILES)
+    others = [name for name, blob in zip(tagged, held, strict=True) if blob != tagged[name]]
+    if others:
+        raise Fail(wanted, f'another {others[0]}', OTHER_FILES)
+
+
+def _blob(archive: tarfile.TarFile, member: tarfile.TarInfo) -> str:
+    """Return the name that git gives to the content of a file: a hash of it."""
+    file = archive.extractfile(member)
+    content = file.read() if file is not None else b''
+    begin = b'blob %d\0' % len(content)
+    return sha1(begin + content, usedforsecurity=False).hexdigest()
 
 
 def _is_untouched(work: Work) -> bool:

@@ -118,6 +118,36 @@ def test_a_callback_that_has_not_returned_in_time_is_named_afterwards(lab: Modul
     assert 'on_timer of /held' in refused.value.seen
 
 
+class Slow(Node):
+    """Takes longer than time passes, and then does not return."""
+
+    def __init__(self) -> None:
+        super().__init__('slow')
+        self.publisher = self.create_publisher(Int16, 'numbers', 10)
+        self.create_timer(0.1, self.on_timer)
+        self.released = threading.Event()
+        self.count = 0
+
+    def on_timer(self) -> None:
+        self.count += 1
+        end = time.thread_time() + 0.2
+        while time.thread_time() < end or (self.count == 5 and not self.released.is_set()):
+            pass
+
+
+def test_a_loop_without_an_end_is_told_as_one_though_its_callback_was_slow_before(
+    lab: ModuleType,
+) -> None:
+    node = lab.spin(Slow())
+    with Probe('test') as probe:
+        life = live(probe, {'/numbers': INT16}, 10.0, nodes={'/slow'})
+        node.released.set()
+    assert node.count == 5
+    assert life.overloaded is None
+    assert life.hanging is not None
+    assert (life.hanging.node, life.hanging.callback) == ('/slow', 'on_timer')
+
+
 def test_a_condition_that_keeps_all_callbacks_from_running_is_told(lab: ModuleType) -> None:
     lab.spin(Held(blocks_at=None))
     released = threading.Event()

@@ -10,7 +10,8 @@ A check has been taken in by answers of eight kinds, see `KINDS`. For each claus
   is drawn for this clause;
 - a sentence, which ends with a full stop: why it can't occur there.
 
-What holds for each clause of a class, and of those made of it, stands once, in `usual.yaml`.
+What holds for each clause of a class, and of those made of it, stands once, in `usual.yaml`. A
+class of a lesson is named with it there: `bags/OnlyTopic`.
 `python tests/lessons/kinds` prints the table, and what is missing in it.
 """
 
@@ -62,9 +63,15 @@ def fields(exercise: Exercise, clause: Clause[Any]) -> dict[str, str]:
     """Return the fields of a clause, by kind: its own ones, and the usual ones of its class."""
     own = table_of(exercise.lesson).get(exercise.name, {}).get(clause.text, {})
     usual = _usual()
-    classes = [each.__name__ for each in reversed(type(clause).__mro__)]
+    classes = map(_key, reversed(type(clause).__mro__))
     known = {kind: said for name in classes for kind, said in usual.get(name, {}).items()}
     return {**known, **own}
+
+
+def _key(kind: type) -> str:
+    """Return the key of a class in `usual.yaml`; one of a lesson has the lesson in front."""
+    lesson = kind.__module__.partition('labkit.lessons.')[2].partition('.')[0]
+    return kind.__name__ if lesson.startswith('_') or not lesson else f'{lesson}/{kind.__name__}'
 
 
 def stale(exercise: Exercise) -> list[str]:

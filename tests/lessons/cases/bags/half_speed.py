@@ -89,6 +89,12 @@ ANSWERS = [
             "\nlab.record('bags/slow', '/slow/cmd_vel', overwrite=True)\n",
         ),
     ),
+    wrong('from the last one to the first', 'half of the command at this place'),
+    wrong(
+        'at most 0.05',
+        'half of the command at this place',
+        ('msg.linear.x / 2', 'min(0.05, msg.linear.x / 2)'),
+    ),
     right('faster', ("'/cmd_vel', wait=True", 'rate=5.0, wait=True')),
     right(
         'other ends',

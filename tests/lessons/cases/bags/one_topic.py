@@ -54,6 +54,7 @@ ANSWERS = [
         ("'/temperature', ", "regex='t', "),
     ),
     wrong('the folder is there already', 'overwrite=True', outcome=ERROR),
+    wrong('a second station', 'a second node publishes there, too'),
     right('with block'),
     right('count'),
     right('regular expression', ("'/temperature', ", "regex='^/temp', ")),

@@ -113,6 +113,30 @@ ANSWERS = [
         'The name is another one than with the first text.',
         (APPENDS, f'{APPENDS}        self.first_name = self.first_name[::-1]\n'),
     ),
+    wrong(
+        'a guest speaks before it has heard',
+        'It publishes although nothing has come.',
+        (
+            "        self.publisher = self.create_publisher(String, 'names', 10)\n",
+            "        self.publisher = self.create_publisher(String, 'names', 10)\n"
+            "        self.publisher.publish(String(data='My name is ' + first_name))\n",
+        ),
+    ),
+    wrong(
+        'the host speaks before it has heard',
+        'It publishes although nothing has come.',
+        (
+            "super().__init__('host')\n",
+            "super().__init__('host')\n        self.create_timer(0.05, self.on_timer)\n",
+        ),
+        (
+            '\n\nclass Guest',
+            '\n    def on_timer(self):\n'
+            "        if not hasattr(self, 'begun'):\n"
+            '            self.begun = True\n'
+            "            self.publisher.publish(String(data='Hello'))\n\n\nclass Guest",
+        ),
+    ),
     wrong('capital letter', 'Capital and small letters differ in names'),
     wrong('publishes twice', 'A message is answered more than once.'),
     wrong('another welcome', 'Capital and small letters differ', ("'. Welcome!'", "'. welcome!'")),

@@ -48,6 +48,38 @@ ANSWERS = [
         ('  </group>', '    <node pkg="demo_nodes_py" exec="listener"/>\n  </group>'),
     ),
     wrong('a speed that is no number', 'InvalidParameterTypeException', ('"0.1"', '"slow"')),
+    wrong(
+        'a talker for other robots',
+        'it is not there',
+        (
+            '$(var talk)',
+            '$(and $(var talk) $(not $(equals $(var robot) robot1)))',
+        ),
+    ),
+    wrong(
+        'a driver that comes in an hour',
+        'a timer that starts something 3600 s later',
+        (
+            '    <node pkg="robots_lab" exec="driver">',
+            '    <timer period="3600.0">\n    <node pkg="robots_lab" exec="driver">',
+        ),
+        ('    </node>\n', '    </node>\n    </timer>\n'),
+    ),
+    wrong(
+        'a talker that comes in an hour',
+        'a timer that starts something 3600 s later',
+        (
+            '    <node pkg="demo_nodes_py" exec="talker" if="$(var talk)"/>\n',
+            '    <timer period="3600.0">\n'
+            '      <node pkg="demo_nodes_py" exec="talker" if="$(var talk)"/>\n    </timer>\n',
+        ),
+    ),
+    wrong('the robots of the lesson alone', 'The name is right, and the namespace is not.'),
+    wrong(
+        'a speed that no robot has',
+        'The file gives it another value.',
+        ('value="$(var speed)"', 'value="$(eval \'min(1.0, $(var speed))\')"'),
+    ),
     right(
         'no group',
         ('    <push_ros_namespace namespace="$(var robot)"/>\n', ''),

@@ -61,6 +61,15 @@ ANSWERS = [
             'exec="listener"/>\n    <node pkg="demo_nodes_py" exec="talker" name="b"/>\n',
         ),
     ),
+    wrong(
+        'one more, later',
+        'a timer that starts something 60 s later',
+        (
+            '  </group>\n',
+            '    <timer period="60.0">\n      <node pkg="demo_nodes_py" exec="talker" name="b"/>\n'
+            '    </timer>\n  </group>\n',
+        ),
+    ),
     right(
         'a pause before it comes again', ('respawn="true"', 'respawn="true" respawn_delay="0.2"')
     ),

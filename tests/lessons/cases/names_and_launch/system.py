@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cases import right, wrong
+from cases import NOT_ATTEMPTED, right, wrong
 
 __all__ = ['ANSWERS']
 
@@ -71,6 +71,35 @@ ANSWERS = [
         ('</launch>', f'{DRIVER}</launch>'),
     ),
     wrong('no driver', 'The file starts no node of such a name.', (DRIVER, '')),
+    wrong(
+        'in a folder beside',
+        'Write your code in the cell above',
+        ('%%writefile system', '%%writefile src/system'),
+        outcome=NOT_ATTEMPTED,
+    ),
+    wrong(
+        'a listener that comes late',
+        'a timer that starts something 5 s later',
+        (
+            '</launch>',
+            '  <timer period="5.0">\n    <node pkg="demo_nodes_py" exec="listener"/>\n'
+            '  </timer>\n</launch>',
+        ),
+    ),
+    wrong(
+        'a driver that comes in an hour',
+        'a timer that starts something 3600 s later',
+        (DRIVER, f'  <timer period="3600.0">\n{DRIVER}  </timer>\n'),
+    ),
+    wrong(
+        'a program that is no node',
+        'The file starts more than the task asks for.',
+        ('</launch>', '  <executable cmd="sleep 100"/>\n</launch>'),
+    ),
+    right(
+        'a driver that comes a little later',
+        (DRIVER, f'  <timer period="0.5">\n{DRIVER}  </timer>\n'),
+    ),
     right(
         'groups',
         (' namespace="tower"', ''),

@@ -27,6 +27,15 @@ ANSWERS = [
     ),
     wrong('a test that fails', '1 failures and 0 errors in 1 tests', ("== 'beacon'", "== 'lamp'")),
     wrong('a test that is not found', 'no test that has run', ('def test_name', 'def name')),
+    wrong(
+        'true, and then false',
+        'Seen: False',
+        (
+            '        self.publisher.publish(Bool(data=True))\n',
+            '        self.publisher.publish(Bool(data=True))\n'
+            '        self.publisher.publish(Bool(data=False))\n',
+        ),
+    ),
     right('lab.export'),
     right('the whole workspace', (BUILD, 'colcon build\n')),
     right(

@@ -70,6 +70,24 @@ ANSWERS = [
         'It is not half of the count',
         ('self.count / 2', '(self.count + 1) / 2'),
     ),
+    wrong(
+        'modulo 100',
+        'Seen: 0 after 99',
+        ('        self.count += 1\n', '        self.count = (self.count + 1) % 100\n'),
+    ),
+    wrong(
+        'ends after a hundred',
+        'They stop coming.',
+        (
+            '    def on_timer(self):\n',
+            '    def on_timer(self):\n        if self.count == 100:\n            return\n',
+        ),
+    ),
+    wrong(
+        'no half of a large number',
+        'It is not half of the count',
+        ('self.count / 2', 'min(self.count, 50) / 2'),
+    ),
     right(
         'the whole workspace',
         (

@@ -78,6 +78,11 @@ ANSWERS = [
         ),
     ),
     wrong(
+        'the first 1000 letters',
+        'Some messages are logged as they came, and this one is not.',
+        ('{msg.data}', '{msg.data[:1000]}'),
+    ),
+    wrong(
         'prints',
         'The callback does not log it.',
         ("self.get_logger().info(f'I heard: {msg.data}')", 'print(msg.data)'),

@@ -113,6 +113,15 @@ ANSWERS = [
         'While a callback runs, no other one can',
         ('        self.steps = 21\n', '        import time\n\n        time.sleep(3)\n'),
     ),
+    wrong(
+        'two drives and no more',
+        'drives after 2 of them, and nothing after the next one',
+        (
+            '        self.steps = 21\n',
+            "        self.count = getattr(self, 'count', 0) + 1\n"
+            '        if self.count <= 2:\n            self.steps = 21\n',
+        ),
+    ),
     right('a loop with a rate, in a thread'),
     right(
         'a thread that sleeps',

@@ -74,6 +74,15 @@ ANSWERS = [
         ('create_timer(0.1,', 'create_timer(0.125,'),
     ),
     wrong('too slow', 'after the message', ('= 0.2', '= 0.02')),
+    wrong(
+        'four drives and no more',
+        'drives after 4 of them, and nothing after the next one',
+        (
+            '        self.goal = msg\n',
+            "        self.count = getattr(self, 'count', 0) + 1\n"
+            '        if self.count <= 4:\n            self.goal = msg\n',
+        ),
+    ),
     right(
         'rests on its way',
         ('        self.goal = None\n\n', '        self.goal = None\n        self.rests = 1\n\n'),

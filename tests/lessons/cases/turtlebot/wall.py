@@ -118,6 +118,15 @@ ANSWERS = [
         'was taken for the wall ahead',
         ('msg.ranges[:10] + msg.ranges[-10:]', 'msg.ranges[:45] + msg.ranges[-45:]'),
     ),
+    wrong(
+        'nine drives and no more',
+        'drives after 9 of them, and nothing after the next one',
+        (
+            '        self.driving = True\n',
+            "        self.count = getattr(self, 'count', 0) + 1\n"
+            '        if self.count <= 9:\n            self.driving = True\n',
+        ),
+    ),
     right(
         'by the angles of the message',
         (

@@ -72,7 +72,7 @@ ANSWERS = [
     ),
     wrong(
         'an archive of the version before',
-        'Seen: files of another version',
+        'Seen: another src/courier_lab/package.xml',
         (
             ADD,
             ADD
@@ -84,6 +84,22 @@ ANSWERS = [
             + ADD,
         ),
         (ARCHIVE, ARCHIVE.replace(' 1.0.0\n', ' before\n')),
+    ),
+    wrong(
+        'an archive of another text',
+        'Seen: another src/courier_lab/courier_lab/courier.py',
+        (
+            ARCHIVE,
+            '!git clone -q . ../packed\n'
+            "!echo '# more' >> ../packed/src/courier_lab/courier_lab/courier.py\n"
+            '!tar -czf courier.tar.gz --exclude=.git -C ../packed .\n'
+            '!rm -rf ../packed\n',
+        ),
+    ),
+    wrong(
+        'an archive beside the workspace',
+        'Seen: no courier.tar.gz',
+        ('-o courier.tar.gz', '-o src/courier.tar.gz'),
     ),
     right('no folder before the names', (' --prefix=ros2_ws/', '')),
     right(
