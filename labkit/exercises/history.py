@@ -167,7 +167,7 @@ class History:
         from labkit.rosgraph.interfaces import type_name
 
         publisher = publication.publisher
-        if isinstance(msg, bytes) or not self._notes:
+        if isinstance(msg, bytes) or not (self._notes or self._types):
             return
         topic = publisher.topic_name
         if topic not in self._notes and type_name(type(msg)) in self._types:

@@ -13,6 +13,8 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
+from labkit.exercises.figures import filled
+
 __all__ = [
     'NO_ANSWER',
     'Mistake',
@@ -83,12 +85,12 @@ class Mistake:
     @property
     def reason(self) -> str:
         """Return the misconception with its values."""
-        return self.why.format_map(self.values)
+        return filled(self.why, self.values)
 
     @property
     def step(self) -> str:
         """Return the next step with its values."""
-        return self.todo.format_map(self.values)
+        return filled(self.todo, self.values)
 
     @property
     def sentence(self) -> str:

@@ -16,8 +16,9 @@ teacher reads, mends and translates without writing any. All keys may be left ou
         change:
           msg.data + 1: msg.data
 
-A name in braces is a value that the module gives, as `str.format` has it, and a brace to be read
-is doubled; but not in `change` and `raises`, which are code, and what Python says, nor in quizzes.
+A name in braces is a value that the module gives; `{name!r}` puts it into quotation marks. Numbers
+are written as people do (`figures`), without a word about it. A brace to be read is doubled; but
+not in `change` and `raises`, which are code, and what Python says, nor in quizzes.
 Every value is a text: `no` and `1.0` are letters. `Mistake` and `Question` tell what their parts
 mean. A quiz is a list of questions::
 
@@ -51,6 +52,7 @@ import yaml
 
 from labkit import settings
 from labkit.errors import LabError, did_you_mean
+from labkit.exercises.figures import filled
 from labkit.exercises.mistakes import Mistake
 from labkit.files import read_limited
 
@@ -81,8 +83,9 @@ _FILE = {
     'mistakes': {'': _MISTAKE},
     'quizzes': {'': [_QUESTION]},
 }
-# What braces may hold: a name, and how its value is written; nothing is looked up or computed.
-_FIELD = re.compile(r'\{\{|\}\}|\{[a-z]\w*(![rs])?(:[^{}]*)?\}')
+# What braces may hold: a name, and whether it is quoted; nothing is looked up or computed. How a
+# number is written, `figures` knows.
+_FIELD = re.compile(r'\{\{|\}\}|\{[a-z]\w*(!r)?\}')
 
 
 @dataclass(frozen=True)
@@ -143,7 +146,7 @@ class Words:
 
     def _filled(self, name: str, text: str) -> str:
         try:
-            return text.format_map(self.values)
+            return filled(text, self.values)
         except KeyError as error:
             raise LabError(f'{name!r} of {self.path} lacks a value for {error}.') from error
 
@@ -264,7 +267,7 @@ def _formed(node: yaml.Node, form: Any, path: Path, name: str) -> Any:
         return [_formed(each, form[0], path, name) for each in node.value]
     if isinstance(form, str) and isinstance(node, yaml.ScalarNode):
         if form == _TEXT and set(_FIELD.sub('', node.value)) & set('{}'):
-            todo = 'Write {name}, a name and no more, or {{ for a brace to be read.'
+            todo = 'Write {name} or {name!r}, and no more, or {{ for a brace to be read.'
             raise _wrong(path, node.start_mark, f'the braces of {name} hold no name', todo)
         return node.value
     kind = {'str': 'text', 'list': 'list', 'dict': 'mapping'}[type(form).__name__]

@@ -11,6 +11,7 @@ import pytest
 from labkit import settings
 from labkit.errors import LabError
 from labkit.exercises import learner_errors, mistakes, words
+from labkit.exercises.figures import figure, many
 from labkit.exercises.words import TRANSLATIONS, Words, files, lacking, words_of
 
 LABKIT = Path(__file__).resolve().parent.parent.parent / 'labkit'
@@ -30,7 +31,7 @@ reason: >-
 mistakes:
   test-evens/no:
     why: no
-    todo: Add {more:.1f}.
+    todo: Add {more}.
     change:
       "        data\\n": ''
       data + 1: abs(data) + 1
@@ -56,7 +57,7 @@ def test_words_are_texts_with_the_values_of_the_module(tmp_path: Path) -> None:
     assert evens.hints == ['Add 1 to {it}.', 'Publish.']
     assert evens.reason == 'One goes out for each one.'
     mistake = evens.mistake('test-evens/no', lambda n: n + 1)
-    assert (mistake.why, mistake.of(more=2).step) == ('no', 'Add 2.0.')
+    assert (mistake.why, mistake.of(more=2.50).step) == ('no', 'Add 2.5.')
     assert mistake.change == [('        data\n', ''), ('data + 1', 'abs(data) + 1')]
     assert (mistake.raises, mistake.answer(1)) == ("{'data'}", 2)
 
@@ -75,6 +76,7 @@ def test_words_are_texts_with_the_values_of_the_module(tmp_path: Path) -> None:
         ('task: a\nreason: {b}', 2, 'reason has to be a text'),
         ('task: a\nreason: of {b.c}', 2, 'the braces of reason hold no name'),
         ('task: of {b[0]}', 1, 'the braces of task hold no name'),
+        ('task: in {a:.3g} s', 1, 'the braces of task hold no name'),
         ('hints:\n  - msg = {}', 2, 'the braces of hints hold no name'),
         ('task: !!python/object:os.system {}', 1, 'task has to be a text'),
         ('? [a]\n: b', 1, 'the file has no'),
@@ -237,3 +239,50 @@ def test_values_of_an_error_are_those_that_its_pattern_finds() -> None:
     for _, pattern, mistake in learner_errors._KNOWN:
         fields = set(re.findall(r'(?<!\{)\{(\w+)', mistake.why + mistake.todo))
         assert fields <= set(re.compile(pattern).groupindex), mistake.id
+
+
+@pytest.mark.parametrize(
+    ('number', 'text'),
+    [
+        (2000.0, '2000'),
+        (2013.4, '2013'),
+        (12.345, '12.3'),
+        (0.5, '0.5'),
+        (1 / 3, '0.333'),
+        (0.1 + 0.2, '0.3'),
+        (1e-5, '0.00001'),
+        (-0.05, '-0.05'),
+        (0.0, '0'),
+        (1e9, '1000000000'),
+        (float('inf'), 'inf'),
+        (float('nan'), 'nan'),
+    ],
+)
+def test_number_is_written_as_people_write_it(number: float, text: str, tmp_path: Path) -> None:
+    assert figure(number) == text
+    words = told(tmp_path, 'task: Wait {seconds} s.').of(seconds=number)
+    assert words.task == f'Wait {text} s.'
+
+
+def test_count_has_its_noun() -> None:
+    assert [many(n, 'message') for n in (0, 1, 2)] == ['0 messages', '1 message', '2 messages']
+
+
+# Numbers with all of their digits, or with a power of ten; and a count with its noun's plural.
+_UNREAD = (
+    r'\{[^{}]*:(\.\d)?[ge]\}',
+    r'\{(?!steps|least|wanted)[a-z][^{}]*\} (messages|commands|steps|files|lines|pauses)\b',
+)
+
+
+JUDGES = [
+    *(LABKIT / 'lessons').rglob('*.py'),
+    *(LABKIT / 'exercises' / 'clauses').glob('*.py'),
+]
+
+
+@pytest.mark.parametrize('path', [pytest.param(path, id=path.stem) for path in sorted(JUDGES)])
+def test_judge_writes_numbers_by_the_one_function(path: Path) -> None:
+    source = path.read_text(encoding='utf-8')
+    found = [match.group() for pattern in _UNREAD for match in re.finditer(pattern, source)]
+    assert found == []

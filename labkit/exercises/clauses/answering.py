@@ -18,6 +18,7 @@ from labkit.exercises.clauses.base import Evidence, GraphClause, Test
 from labkit.exercises.draws import draw_for, filled
 from labkit.exercises.expect.spinning import hanging, spun
 from labkit.exercises.expect.values import show, text_trouble
+from labkit.exercises.figures import figure, many
 from labkit.exercises.history import Note
 from labkit.exercises.messages_heard import Lived, Sample
 from labkit.exercises.mistakes import Mistake, anything, recognise
@@ -38,7 +39,7 @@ WORDS = words_of(__file__)
 # How soon an answer has to come, s. A node may keep what it hears until its timer ticks.
 WITHIN_SEC = 1.0
 # The same in words of a task.
-WITHIN = WORDS.of(seconds=f'{WITHIN_SEC:g}').clause('a-second' if WITHIN_SEC == 1.0 else 'within')
+WITHIN = WORDS.of(seconds=figure(WITHIN_SEC)).clause('a-second' if WITHIN_SEC == 1.0 else 'within')
 # So often an answer comes once more only where something repeats it.
 MANY = 3
 # How long the first answer of a node may take, if it makes its publisher only then, s.
@@ -266,7 +267,7 @@ class Answers(GraphClause):
         examples = [(value, right) for _, value, right in heard if right is not None][:2]
         pairs = ', '.join(f'{show([value])} -> {show([right])}' for value, right in examples)
         hears = evidence.subscription(self.inner, self.by)
-        return f'{hears.node} has answered {len(answered)} messages, each once: {pairs}.'
+        return f'{hears.node} has answered {many(len(answered), "message")}, each once: {pairs}.'
 
     def _without_first(self, evidence: Evidence, extra: Timed) -> Timed:
         """Leave out answers to what was sent before time passed: a busy process is slow."""
@@ -476,7 +477,7 @@ class Answers(GraphClause):
         if late:
             delay, value, at = max(late, key=lambda each: each[0])
             fail = Fail(
-                f'an answer on {self.outer} within {WITHIN_SEC:g} s',
+                f'an answer on {self.outer} within {figure(WITHIN_SEC)} s',
                 f'{delay:.1f} s from {self._shown} = {show([value])} to its answer',
                 LATE,
             )

@@ -9,6 +9,7 @@ from typing import Any
 from labkit.exercises import expect
 from labkit.exercises.callback_count import find_node
 from labkit.exercises.clauses.base import Evidence, GraphClause
+from labkit.exercises.figures import many
 from labkit.exercises.mistakes import Mistake, recognise
 from labkit.exercises.verdict import Fail
 from labkit.exercises.words import words_of
@@ -100,7 +101,7 @@ class AsksForEach(GraphClause):
                 CANCELED,
             )
         if came == heard:
-            return f'{len(heard)} messages, {len(came)} {what}s.'
+            return f'{many(len(heard), "message")}, {many(len(came), what)}.'
         if 0 < len(came) < len(heard) and not wait_until_spun(
             probe.spun_node, self.by, ANSWER_SEC
         ):

@@ -12,6 +12,7 @@ from labkit.exercises.clauses.base import Evidence, GraphClause, Test
 from labkit.exercises.draws import draw_texts
 from labkit.exercises.expect.spinning import hanging, spun
 from labkit.exercises.expect.values import show
+from labkit.exercises.figures import many
 from labkit.exercises.history import Note, history
 from labkit.exercises.messages_heard import Lived, Sample
 from labkit.exercises.mistakes import Mistake, anything, recognise
@@ -138,7 +139,7 @@ class Logs(GraphClause):
         if lines:
             fail = Fail(
                 f'one line of {name} for each message on {self.topic}, and no other',
-                f'{len(lines)} more lines before the check: {show(lines)}',
+                f'{many(len(lines), "line")} more, before the check: {show(lines)}',
                 common_mistakes.LOGS_UNASKED,
             )
             fail.clause = self.named(None)
@@ -194,7 +195,7 @@ class Logs(GraphClause):
             mistake = common_mistakes.LOGS_BESIDE
         fail = Fail(
             f'one line of {source.node} for each message on {self.topic}, and no other',
-            f'{len(more)} more lines: {show([line for _, line in more])}',
+            f'{many(len(more), "line")} more: {show([line for _, line in more])}',
             mistake,
         )
         fail.clause, fail.at = self.named(None), more[0][0]

@@ -14,6 +14,7 @@ from labkit.exercises.clauses.base import Evidence, GraphClause, Stream
 from labkit.exercises.clauses.parameter_client import Values, asked, get_values, kept, set_values
 from labkit.exercises.clauses.publishing import Publishes
 from labkit.exercises.expect import spinning
+from labkit.exercises.figures import many
 from labkit.exercises.observation import LIFE_SEC
 from labkit.exercises.verdict import Fail
 
@@ -217,7 +218,7 @@ class Follows(GraphClause):
             raise Fail(
                 f'with {_show(values)}: {AT_ONCE} message at most on {self.topic} in the moment '
                 'of the change',
-                f'{at_once} messages in that moment',
+                f'{many(at_once, "message")} in that moment',
                 common_mistakes.BURSTS,
             )
         if len(life.on(self.topic)) < FEW:

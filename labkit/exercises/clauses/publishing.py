@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NoReturn
 from labkit.exercises import common_mistakes
 from labkit.exercises.clauses.base import Evidence, GraphClause, Stream
 from labkit.exercises.expect import spinning, timing
+from labkit.exercises.figures import figure, many
 from labkit.exercises.history import history
 from labkit.exercises.messages_heard import Lived, Sample, Watch, streams_of
 from labkit.exercises.mistakes import Mistake
@@ -48,15 +49,15 @@ _TIMES: dict[float, str] = {1: 'once', 2: 'twice'}
 
 def in_words(number: float) -> str:
     """Return a number as a word of a task: `'ten'`; a larger one in digits."""
-    text = f'{number:g}'
+    text = figure(number)
     return WORDS.clause(text) if text in _NUMBERS else text
 
 
 def often(hz: float) -> str:
     """Return a rate in words: `'ten times a second (10 Hz, up to 2 % off)'`."""
     if hz < 1:
-        return WORDS.of(period=f'{1 / hz:g}', off=OFF).clause('every')
-    told = WORDS.of(hz=f'{hz:g}', number=in_words(hz), off=OFF)
+        return WORDS.of(period=figure(1 / hz), off=OFF).clause('every')
+    told = WORDS.of(hz=figure(hz), number=in_words(hz), off=OFF)
     return told.clause(_TIMES.get(hz, 'often'))
 
 
@@ -133,11 +134,13 @@ class Publishes(GraphClause):
         self._refuse_burst(stream.earlier)
         if stream.exact:
             rate, seconds = 1 / max(_period(stream.samples), 1e-9), stream.seconds
-            return f'{source.node} publishes {rate:.3g} Hz on {self.topic}, {seconds:.0f} s long.'
+            return (
+                f'{source.node} publishes {figure(rate)} Hz on {self.topic}, {seconds:.0f} s long.'
+            )
         return (
-            f'{source.node} publishes about {self.hz:.3g} Hz on {self.topic}. It keeps a time of '
-            f'its own, so the check has watched it for {stream.seconds:.1f} s. What it does later '
-            'was not seen.'
+            f'{source.node} publishes about {figure(self.hz)} Hz on {self.topic}. It keeps a time '
+            f'of its own, so the check has watched it for {stream.seconds:.1f} s. What it does '
+            'later was not seen.'
         )
 
     def _one_of_several(self, evidence: Evidence, source: Endpoint) -> Stream:
@@ -253,11 +256,11 @@ class Publishes(GraphClause):
             return
         sent, silent = short[0][-1].number, time.monotonic() - watch.last_arrival
         if silent > timing.PAUSE_PERIODS * self.period:
-            seen = f'{sent} messages, and then none for {silent:.1f} s'
+            seen = f'{many(sent, "message")}, and then none for {silent:.1f} s'
             self._refuse((seen, common_mistakes.STOPS))
         raise NotAttempted(
-            f'Too early to tell: {sent} messages have come on {self.topic}, and the check waits '
-            'for more, to see that they go on. Run this cell again.'
+            f'Too early to tell: the check has counted {many(sent, "message")} on {self.topic}, '
+            'and waits for more, to see that they go on. Run this cell again.'
         )
 
     def _refuse_burst(self, earlier: Sequence[Note]) -> None:
@@ -274,7 +277,10 @@ class Publishes(GraphClause):
             seconds = note.at - earlier[0].at + (0.0 if note.in_making else earlier[0].owner_age)
             if count > (1 + TOLERANCE) * seconds * self.hz + HELD_UP:
                 self._refuse(
-                    (f'{count + 1} messages in its first {seconds:.2g} s', common_mistakes.BURSTS)
+                    (
+                        f'{many(count + 1, "message")} in its first {figure(seconds)} s',
+                        common_mistakes.BURSTS,
+                    )
                 )
 
     def _in_time(self, evidence: Evidence, node: str, samples: Sequence[Lived]) -> Sequence[Lived]:
@@ -338,13 +344,13 @@ class Publishes(GraphClause):
         longest, shortest, late = max(gaps), min(gaps), life.seconds - samples[-1].at
         if late > (1 + GAP_TOLERANCE) * max(period, longest) + life.step and not self.ends:
             return (
-                f'{count} messages, the last one after {samples[-1].at:.1f} s, and then none '
-                f'until {life.seconds:.0f} s',
+                f'{many(count, "message")}, the last one after {samples[-1].at:.1f} s, and then '
+                f'none until {life.seconds:.0f} s',
                 common_mistakes.STOPS,
             )
         bursts = (
-            f'{count} messages in {life.seconds:.0f} s, with {shortest:.3g} s to {longest:.3g} s '
-            'in between',
+            f'{many(count, "message")} in {life.seconds:.0f} s, with {figure(shortest)} s to '
+            f'{figure(longest)} s in between',
             common_mistakes.BURSTS,
         )
         if longest > 3 * usual and not self.at_least:
@@ -367,18 +373,23 @@ class Publishes(GraphClause):
         if not period:
             return 'all messages at one moment', common_mistakes.BURSTS
         factor = period * self.hz
-        off = f'{factor:.3g} times too slow' if factor > 1 else f'{1 / factor:.3g} times too fast'
+        off = (
+            f'{figure(factor)} times too slow'
+            if factor > 1
+            else f'{figure(1 / factor)} times too fast'
+        )
         mistake = common_mistakes.OTHER_RATE
         if abs(period / self.hz - 1.0) < 0.02 and abs(self.hz - self.period) > 0.3 * self.hz:
             mistake = common_mistakes.RATE_FOR_PERIOD
         elif abs(factor - 0.5) < 0.02:
             mistake = common_mistakes.TWICE_AS_MANY
-        seen = f'a message every {period:.3g} s ({rate:.3g} Hz): {off}'
+        seen = f'a message every {figure(period)} s ({figure(rate)} Hz): {off}'
         return seen, mistake.of(period=self.period)
 
     def _expected(self) -> str:
         least = 'at least ' if self.at_least else ''
-        return f'{least}a message every {self.period:.3g} s ({self.hz:.3g} Hz) on {self.topic}'
+        period, hz = figure(self.period), figure(self.hz)
+        return f'{least}a message every {period} s ({hz} Hz) on {self.topic}'
 
     def _refuse(self, trouble: Trouble) -> NoReturn:
         raise Fail(self._expected(), *trouble)

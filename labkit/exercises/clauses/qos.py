@@ -10,6 +10,7 @@ from labkit.exercises import common_mistakes, expect
 from labkit.exercises.callback_count import is_given
 from labkit.exercises.clauses.base import Evidence, GraphClause
 from labkit.exercises.expect.values import show
+from labkit.exercises.figures import figure, many
 from labkit.exercises.verdict import Fail, NotAttempted
 
 if TYPE_CHECKING:
@@ -127,7 +128,7 @@ class Latched(GraphClause):
         expect.that(
             kept >= FOR_EVER_SEC,
             expected=f'{self.topic} without a lifespan',
-            seen=f'{source.node} offers a lifespan of {kept:g} s',
+            seen=f'{source.node} offers a lifespan of {figure(kept)} s',
             mistake=common_mistakes.KEPT_FOR_A_WHILE.of(seconds=kept),
         )
 
@@ -153,6 +154,6 @@ class Latched(GraphClause):
             )
         raise Fail(
             f'the newest message only, {self.field} = {show([last])}',
-            f'{len(came)} messages: {self.field} = {show(came)}',
+            f'{many(len(came), "message")}: {self.field} = {show(came)}',
             common_mistakes.KEPT_TOO_MANY,
         )

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from labkit.exercises import common_mistakes
+from labkit.exercises.figures import figure
 from labkit.exercises.mistakes import Mistake
 
 __all__ = ['apart', 'digits', 'show', 'text_trouble']
@@ -45,7 +46,7 @@ def apart(wanted: Sequence[Any], seen: Sequence[Any]) -> tuple[str, str]:
 
 def digits(number: float, other: float) -> str:
     """Return a number for people, as exactly as it takes to tell it from another one."""
-    texts = ((f'{number:.{n}g}', f'{other:.{n}g}') for n in (4, 7))
+    texts = ((figure(number, n), figure(other, n)) for n in (4, 7, 10))
     return next((text for text, of_other in texts if text != of_other), repr(number))
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from labkit.errors import LabError, nearest
 from labkit.exercises import Clause, Fail, NotAttempted, Probe, Stage, words_of
+from labkit.exercises.figures import many
 from labkit.exercises.learner_errors import last_cell
 
 if TYPE_CHECKING:
@@ -153,7 +154,7 @@ class InABag(Stage[Found]):
     def tell(self, seen: Sequence[Found]) -> str:
         """Say what is in it."""
         count = len(seen[0].messages)
-        return f'{self.path} has {count} messages of {self.topic}, and no others.'
+        return f'{self.path} has {many(count, "message")} of {self.topic}, and no others.'
 
 
 def _refuse_old(path: str) -> None:

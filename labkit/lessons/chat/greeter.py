@@ -11,6 +11,7 @@ from weakref import WeakKeyDictionary
 from labkit.exercises import Exercise, Fail, words_of
 from labkit.exercises.clauses import WITHIN, Answers, Asked, Evidence, Words
 from labkit.exercises.draws import draw_names, in_a_row
+from labkit.exercises.figures import many
 from labkit.exercises.observation import Stimulus, live
 
 if TYPE_CHECKING:
@@ -79,7 +80,7 @@ def _used_once(evidence: Evidence) -> None:
     if max(numbers) > 1:
         raise Fail(
             'a publisher of its own for each reply',
-            f'one has published {max(numbers)} messages',
+            f'one has published {many(max(numbers), "message")}',
             KEPT,
         )
     probe, node = evidence.probe, evidence.subscription(TOPIC).node

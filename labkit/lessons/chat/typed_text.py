@@ -13,6 +13,7 @@ from labkit.exercises import Exercise, Fail, Mistake, anything, expect, words_of
 from labkit.exercises.clauses import Evidence, GraphClause, Words
 from labkit.exercises.draws import draw_texts
 from labkit.exercises.expect.values import text_trouble
+from labkit.exercises.figures import figure, many
 from labkit.exercises.mistakes import recognise
 from labkit.exercises.verdict import LearnerError
 from labkit.exercises.what_is_asked import PUBLISHER, Role
@@ -85,8 +86,8 @@ class _Typed(GraphClause):
         evidence.refuse_trouble(())
         evidence.heard[TOPIC].pump()
         if typed == len(lines):
-            return f'{typed} lines were typed.'
-        return f'{typed} of {len(lines)} lines were typed: there was no time for more.'
+            return f'{many(typed, "line")} typed.'
+        return f'{typed} of {many(len(lines), "line")} were typed: there was no time for more.'
 
     def _begin(self, evidence: Evidence) -> None:
         evidence.heard[TOPIC] = evidence.probe.watch(TOPIC, STRING)
@@ -108,7 +109,7 @@ class _Typed(GraphClause):
 class _Says(GraphClause):
     """What was typed is published."""
 
-    text = WORDS.of(arrives=f'{ARRIVES_SEC:g}').clause('says')
+    text = WORDS.of(arrives=figure(ARRIVES_SEC)).clause('says')
 
     @property
     def roles(self) -> dict[Role, str]:

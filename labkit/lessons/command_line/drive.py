@@ -7,6 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, words_of
 from labkit.exercises.clauses import Asked, in_words
+from labkit.exercises.expect import digits
+from labkit.exercises.figures import figure
 from labkit.exercises.messages_heard import Sample
 from labkit.lessons.command_line.last_command import commanded_rate
 from labkit.lessons.command_line.sent import (
@@ -27,7 +29,7 @@ WORDS = words_of(__file__)
 WHERE = OnTopic('/cmd_vel', 'geometry_msgs/msg/Twist')
 WANTED = {'linear.x': 0.2, 'angular.z': 0.5}
 COUNT, HZ = 5, 10
-ALLOWED = f'{HZ * (1 - TOLERANCE):g} to {HZ * (1 + TOLERANCE):g}'
+ALLOWED = f'{figure(HZ * (1 - TOLERANCE))} to {figure(HZ * (1 + TOLERANCE))}'
 
 
 def _told_by(
@@ -101,7 +103,10 @@ def _expect_fields(sent: Sent) -> None:
         used = {name: value for name, value in seen.items() if value}
         raise Fail(
             'linear.x = 0.2 and angular.z = 0.5, all else 0, in every message',
-            ', '.join(f'{name} = {value:g}' for name, value in used.items()) or 'all fields are 0',
+            ', '.join(
+                f'{name} = {digits(value, WANTED.get(name, 0.0))}' for name, value in used.items()
+            )
+            or 'all fields are 0',
             next(mistake for fits, mistake in FIELDS if fits(used)),
         )
 
@@ -137,8 +142,8 @@ def _expect_rate(sent: Sent) -> None:
     run = newest_run(sent.samples)
     if not is_every(1 / HZ, run, commanded_rate(WHERE.topic)):
         raise Fail(
-            f'a message every {1 / HZ:g} s ({ALLOWED} a second)',
-            f'a message every {period(run):.3g} s ({1 / period(run):.3g} a second)',
+            f'a message every {figure(1 / HZ)} s ({ALLOWED} a second)',
+            f'a message every {figure(period(run))} s ({figure(1 / period(run))} a second)',
             OTHER_RATE,
         )
 
@@ -159,8 +164,8 @@ exercise = Exercise(
             WORDS.of(
                 times=in_words(HZ),
                 hz=HZ,
-                lowest=f'{HZ * (1 - TOLERANCE):g}',
-                highest=f'{HZ * (1 + TOLERANCE):g}',
+                lowest=figure(HZ * (1 - TOLERANCE)),
+                highest=figure(HZ * (1 + TOLERANCE)),
             ).clause('expect-rate'),
             _expect_rate,
         ),

@@ -10,6 +10,7 @@ from labkit.exercises import Exercise, Fail, anything, words_of
 from labkit.exercises.clauses import Goal, Pursues, Pursuit, Serves
 from labkit.exercises.draws import MANY
 from labkit.exercises.expect import apart
+from labkit.exercises.figures import figure, many
 from labkit.lessons.interfaces_and_actions.goals import (
     ACTION,
     expect_ending,
@@ -58,8 +59,8 @@ def _feeds_back(pursuits: Sequence[Pursuit]) -> None:
         shortest, longest = min(pauses), max(pauses)
         if shortest < AT_ONCE_SEC or longest > PAUSE_SEC + AT_ONCE_SEC:
             raise Fail(
-                f'a pause before each number, up to {PAUSE_SEC:g} s',
-                f'pauses from {shortest:.2g} s to {longest:.2g} s',
+                f'a pause before each number, up to {figure(PAUSE_SEC)} s',
+                f'pauses from {figure(shortest)} s to {figure(longest)} s',
                 ALL_AT_ONCE if shortest < AT_ONCE_SEC else TOO_SLOW,
             )
 
@@ -110,7 +111,7 @@ def _is_canceled(pursuit: Pursuit) -> None:
     expected, shown = apart(wanted[:least], seen)
     raise Fail(
         f'result = {expected}, as in the feedback before it was canceled, or {MORE} number more',
-        f'result = {shown}, {len(seen)} numbers',
+        f'result = {shown}, {many(len(seen), "number")}',
         mistake,
     )
 
@@ -128,7 +129,7 @@ exercise = Exercise(
         ),
         Pursues(
             NAME,
-            WORDS.of(pause=f'{PAUSE_SEC:g}').clause('pursues-2'),
+            WORDS.of(pause=figure(PAUSE_SEC)).clause('pursues-2'),
             _draw,
             _feeds_back,
             LONGEST_SEC,

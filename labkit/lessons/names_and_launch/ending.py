@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from labkit.exercises import Exercise, Fail, words_of
 from labkit.exercises.clauses import Asked
+from labkit.exercises.figures import figure
 from labkit.lessons.names_and_launch.launch_clauses import Launches, OnlyNodes
 from labkit.lessons.names_and_launch.learner_launch import Launched, System
 
@@ -40,8 +41,8 @@ def _comes_again(system: System) -> bool:
         return False
     if program.again and program.delay > SOON_SEC:
         raise Fail(
-            f'{TALKER} has died, and is started again within {SOON_SEC:g} s',
-            f'it is started again after {program.delay:g} s',
+            f'{TALKER} has died, and is started again within {figure(SOON_SEC)} s',
+            f'it is started again after {figure(program.delay)} s',
             SLOW_RESPAWN,
         )
     system.wait(lambda: program.starts > before or not system.launch.running)
@@ -87,7 +88,9 @@ exercise = Exercise(
             (DRIVER, TALKER, LISTENER),
             WORDS.clause('only-nodes'),
         ),
-        Asked(WORDS.of(seconds=f'{SOON_SEC:g}').clause('talker-comes-again'), _talker_comes_again),
+        Asked(
+            WORDS.of(seconds=figure(SOON_SEC)).clause('talker-comes-again'), _talker_comes_again
+        ),
         Asked(WORDS.clause('listener-stays-dead'), _listener_stays_dead),
         Asked(WORDS.clause('driver-ends-all'), _driver_ends_all),
     ),

@@ -17,6 +17,7 @@ from labkit import stop_button
 from labkit.errors import LabError
 from labkit.exercises import Clause, Fail, NotAttempted, Probe, Stage, words_of
 from labkit.exercises.exercise import NOTHING_YET
+from labkit.exercises.figures import figure
 from labkit.exercises.machine_faults import refuse_machine_fault
 from labkit.lessons.package.learner_workspace import workspace
 
@@ -145,7 +146,7 @@ class System:
             seconds = max(self.launch.timers)
             raise Fail(
                 'all that the file starts, when it is launched',
-                f'a timer that starts something {seconds:g} s later',
+                f'a timer that starts something {figure(seconds)} s later',
                 LATER,
             )
 

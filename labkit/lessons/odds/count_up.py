@@ -7,6 +7,7 @@ from typing import Any
 
 from labkit.exercises import Exercise, Fail, Probe, Solution, expect, words_of
 from labkit.exercises.clauses import Messages, Publishes, Stream, often
+from labkit.exercises.figures import figure
 from labkit.exercises.observation import live
 from labkit.exercises.variants import varied
 
@@ -58,7 +59,7 @@ def _judge(stream: Stream, first: int, step: int, numbers: str) -> str:
 
 def _variant(*, first: int = 1, step: int = 2, hz: float = 5.0) -> Exercise:
     numbers = f'{first}, {first + step}, {first + 2 * step}, ...'
-    period, rate = f'{1 / hz:g}', often(hz).partition(' (')[0]
+    period, rate = figure(1 / hz), often(hz).partition(' (')[0]
     words = WORDS.of(numbers=numbers, first=first, step=step, period=period, rate=rate)
     return Exercise(
         words=words,

@@ -27,6 +27,7 @@ from labkit.exercises import (
 )
 from labkit.exercises.clauses import Asked
 from labkit.exercises.expect.timing import FOUND_SEC
+from labkit.exercises.figures import many
 from labkit.exercises.machine_faults import refuse_machine_fault
 from labkit.exercises.messages_heard import Lived
 from labkit.exercises.observation import Life, live
@@ -333,7 +334,7 @@ def _tested(work: Work) -> None:
         for key in ('failures', 'errors', 'skipped', 'tests')
     )
     if failures or errors:
-        seen = f'{failures} failures and {errors} errors in {tests} tests'
+        seen = f'{many(failures, "failure")} and {many(errors, "error")} in {many(tests, "test")}'
         raise Fail(wanted, seen, TEST_FAILED)
     if tests == skipped:
         raise Fail(wanted, 'no test that has run', NO_TEST)

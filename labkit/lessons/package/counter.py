@@ -6,6 +6,7 @@ from itertools import pairwise
 
 from labkit.exercises import Exercise, Fail, common_mistakes, words_of
 from labkit.exercises.clauses import Asked
+from labkit.exercises.figures import figure, many
 from labkit.exercises.messages_heard import Lived
 from labkit.exercises.observation import Life
 from labkit.lessons.package.content import Built, InAWorkspace, Runs, Work
@@ -35,13 +36,13 @@ def _counts(work: Work) -> None:
     if rate < few or max(gaps) > 1.5 / LEAST + life.step:
         raise Fail(
             f'at least {LEAST} numbers a second on /count, all the time',
-            f'{rate:.3g} a second, up to {max(gaps):.3g} s from one to the next',
+            f'{figure(rate)} a second, up to {figure(max(gaps))} s from one to the next',
             TOO_FEW,
         )
     if life.seconds - samples[-1].at > 1.5 / LEAST + life.step:
         raise Fail(
             'numbers on /count without an end',
-            f'{len(samples)} numbers, and none after {samples[-1].at:.1f} s',
+            f'{many(len(samples), "number")}, and none after {samples[-1].at:.1f} s',
             common_mistakes.STOPS,
         )
     if rate > (1 + OFF) * MOST:

@@ -19,6 +19,7 @@ from labkit.exercises import (
     words_of,
 )
 from labkit.exercises.clauses import Subscribes, Words
+from labkit.exercises.figures import figure
 from labkit.exercises.judging import naming
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ ALL_CLEAR = WORDS.mistake('watchdog/all-clear')
 
 _HEARS = Subscribes(HEART, EMPTY)
 _BARKS = Words(WORDS.clause('barks'))
-_IN_TIME = Words(WORDS.of(within=f'{WITHIN_SEC:g}').clause('in-time'))
+_IN_TIME = Words(WORDS.of(within=figure(WITHIN_SEC)).clause('in-time'))
 _RESTS = Words(WORDS.clause('rests'))
 _AGAIN = Words(WORDS.clause('again'))
 CLAUSES = (_HEARS, _RESTS, _BARKS, _IN_TIME, _AGAIN)
@@ -219,8 +220,8 @@ def _refuse_silence(number: int) -> NoReturn:
             USED_UP,
         )
     raise Fail(
-        f'a message on {ALARM} within {WITHIN_SEC:g} s after the last heartbeat',
-        f'nothing within {WITHIN_SEC:g} s',
+        f'a message on {ALARM} within {figure(WITHIN_SEC)} s after the last heartbeat',
+        f'nothing within {figure(WITHIN_SEC)} s',
         NOT_TOLD,
     )
 

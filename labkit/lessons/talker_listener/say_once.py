@@ -7,6 +7,7 @@ import random
 from labkit.exercises import Exercise, Fail, Watch, expect, words_of
 from labkit.exercises.clauses import Asked, Evidence, GraphClause, Runs
 from labkit.exercises.expect.timing import FOUND_SEC
+from labkit.exercises.figures import many
 from labkit.exercises.observation import LIFE_SEC, live
 
 __all__ = ['exercise']
@@ -97,7 +98,7 @@ def _silent_after(evidence: Evidence) -> None:
     if evidence.probe.wait(lambda: len(watch) > 1, SOON_SEC):
         raise Fail(
             f'one message on {TOPIC}, and no other',
-            f'{len(watch)} messages: {expect.show(watch.values("data"))}',
+            f'{many(len(watch), "message")}: {expect.show(watch.values("data"))}',
             GOES_ON,
         )
 

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from labkit.exercises import Exercise, Fail, words_of
 from labkit.exercises.clauses import Asked
 from labkit.exercises.expect import digits
+from labkit.exercises.figures import figure, many
 from labkit.lessons.turtlebot.drive import EMPTY, ODOMETRY, SAME, STEP_SEC, Drive, Trial
 from labkit.lessons.turtlebot.drive_clauses import (
     MANY,
@@ -44,7 +45,7 @@ def _steps(drive: Drive) -> None:
         return
     look_at_rate(drive)
     if count != STEPS:
-        seen = f'{count} steps' + (', and no end' if drive.cut else '')
+        seen = many(count, 'step') + (', and no end' if drive.cut else '')
         raise Fail(f'{STEPS} steps', seen, NOT_COUNTED)
 
 
@@ -69,13 +70,15 @@ def _gain(drive: Drive) -> None:
             continue
         newest = known[-1]
         right, told = digits(-newest, command.v), digits(command.v, -newest)
-        expected = f'v = -x at every step, so linear.x = {right} m/s where x = {newest:.4g} m'
+        expected = (
+            f'v = -x at every step, so linear.x = {right} m/s where x = {figure(newest, 4)} m'
+        )
         seen = f'linear.x = {told} m/s there, in step {number}'
         mistake = AS_AT_START if command.v == first else None
         if math.isnan(command.v):
             mistake = NAN
         elif number == 1:
-            mistake = GAIN.of(gain=-command.v / x)
+            mistake = GAIN.of(gain=figure(-command.v / x, 5))
         raise Fail(expected, seen, mistake, todo=_ANEW)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from labkit import settings
+from labkit.exercises.figures import many
 from labkit.lessons.turtlebot.drive import Drive, Point
 from labkit.sim.kinematics import Pose
 from labkit.views.arena_picture import Scene, row, two
@@ -74,5 +75,5 @@ def _words(drive: Drive) -> str:
     return (
         f'Drive{frame} from x = {two(start.x)} m, y = {two(start.y)} m '
         f'to x = {two(end.x)} m, y = {two(end.y)} m: '
-        f'{two(drive.way())} m in {drive.duration:.1f} s, {len(drive.commands)} commands.'
+        f'{two(drive.way())} m in {drive.duration:.1f} s, {many(len(drive.commands), "command")}.'
     )

@@ -11,6 +11,7 @@ from itertools import pairwise
 from typing import Any
 
 from labkit.exercises.clauses import Evidence
+from labkit.exercises.figures import figure
 from labkit.exercises.history import Note
 from labkit.exercises.messages_heard import Sample, Watch
 from labkit.exercises.observation import Life
@@ -107,7 +108,7 @@ class Command:
 
     def __str__(self) -> str:
         numbers = {'linear.x': self.v, 'angular.z': self.w, **self.others}
-        return ', '.join(f'{name} = {round(number, 6):.9g}' for name, number in numbers.items())
+        return ', '.join(f'{name} = {figure(number, 7)}' for name, number in numbers.items())
 
 
 @dataclass

@@ -10,6 +10,7 @@ from functools import partial
 from labkit.exercises import Clause, Fail, words_of
 from labkit.exercises.clauses import Asked, in_words
 from labkit.exercises.clauses.publishing import OFF, TOLERANCE
+from labkit.exercises.figures import figure, many
 from labkit.exercises.what_is_asked import PUBLISHER, SUBSCRIPTION, Role
 from labkit.lessons.turtlebot.drive import STEP_SEC, TWIST, Drive
 
@@ -174,7 +175,7 @@ def look_at_rate(drive: Drive, pause: float = 0.0, pauses: int = 0) -> None:
         return
     fail = partial(Fail, f'a command every {STEP_SEC} s (10 Hz), until the drive is over')
     if max(gaps) <= 1e-3:
-        raise fail(f'{len(drive.commands)} commands at once', AT_ONCE)
+        raise fail(f'{many(len(drive.commands), "command")} at once', AT_ONCE)
     usual = [gap for gap in gaps if gap <= (1 + GAP_TOLERANCE) * STEP_SEC + margin]
     # Without pauses, as between the sides of a square.
     longest = 1.5 * statistics.median(gaps)
@@ -183,19 +184,21 @@ def look_at_rate(drive: Drive, pause: float = 0.0, pauses: int = 0) -> None:
     seconds = sum(usual)
     tolerance = TOLERANCE + (2 * margin / seconds if seconds else 0.0)
     if abs(period / STEP_SEC - 1) > tolerance:
-        seen = f'a command every {period:.3g} s ({1 / period:.3g} Hz)'
+        seen = f'a command every {figure(period)} s ({figure(1 / period)} Hz)'
         by_sensor, twice = abs(period - 1 / 30) < 0.002, abs(period - STEP_SEC / 2) < 0.002
         raise fail(seen, BY_SENSOR if by_sensor else TWICE if twice else PERIOD)
     soonest = (1 - GAP_TOLERANCE) * STEP_SEC - margin
     few = [gap for gap in gaps if gap < soonest]
     if drive.ending and gaps[-1] < soonest:
-        raise fail(f'the stop command comes {gaps[-1]:.3g} s after the last step', STOP_AT_ONCE)
+        raise fail(
+            f'the stop command comes {figure(gaps[-1])} s after the last step', STOP_AT_ONCE
+        )
     if few:
-        raise fail(f'{min(few):.2g} s from one command to the next, once at least', ELSE)
+        raise fail(f'{figure(min(few))} s from one command to the next, once at least', ELSE)
     rests = [gap for gap in gaps if gap not in usual]
     if len(rests) > pauses or any(gap > pause + margin for gap in rests):
-        many = f'{len(rests)} pauses, the longest one of {max(rests):.2g} s'
-        raise fail(many if len(rests) > 1 else f'a pause of {rests[0]:.2g} s', PAUSES)
+        told = f'the longest one of {figure(max(rests))} s'
+        raise fail(f'{many(len(rests), "pause")}, {told}', PAUSES)
 
 
 def look_at_numbers(drive: Drive) -> None:
@@ -206,8 +209,8 @@ def look_at_numbers(drive: Drive) -> None:
             continue
         turning = WHEELS if round_ else NAN if command.w != command.w else DEGREES
         raise Fail(
-            f'at most {TOO_FAST:g} m/s in linear.x and {TOO_ROUND:g} rad/s in angular.z, and 0.0 '
-            'in the other numbers',
+            f'at most {figure(TOO_FAST)} m/s in linear.x and {figure(TOO_ROUND)} rad/s in '
+            'angular.z, and 0.0 in the other numbers',
             f'a command with {command}',
             turning if fast else IMPOSSIBLE,
         )
@@ -236,7 +239,7 @@ def look_at_end(drive: Drive, *, may_rest: bool = False, may_pause: bool = False
         raise Fail('one command that says stop, at the end', seen, ON_ITS_WAY)
     seconds = ending[-1].at - ending[0].at
     if seconds > REST_SEC + drive.margin if may_rest else len(ending) > 1:
-        seen = f'{len(ending)} commands that say stop, over {seconds:.1f} s'
+        seen = f'{many(len(ending), "command")} to stop, over {seconds:.1f} s'
         raise Fail(expected, seen, STILL_TALKS)
 
 
@@ -244,16 +247,16 @@ def look_at_time(drive: Drive, seconds: float) -> None:
     """Raise Fail if a drive takes longer than so many seconds."""
     taken = drive.moving[-1].at - drive.sign if drive.moving else 0.0
     if taken > seconds + drive.margin:
-        expected = f'an end of the drive {seconds:g} s after the message'
+        expected = f'an end of the drive {figure(seconds)} s after the message'
         raise Fail(expected, f'it still moves after {taken:.1f} s', SLOW)
 
 
 SENSIBLE = Asked(
-    WORDS.of(too_fast=f'{TOO_FAST:g}', too_round=f'{TOO_ROUND:g}').clause('sensible'),
+    WORDS.of(too_fast=figure(TOO_FAST), too_round=figure(TOO_ROUND)).clause('sensible'),
     look_at_numbers,
 )
 STOPS = Asked(WORDS.clause('stops'), look_at_end)
 RESTS = Asked(
-    WORDS.of(rest=f'{REST_SEC:g}').clause('rests'),
+    WORDS.of(rest=figure(REST_SEC)).clause('rests'),
     partial(look_at_end, may_rest=True),
 )

@@ -61,7 +61,8 @@ def _turns(drive: Drive) -> None:
     )
     difference = bearing - start.yaw
     if abs(difference) > math.pi:
-        mistake = NOT_WRAPPED.of(bearing=bearing, yaw=start.yaw, difference=difference)
+        told = {'bearing': bearing, 'yaw': start.yaw, 'difference': difference}
+        mistake = NOT_WRAPPED.of(**{name: f'{angle:.2f}' for name, angle in told.items()})
         raise Fail(expected, 'it turns the other way, the long way round', mistake)
     side = 'left' if first > 0 else 'right'
     raise Fail(

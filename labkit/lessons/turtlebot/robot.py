@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from labkit.errors import LabError
 from labkit.exercises import Fail, Probe, words_of
+from labkit.exercises.figures import many
 from labkit.lessons.turtlebot.drive import Point, Trial
 from labkit.sim.kinematics import Pose
 from labkit.sim.robots import BURGER
@@ -166,6 +167,6 @@ def refuse_others(
         listed = listed_others(probe, source)
         raise Fail(
             f'commands of {source.node} alone on /cmd_vel',
-            f'{len(commands)} commands, and {listed} can drive the robot as well',
+            f'{many(len(commands), "command")}, and {listed} can drive the robot as well',
             OTHERS.of(name=ends[0].node),
         )

@@ -12,6 +12,7 @@ from typing import Any
 
 from labkit.exercises import Clause, Exercise, Fail, Probe, Solution, words_of
 from labkit.exercises.clauses import Asked, Evidence
+from labkit.exercises.figures import figure
 from labkit.exercises.variants import varied
 from labkit.lessons.turtlebot.drive import EMPTY, STEP_SEC, Drive, Point, Trial
 from labkit.lessons.turtlebot.drive_clauses import (
@@ -111,10 +112,10 @@ def _missed(drive: Drive, path: Sequence[Point], number: int, outline: Outline) 
     mirrored = (corner[0], -corner[1])
     if number == 2 and any(math.dist(point, mirrored) <= NEAR for point in path):
         mistake = OTHER_WAY
-    corners = ', '.join(f'({x:g}, {y:g})' for x, y in outline.corners[1:])
+    corners = ', '.join(f'({figure(x)}, {figure(y)})' for x, y in outline.corners[1:])
     return Fail(
         f'corners at {corners} m, seen from the start',
-        f'it came no nearer to corner {number}, ({corner[0]:g}, {corner[1]:g}), than '
+        f'it came no nearer to corner {number}, ({figure(corner[0])}, {figure(corner[1])}), than '
         f'({two(x)}, {two(y)})' + (', and was still driving' if drive.cut else ''),
         mistake.of(other='right' if outline.turn == 'left' else 'left'),
     )
@@ -162,11 +163,11 @@ def _variant(*, outline: tuple[float, str] = (0.4, 'left')) -> Exercise:
         near=NEAR,
         within=f'{wanted.seconds:.0f}',
         speed=UNHURRIED,
-        seconds=f'{seconds:g}',
+        seconds=figure(seconds),
         steps=f'{seconds / STEP_SEC:.0f}',
         step=STEP_SEC,
         rate=RATE,
-        rest=f'{REST_SEC:g}',
+        rest=figure(REST_SEC),
     )
     clauses: tuple[Clause[Drive], ...] = (
         Begins(*SIGN),

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from labkit.exercises import Clause, Fail, Probe, Stage, expect, words_of
 from labkit.exercises.clauses import Evidence
+from labkit.exercises.figures import many
 from labkit.exercises.judging import find, naming
 from labkit.exercises.observation import Life, Stimulus, live
 from labkit.lessons.turtlebot.drawing import observed
@@ -171,7 +172,7 @@ class Trials:
         if life.seconds >= limit:
             refuse_others(self._probe, self._source, commands, unasked=True)
             expected = 'a robot that nobody drives, before the sign to start is given'
-            seen = f'{len(commands)} commands on /cmd_vel in {limit:.0f} s'
+            seen = f'{many(len(commands), "command")} on /cmd_vel in {limit:.0f} s'
             # A key of a teleop may be held: that is not told by a message.
             others = listed_others(self._probe, self._source)
             seen += f'; {others} can drive the robot as well' if others else ''
@@ -240,7 +241,7 @@ class Trials:
         if len(commands) > FLOOD_HZ * (life.seconds + 1.0):
             raise Fail(
                 'ten commands a second, or about so',
-                f'{len(commands)} commands on /cmd_vel in {life.seconds:.1f} s',
+                f'{many(len(commands), "command")} on /cmd_vel in {life.seconds:.1f} s',
                 AT_ONCE,
             )
         refuse_others(self._probe, self._source, commands)

@@ -16,6 +16,7 @@ from labkit.exercises.clauses import (
     Stream,
     often,
 )
+from labkit.exercises.figures import figure
 from labkit.exercises.history import Note
 from labkit.exercises.messages_heard import Sample
 from labkit.exercises.observation import live
@@ -130,7 +131,7 @@ def _variant(*, speed: float = SPEED, hz: float = HZ) -> Exercise:
             Asked(words.clause('says-stop'), _says_stop),
         ),
         answer=Solution.of(words).changed(
-            ('create_timer(0.1,', f'create_timer({1 / hz:g},'),
+            ('create_timer(0.1,', f'create_timer({figure(1 / hz)},'),
             ('msg.linear.x = 0.1', f'msg.linear.x = {speed}'),
         ),
     )

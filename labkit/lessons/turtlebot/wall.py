@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from labkit.exercises import Exercise, Fail, words_of
 from labkit.exercises.clauses import Asked
+from labkit.exercises.figures import figure
 from labkit.lessons.turtlebot.drive import EMPTY, SAME, SCAN, Drive, Trial
 from labkit.lessons.turtlebot.drive_clauses import STOPS, Begins, Hears
 from labkit.lessons.turtlebot.stage import Drives
@@ -62,7 +63,7 @@ def _speed(drive: Drive) -> None:
     if len(drive.moving) == 1 and not drive.ending:
         gaps = [math.inf]
     if gaps and max(gaps) > 1.25 / FEWEST_HZ + drive.margin:
-        seen = f'{max(gaps):.2g} s from one to the next'
+        seen = f'{figure(max(gaps))} s from one to the next'
         raise Fail(
             f'a command every {1 / FEWEST_HZ} s, or more often',
             'one command' if len(drive.moving) < 3 else seen,

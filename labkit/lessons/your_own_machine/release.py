@@ -11,6 +11,7 @@ from hashlib import sha1
 
 from labkit.exercises import Exercise, Fail, NotAttempted, words_of
 from labkit.exercises.clauses import Asked
+from labkit.exercises.figures import many
 from labkit.lessons.package.content import InAWorkspace, Work, own_files
 from labkit.lessons.your_own_machine.made import COURIER
 
@@ -93,7 +94,7 @@ def _has_sources_alone(work: Work) -> None:
 
 def _is_archived(work: Work) -> None:
     path, tagged = work.folder / ARCHIVE, _tagged(work)
-    wanted = f'{ARCHIVE} with the {len(tagged)} files of the tag'
+    wanted = f'{ARCHIVE} with the {many(len(tagged), "file")} of the tag'
     if not path.is_file():
         raise Fail(wanted, f'no {ARCHIVE}', NO_ARCHIVE)
     try:
@@ -105,7 +106,7 @@ def _is_archived(work: Work) -> None:
     names = [member.name for member in members]
     # git archive --prefix puts the same folder before each name.
     if len(names) != len(tagged) or not all(map(str.endswith, names, tagged)):
-        raise Fail(wanted, f'{len(names)} files', OTHER_FILES)
+        raise Fail(wanted, many(len(names), 'file'), OTHER_FILES)
     others = [name for name, blob in zip(tagged, held, strict=True) if blob != tagged[name]]
     if others:
         raise Fail(wanted, f'another {others[0]}', OTHER_FILES)
@@ -132,7 +133,7 @@ class InARepository(InAWorkspace):
 
     def tell(self, seen: Sequence[Work]) -> str:
         """Say what the tag holds."""
-        return f'The tag {VERSION} and {ARCHIVE} hold {len(_tagged(seen[0]))} files.'
+        return f'The tag {VERSION} and {ARCHIVE} hold {many(len(_tagged(seen[0])), "file")}.'
 
 
 exercise = Exercise(

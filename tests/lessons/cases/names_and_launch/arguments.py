@@ -74,12 +74,12 @@ ANSWERS = [
             '      <node pkg="demo_nodes_py" exec="talker" if="$(var talk)"/>\n    </timer>\n',
         ),
     ),
-    wrong('the robots of the lesson alone', 'The name is right, and the namespace is not.'),
     wrong(
-        'a speed that no robot has',
+        'at most 0.11',
         'The file gives it another value.',
-        ('value="$(var speed)"', 'value="$(eval \'min(1.0, $(var speed))\')"'),
+        ('value="$(var speed)"', 'value="$(eval \'min(0.11, $(var speed))\')"'),
     ),
+    wrong('the robots of the lesson alone', 'The name is right, and the namespace is not.'),
     right(
         'no group',
         ('    <push_ros_namespace namespace="$(var robot)"/>\n', ''),

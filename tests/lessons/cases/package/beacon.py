@@ -25,7 +25,7 @@ ANSWERS = [
         'The name of the node is what super().__init__() gets.',
         ("__init__('beacon')", "__init__('lamp')"),
     ),
-    wrong('a test that fails', '1 failures and 0 errors in 1 tests', ("== 'beacon'", "== 'lamp'")),
+    wrong('a test that fails', '1 failure and 0 errors in 1 test', ("== 'beacon'", "== 'lamp'")),
     wrong('a test that is not found', 'no test that has run', ('def test_name', 'def name')),
     wrong(
         'true, and then false',
