@@ -148,6 +148,7 @@ from labkit.exercises.lesson import Lesson
 from labkit.exercises.messages_heard import Watch
 from labkit.exercises.mistakes import Mistake, anything
 from labkit.exercises.probe import Probe
+from labkit.exercises.quiz.guess import guesses_of
 from labkit.exercises.quiz.questions import Choice, Number, Several, Word, right, wrong
 from labkit.exercises.quiz.quiz import Quiz
 from labkit.exercises.verdict import Fail, NotAttempted, Outcome
@@ -172,6 +173,7 @@ __all__ = [
     'Word',
     'anything',
     'expect',
+    'guesses_of',
     'right',
     'words_of',
     'wrong',

@@ -10,6 +10,7 @@ from labkit.errors import LabError, did_you_mean
 from labkit.exercises.exercise import Exercise
 from labkit.exercises.found_lessons import all_lessons
 from labkit.exercises.lesson_progress import next_steps
+from labkit.exercises.quiz.guess import Guess
 from labkit.exercises.quiz.quiz import Quiz
 from labkit.exercises.record.progress_store import progress_store
 from labkit.exercises.what_is_asked import Role
@@ -35,6 +36,7 @@ class Lesson:
         exercises: The exercises in the order of the notebook, or the modules that have each an
             `exercise`.
         quizzes: The quizzes in the order of the notebook.
+        guesses: What may be guessed, in the order of the notebook.
         topics: Further topics that the lesson's own cells use.
         given: Full names of nodes that the lesson's own cells leave running, see `Exercise`.
 
@@ -53,6 +55,7 @@ class Lesson:
         minutes: int = 0,
         exercises: Sequence[Exercise | ModuleType] = (),
         quizzes: Sequence[Quiz] = (),
+        guesses: Sequence[Guess] = (),
         topics: Sequence[str] = (),
         given: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
@@ -66,6 +69,7 @@ class Lesson:
         self._refuse_names('quizzes', quizzes)
         self._exercises = {exercise.name: exercise for exercise in these}
         self._quizzes = {quiz.name: quiz for quiz in quizzes}
+        self._guesses = {guess.name: guess for guess in guesses}
         known = frozenset(topics).union(*(exercise.scope.topics for exercise in these))
         of_lesson = frozenset(role for e in these for role in e.scope.roles)
         earlier: frozenset[Role] = frozenset()
@@ -83,6 +87,8 @@ class Lesson:
             earlier |= scope.roles.keys()
         for quiz in quizzes:
             quiz.lesson = name
+        for guess in guesses:
+            guess.lesson = name
 
     def _refuse_names(self, kind: str, named: Sequence[Exercise] | Sequence[Quiz]) -> None:
         seen: set[str] = set()
@@ -143,6 +149,25 @@ class Lesson:
             )
         return self._quizzes[name]
 
+    @property
+    def guesses(self) -> list[Guess]:
+        """What may be guessed, in the order of the notebook."""
+        return list(self._guesses.values())
+
+    def guess(self, name: str) -> Guess:
+        """Return a guess, to be shown by the notebook: what will the next cell show?
+
+        Raises:
+            LabError: There is no such guess.
+        """
+        if name not in self._guesses:
+            raise LabError(
+                f'Lesson {self.name!r} has no guess {name!r}.',
+                todo=did_you_mean(name, list(self._guesses))
+                or f'Its guesses: {", ".join(self._guesses) or "none"}.',
+            )
+        return self._guesses[name]
+
     def __getattr__(self, name: str) -> Exercise:
         if name.startswith('_'):
             raise AttributeError(name)
@@ -158,7 +183,7 @@ class Lesson:
         return exercise
 
     def __dir__(self) -> list[str]:
-        return [*self._exercises, 'quiz']
+        return [*self._exercises, 'quiz', *['guess'] * bool(self._guesses)]
 
     def _card(self) -> Card:
         rows = [(exercise.name, exercise.task) for exercise in self.exercises]

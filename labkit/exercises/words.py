@@ -35,6 +35,18 @@ mean. A quiz is a list of questions::
           why: The graph says so.
           otherwise: Ask the graph.
 
+What a cell will show may be guessed before it is run::
+
+    guesses:
+      late:
+        ask: Five letters are sent, and then somebody subscribes. How many do they hear?
+        options:
+          - none
+          - all five
+        came: none
+        why: What was sent before is gone.
+        shown_by: late-listener
+
 The files beside the modules are English. Another language is a folder of files of the same names,
 `translations/de/lessons/odds/evens.yaml`, with the same keys and the sentences only. What it lacks
 stays English; `lacking` tells what that is.
@@ -67,7 +79,7 @@ MAX_DEPTH = 20
 _TEXT, _RAW = 'text', 'raw'
 _MISTAKE = {'why': _TEXT, 'todo': _TEXT, 'change': {'': _RAW}, 'raises': _RAW}
 # What is the same in each language.
-_SAME = ('answer', 'change', 'id', 'raises', 'tolerance')
+_SAME = ('answer', 'change', 'id', 'raises', 'shown_by', 'tolerance')
 # Its kind, with the text; see `Question`.
 _QUESTION = {
     **dict.fromkeys(('choice', 'several', 'number', 'word'), _RAW),
@@ -75,6 +87,8 @@ _QUESTION = {
     **dict.fromkeys(('id', 'answer', 'unit', 'tolerance', 'how', 'why', 'otherwise'), _RAW),
     'wrong': {'': _RAW},
 }
+# See `Guess`.
+_GUESS = {**dict.fromkeys(('ask', 'came', 'why', 'shown_by'), _RAW), 'options': [_RAW]}
 _FILE = {
     'task': _TEXT,
     'clauses': {'': _TEXT},
@@ -82,6 +96,7 @@ _FILE = {
     'reason': _TEXT,
     'mistakes': {'': _MISTAKE},
     'quizzes': {'': [_QUESTION]},
+    'guesses': {'': _GUESS},
 }
 # What braces may hold: a name, and whether it is quoted; nothing is looked up or computed. How a
 # number is written, `figures` knows.

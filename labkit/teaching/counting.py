@@ -10,7 +10,7 @@ from labkit.exercises.found_lessons import all_lessons
 from labkit.exercises.lesson import Lesson
 from labkit.exercises.record.class_sheet import Entry, Sheet
 from labkit.teaching.class_folder import Learner, Reading
-from labkit.views.class_board import Board, FailRow, LearnerRow, LessonRow
+from labkit.views.class_board import Board, FailRow, GuessRow, LearnerRow, LessonRow
 
 __all__ = ['count', 'remarks']
 
@@ -50,6 +50,7 @@ def count(reading: Reading, now: datetime) -> Board:
         stuck=sum(row.stuck_min is not None for row in rows),
         lessons=[row for lesson in lessons for row in _lesson_rows(lesson, sheets, working)],
         fails=_fails(sheets, titles),
+        guesses=[row for lesson in lessons for row in _guess_rows(lesson, sheets, working)],
         learners=sorted(rows, key=_order),
         exercise_count=sum(len(lesson.exercises) for lesson in lessons),
         certain=certain,
@@ -188,6 +189,26 @@ def _lesson_rows(
         exercises.append((exercise.name, passed, tried))
     if here or any(passed or tried for _, passed, tried in exercises):
         yield LessonRow(lesson.heading, here, exercises)
+
+
+def _guess_rows(
+    lesson: Lesson, sheets: Sequence[Sheet], working: Sequence[Sheet]
+) -> Iterator[GuessRow]:
+    """Return what was guessed in a lesson that somebody works on."""
+    if not any(sheet.lesson == lesson.name for sheet in working):
+        return
+    for guess in lesson.guesses:
+        entries = [sheet.entries.get((lesson.name, 'guess', guess.name)) for sheet in sheets]
+        before, after = (
+            [sum(each == index for each in chosen) for index in range(len(guess.options))]
+            for chosen in (
+                [entry.before for entry in entries if entry is not None],
+                [entry.after for entry in entries if entry is not None],
+            )
+        )
+        if sum(before) or sum(after):
+            options = list(zip(guess.options, before, after, strict=True))
+            yield GuessRow(lesson.heading, guess.ask, options, guess.came)
 
 
 def _fails(sheets: Sequence[Sheet], titles: dict[str, str]) -> list[FailRow]:

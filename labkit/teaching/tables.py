@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from datetime import datetime
 
 from labkit.exercises.found_lessons import all_lessons
+from labkit.exercises.quiz.questions import LETTERS
 from labkit.exercises.record.class_sheet import Entry, catalogue
 from labkit.teaching.class_folder import Learner
 from labkit.teaching.counting import remarks
@@ -23,7 +24,7 @@ _FORMULA = ('=', '+', '-', '@', '\t', '\r')
 
 
 def table(learners: Sequence[Learner], now: datetime) -> str:
-    """Return all data of a class as CSV, one line per learner and exercise or question.
+    """Return all data of a class as CSV, one line per learner and exercise, question or guess.
 
     Args:
         learners: The learners. One without a usable sheet gets one line that says so.
@@ -72,7 +73,9 @@ def _cells(entry: Entry) -> list[object]:
     state = 'done' if entry.passed_at else 'tried' if entry.tries else 'open'
     shown = 'yes' if entry.solution else 'no'
     times = [_when(entry.first_try), _when(entry.passed_at)]
-    return [state, entry.tries, entry.hints, shown, *times, entry.last]
+    # Of a guess, what was chosen before the answer was known, and after it.
+    chosen = [LETTERS[index] for index in (entry.before, entry.after) if index is not None]
+    return [state, entry.tries, entry.hints, shown, *times, entry.last or ' > '.join(chosen)]
 
 
 def _when(time: datetime | None) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-__all__ = ['Board', 'FailRow', 'LearnerRow', 'LessonRow', 'text_form']
+__all__ = ['Board', 'FailRow', 'GuessRow', 'LearnerRow', 'LessonRow', 'text_form']
 
 EMPTY = 'Nobody shares their progress yet. Learners join with lab.join_class().'
 TOLD = 'All of this is what the computers of the learners have told.'
@@ -41,6 +41,24 @@ class FailRow:
     count: int
     exercise: str
     sentence: str
+
+
+@dataclass(frozen=True)
+class GuessRow:
+    """What the class has guessed.
+
+    Attributes:
+        title: The lesson.
+        ask: The question.
+        options: For each option its words, how many guessed it before its cell was run, and how
+            many after it.
+        came: Which option came, from 0.
+    """
+
+    title: str
+    ask: str
+    options: Sequence[tuple[str, int, int]]
+    came: int
 
 
 @dataclass(frozen=True)
@@ -83,6 +101,7 @@ class Board:
         stuck: Number of those who have been at one exercise for long.
         lessons: Lessons that anybody has begun.
         fails: Most frequent failures first.
+        guesses: What was guessed in the lessons that somebody works on.
         learners: Learners, those who are stuck first.
         exercise_count: Number of exercises in the course.
         certain: Whether names are those of accounts, which learners can't choose.
@@ -95,6 +114,7 @@ class Board:
     stuck: int = 0
     lessons: Sequence[LessonRow] = ()
     fails: Sequence[FailRow] = ()
+    guesses: Sequence[GuessRow] = ()
     learners: Sequence[LearnerRow] = ()
     exercise_count: int = 0
     certain: bool = False
@@ -129,6 +149,12 @@ def text_form(board: Board, *, names: bool) -> str:
     if board.fails:
         lines.append('Fails most often, and is not passed yet:')
         lines += [f'  {row.count:>3}  {row.exercise}: {row.sentence}' for row in board.fails]
+    if board.guesses:
+        lines.append('Guesses, before and after the answer; * is what came:')
+    for guess in board.guesses:
+        lines.append(f'  {guess.title}: {guess.ask}')
+        for index, (option, before, after) in enumerate(guess.options):
+            lines.append(f'    {before:>3} {after:>3}  {option}{" *" * (index == guess.came)}')
     if names and board.learners:
         lines.append('Learners:')
         width = max(len(row.name) for row in board.learners)

@@ -99,6 +99,24 @@ function failRow([count, exercise, sentence]) {
       element('span', { textContent: sentence })));
 }
 
+// How many guessed each answer before its cell was run, and after it. A star is what came.
+function guessItem([title, ask, options, came]) {
+  const all = [1, 2].map((at) => options.reduce((sum, option) => sum + option[at], 0));
+  const bar = (count, sum, when) => {
+    const part = element('span', { className: 'labkit-classroom-passed' });
+    part.style.width = `${(100 * count) / Math.max(sum, 1)}%`;
+    const made = element('span', { className: 'labkit-classroom-bar' }, part);
+    made.setAttribute('aria-hidden', 'true');
+    return [made, element('span', { className: 'labkit-classroom-count', textContent: `${count} ${when}` })];
+  };
+  const rows = options.map(([option, before, after], index) => element('li', {},
+    element('span', { className: 'labkit-classroom-option' }, ...rich(`${option}${index === came ? ' ★' : ''}`)),
+    ...bar(before, all[0], 'before'), ...(all[1] ? bar(after, all[1], 'after') : [])));
+  return element('li', {},
+    element('span', { className: 'labkit-classroom-where', textContent: title }),
+    element('span', {}, ...rich(ask)), element('ul', {}, ...rows));
+}
+
 function render({ model, el }) {
   el.classList.add('labkit-live', 'labkit-classroom');
   el.setAttribute('role', 'group');
@@ -111,6 +129,8 @@ function render({ model, el }) {
     heads(['Lesson', 'Here now', 'Exercises']), lessonBody)));
   const failList = element('ol');
   const fails = titled('Fails most often, and is not passed yet', failList);
+  const guessList = element('ol', { className: 'labkit-classroom-guesses' });
+  const guesses = titled('Guesses (★ is what came)', guessList);
   const learnerBody = element('tbody');
   const learners = titled('Learners', scrolling('Learners', element('table', {}, heads(HEADS), learnerBody)));
   const told = element('p', { className: 'labkit-classroom-told' });
@@ -122,15 +142,17 @@ function render({ model, el }) {
       lessonBody.replaceChildren(...(shown.lessons ?? []).map((row) => lessonRow(row, shown.figures[0])));
     }
     if (news.fails) failList.replaceChildren(...news.fails.map(failRow));
+    if (news.guesses) guessList.replaceChildren(...news.guesses.map(guessItem));
     if (news.learners !== undefined) learnerBody.replaceChildren(...(news.learners ?? []).map(learnerRow));
     if (news.told !== undefined) setText(told, news.told);
     figures.hidden = !shown.figures?.[0];
     lessons.hidden = !shown.lessons?.length;
     fails.hidden = !shown.fails?.length;
+    guesses.hidden = !shown.guesses?.length;
     learners.hidden = !shown.learners?.length;
   });
-  for (const part of [figures, lessons, fails, learners]) part.hidden = true;
-  el.append(figures, note, lessons, fails, learners, told);
+  for (const part of [figures, lessons, fails, guesses, learners]) part.hidden = true;
+  el.append(figures, note, lessons, fails, guesses, learners, told);
   return end;
 }
 

@@ -73,6 +73,9 @@ class Classroom(LivePage):
             'figures': [board.shared, board.at_work, board.stuck],
             'lessons': [[row.title, row.here, list(row.exercises)] for row in board.lessons],
             'fails': [[row.count, row.exercise, row.sentence] for row in board.fails],
+            'guesses': [
+                [row.title, row.ask, list(row.options), row.came] for row in board.guesses
+            ],
             'learners': self._learners(board),
             'note': SILENT if silent else board.note,
             'told': board.told,

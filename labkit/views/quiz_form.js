@@ -9,12 +9,6 @@ const SIGNS = { good: '✔', bad: '✘', warn: '⚠' };
 const WORDS = { good: 'right', bad: 'not yet right', warn: 'open', '': 'open' };
 let forms = 0;
 
-// Text with `code` in it, as elements.
-function rich(text) {
-  const parts = text.split('`');
-  return parts.map((part, index) => (index % 2 ? element('code', {}, part) : part));
-}
-
 function signOf(tone) {
   const sign = element('span', { className: 'labkit-quiz-sign' }, SIGNS[tone] ?? '○');
   sign.setAttribute('aria-hidden', 'true');
@@ -216,18 +210,11 @@ function render({ model, el }) {
   show();
   take();
   model.on('change:answers', take);
-  // Who has run its cell answers next, unless they are typing elsewhere by then.
-  const takeKeyboard = new ResizeObserver(() => {
-    if (!el.isConnected) return;
-    takeKeyboard.disconnect();
-    const typing = document.activeElement?.closest('input, textarea, [contenteditable="true"]');
-    if (model.get('fresh') && !typing && at < end) cards[at].focus();
-    model.set('fresh', false);
-    model.save_changes();
+  const leave = takeKeyboard(model, el, () => {
+    if (at < end) cards[at].focus();
   });
-  takeKeyboard.observe(el);
   return () => {
-    takeKeyboard.disconnect();
+    leave();
     stopWaiting();
     model.off('change:answers', take);
     disconnect();

@@ -209,6 +209,39 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert written.err == 'ben: can not be used: no JSON\n'
     assert main([str(tmp_path), '--csv']) == 0
     questions = [quiz.questions for lesson in all_lessons() for quiz in lesson.quizzes]
-    count = sum(len(lesson.exercises) for lesson in all_lessons()) + sum(map(len, questions))
+    count = sum(len(lesson.exercises) + len(lesson.guesses) for lesson in all_lessons())
+    count += sum(map(len, questions))
     # And a line for each whose file can't be used.
     assert len(rows(capsys.readouterr().out)) == count + 1
+
+
+def test_what_a_class_has_guessed() -> None:
+    (lesson,) = (found for found in all_lessons() if found.name == 'odds')
+    (guess,) = lesson.guesses
+    key = ('odds', 'guess', guess.name)
+
+    def guesser(name: str, *chosen: int | None) -> Learner:
+        before, after = chosen
+        entries = {key: Entry(tries=1, before=before, after=after)}
+        return Learner(name, Sheet(ago(1), 'odds', ago(60), entries))
+
+    learners = guesser('anna', 0, 2), guesser('ben', 0, None), guesser('carl', 2, None)
+    (row,) = count(reading(*learners, learner('dora')), NOW).guesses
+    assert (row.ask, row.came) == (guess.ask, guess.came)
+    assert [(before, after) for _, before, after in row.options] == [
+        (2, 0),
+        (0, 0),
+        (1, 1),
+        (0, 0),
+    ]
+    text = text_form(count(reading(*learners), NOW), names=False)
+    assert f'      2   0  {guess.options[0]}\n' in text
+    assert f'      1   1  {guess.options[2]} *\n' in text
+    # A guess is no check, and a lesson that nobody works on shows none.
+    assert 'anna' not in text and not count(reading(*learners), NOW).fails
+    away = Learner('zoe', Sheet(ago(90), 'odds', ago(99), {key: Entry(before=0)}))
+    assert not count(reading(away), NOW).guesses
+    (line,) = (
+        each for each in rows(table(learners[:1], NOW)) if each['kind'] == 'guess' and each['last']
+    )
+    assert line['last'] == 'a > c'

@@ -1,8 +1,8 @@
 """The sheet: a small document in a fixed format that a learner shares with a class.
 
-It has the open lesson, and for each exercise and question an extract of the progress file: tries,
-hints, times, and a sentence of the course on the last check. It does not name the learner; its
-folder does. Readers validate all of it.
+It has the open lesson, and for each exercise, question and guess an extract of the progress file:
+tries, hints, times, a sentence of the course on the last check, what was guessed. It does not
+name the learner; its folder does. Readers validate all of it.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any
 
 from labkit.exercises.found_lessons import all_lessons
 from labkit.exercises.mistakes import known_mistakes, said_by_the_course
-from labkit.exercises.record.progress_store import number_of
+from labkit.exercises.record.progress_store import GROUPS, number_of
 
 __all__ = ['FILE_NAME', 'MOST_BYTES', 'Entry', 'Sheet', 'catalogue', 'read_sheet', 'sheet_text']
 
@@ -26,13 +26,15 @@ FILE_NAME = 'labkit-progress.json'
 MOST_BYTES = 100_000
 MOST_TRIES = 100_000
 LONGEST_SENTENCE = 600
+MOST_OPTIONS = 4
 _KEY = ('lesson', 'kind', 'name')
+_GUESSES = ('before', 'after')
 _TIMES = ('first_try', 'last_try', 'passed_at')
 _OUTCOMES = ('', 'PASS', 'FAIL', 'ERROR')
 _TIME = re.compile(r'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\+00:00')
 
 Key = tuple[str, str, str]
-"""Lesson, kind (`'exercise'` or `'question'`) and name."""
+"""Lesson, kind (`'exercise'`, `'question'` or `'guess'`) and name."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,8 @@ class Entry:
         first_try: Time of the first try.
         last_try: Time of the last try.
         passed_at: Time of the first pass.
+        before: Which option was guessed, from 0, before the answer was known.
+        after: Which one was guessed after it.
     """
 
     tries: int = 0
@@ -58,6 +62,8 @@ class Entry:
     first_try: datetime | None = None
     last_try: datetime | None = None
     passed_at: datetime | None = None
+    before: int | None = None
+    after: int | None = None
 
 
 @dataclass(frozen=True)
@@ -78,7 +84,7 @@ class Sheet:
 
 
 def catalogue() -> dict[Key, frozenset[str]]:
-    """Return all exercises and questions, with the clauses of their tasks."""
+    """Return all exercises, questions and guesses, with the clauses of their tasks."""
     found: dict[Key, frozenset[str]] = {}
     for lesson in all_lessons():
         for exercise in lesson.exercises:
@@ -87,6 +93,8 @@ def catalogue() -> dict[Key, frozenset[str]]:
         for quiz in lesson.quizzes:
             for number in range(1, len(quiz) + 1):
                 found[lesson.name, 'question', f'{quiz.name}.{number}'] = frozenset()
+        for guess in lesson.guesses:
+            found[lesson.name, 'guess', guess.name] = frozenset()
     return found
 
 
@@ -104,7 +112,7 @@ def sheet_text(data: Mapping[str, Any], lesson: str, since: datetime | None) -> 
     known = catalogue()
     entries = []
     for (of_lesson, kind, name), clauses in known.items():
-        group = data['lessons'].get(of_lesson, {}).get(f'{kind}s', {})
+        group = data['lessons'].get(of_lesson, {}).get(GROUPS[kind], {})
         shared = _shared(group.get(name, {}), clauses)
         if shared:
             entries.append({'lesson': of_lesson, 'kind': kind, 'name': name, **shared})
@@ -130,7 +138,8 @@ def _shared(entry: Mapping[str, Any], clauses: frozenset[str]) -> dict[str, Any]
         'sentence': _sentence(entry, clauses),
         **{name: entry.get(name) for name in _TIMES if _is_time(entry.get(name))},
     }
-    return {name: value for name, value in shared.items() if value}
+    guessed = {name: entry.get(name) for name in _GUESSES if _is_option(entry.get(name))}
+    return {**{name: value for name, value in shared.items() if value}, **guessed}
 
 
 def _sentence(entry: Mapping[str, Any], clauses: frozenset[str]) -> str:
@@ -198,6 +207,8 @@ def _entry(item: dict[str, Any], clauses: frozenset[str]) -> Entry:
         solution=_of_type(item, 'solution', bool, False),
         last=last,
         sentence=sentence,
+        before=_option(item, 'before'),
+        after=_option(item, 'after'),
         **{name: _time(item, name) for name in _TIMES},
     )
 
@@ -214,6 +225,17 @@ def _count(data: dict[str, Any], name: str) -> int:
     if not 0 <= value <= MOST_TRIES:
         raise ValueError(f'{name} is out of range')
     return value
+
+
+def _option(data: dict[str, Any], name: str) -> int | None:
+    value = data.get(name)
+    if value is not None and not _is_option(value):
+        raise ValueError(f'{name} is no option')
+    return value
+
+
+def _is_option(value: object) -> bool:
+    return type(value) is int and 0 <= value < MOST_OPTIONS
 
 
 def _time(data: dict[str, Any], name: str) -> datetime | None:

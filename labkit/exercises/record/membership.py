@@ -37,8 +37,8 @@ _LOCK_SEC, _LAST_SEC = 5.0, 2.0
 _WHAT = (
     'Shared are the lesson that is open, and of each exercise and question: how often you tried, '
     'hints, whether the solution was shown, when you tried and passed; and of the last check what '
-    'the course says about it. Never your code, what it prints, or your answers. All of it, as it '
-    'is now, stands below.'
+    'the course says about it; and what you guessed. Never your code, what it prints, or your '
+    'answers to a quiz. All of it, as it is now, stands below.'
 )
 
 

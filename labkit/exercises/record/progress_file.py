@@ -139,7 +139,7 @@ def _is_valid(data: object) -> bool:
         isinstance(lesson, dict)
         and all(
             isinstance(entry, dict)
-            for kind in ('exercises', 'questions')
+            for kind in ('exercises', 'questions', 'guesses')
             for entry in _values(lesson.get(kind, {}))
         )
         for lesson in data['lessons'].values()

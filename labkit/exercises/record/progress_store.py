@@ -8,8 +8,10 @@ from typing import Any
 
 from labkit.exercises.record.progress_file import Store
 
-__all__ = ['ProgressStore', 'number_of', 'progress_store', 'text_of']
+__all__ = ['GROUPS', 'ProgressStore', 'number_of', 'progress_store', 'text_of']
 
+# Where the file has each kind of entry.
+GROUPS = {'exercise': 'exercises', 'question': 'questions', 'guess': 'guesses'}
 # Most characters to keep of an answer, and of the reason of a verdict.
 LONGEST_ANSWER = 200
 LONGEST_WHY = 1000
@@ -78,6 +80,21 @@ class ProgressStore:
             entry['given'], entry['last'] = given[:LONGEST_ANSWER], right
 
         return self._change(lesson, 'questions', f'{quiz}.{number}', change)
+
+    def note_guess(self, lesson: str, name: str, index: int, told: bool) -> str:
+        """Record a guess: which option, from 0, and whether the answer was known by then."""
+
+        def change(entry: dict[str, Any]) -> None:
+            _note_try(entry, right=False)
+            entry['after' if told else 'before'] = index
+
+        return self._change(lesson, 'guesses', name, change)
+
+    def guess(self, lesson: str, name: str) -> int | None:
+        """Return what was guessed last before the answer was known, None if nothing was."""
+        data, _ = self.store.read()
+        found = data['lessons'].get(lesson, {}).get('guesses', {}).get(name, {}).get('before')
+        return found if isinstance(found, int) else None
 
     def answers(self, lesson: str, quiz: str) -> dict[int, tuple[str, bool]]:
         """Return the last answer to each question of a quiz, and whether it was right."""

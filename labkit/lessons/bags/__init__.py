@@ -5,7 +5,7 @@ from __future__ import annotations
 from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
 from labkit.lessons.bags import distance, half_speed, one_topic
-from labkit.lessons.bags.quiz import QUIZ, WARM_UP
+from labkit.lessons.bags.quiz import GUESSES, QUIZ, WARM_UP
 
 __all__ = ['LESSON']
 
@@ -19,6 +19,7 @@ LESSON = Lesson(
     ),
     exercises=[one_topic, distance, half_speed],
     quizzes=[WARM_UP, QUIZ],
+    guesses=GUESSES,
     topics=[
         *ROBOT_TOPICS,
         '/clock',

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Quiz, words_of
+from labkit.exercises import Quiz, guesses_of, words_of
 from labkit.lessons.bags.made import TRIP_TOPICS, silent_topic, stop_sec, trip_is_missing
 
-__all__ = ['QUIZ', 'WARM_UP']
+__all__ = ['GUESSES', 'QUIZ', 'WARM_UP']
 
 WORDS = words_of(__file__)
 
@@ -27,3 +27,5 @@ QUIZ = Quiz.of(
     silent_topic={'answer': silent_topic, 'explain': _explain_silent},
     stop_sec={'answer': stop_sec, 'explain': trip_is_missing},
 )
+
+GUESSES = guesses_of(WORDS)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
 from labkit.lessons.chat import greeter, hearer, polite, typed_text
-from labkit.lessons.chat.quiz import QUIZ, WARM_UP
+from labkit.lessons.chat.quiz import GUESSES, QUIZ, WARM_UP
 
 __all__ = ['LESSON']
 
@@ -20,6 +20,7 @@ LESSON = Lesson(
     ),
     exercises=[typed_text, hearer, greeter, polite],
     quizzes=[WARM_UP, QUIZ],
+    guesses=GUESSES,
     topics=['/shared_chatter', '/heard_next_door', *ROBOT_TOPICS],
     given={
         '/turtlebot': 'rosie-go',

@@ -5,7 +5,7 @@ from __future__ import annotations
 from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
 from labkit.lessons.interfaces_and_actions import asker, countdown, leg, stairs
-from labkit.lessons.interfaces_and_actions.quiz import QUIZ, WARM_UP
+from labkit.lessons.interfaces_and_actions.quiz import GUESSES, QUIZ, WARM_UP
 
 __all__ = ['LESSON']
 
@@ -20,6 +20,7 @@ LESSON = Lesson(
     ),
     exercises=[stairs, countdown, asker, leg],
     quizzes=[WARM_UP, QUIZ],
+    guesses=GUESSES,
     topics=[
         *ROBOT_TOPICS,
     ],

@@ -5,7 +5,7 @@ from __future__ import annotations
 from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
 from labkit.lessons.my_name_is import own_process, third_stage, two_stages, welcome
-from labkit.lessons.my_name_is.quiz import QUIZ, WARM_UP
+from labkit.lessons.my_name_is.quiz import GUESSES, QUIZ, WARM_UP
 
 __all__ = ['LESSON']
 
@@ -17,6 +17,7 @@ LESSON = Lesson(
     teaches='a chain of nodes, in one process and in several',
     exercises=[two_stages, own_process, third_stage, welcome],
     quizzes=[WARM_UP, QUIZ],
+    guesses=GUESSES,
     topics=['/celsius', '/fahrenheit', '/word', *ROBOT_TOPICS],
     given={'/observer': 'remove-stage-one', '/turtlebot': 'word', '/translator': 'word'},
 )

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Quiz, words_of
+from labkit.exercises import Quiz, guesses_of, words_of
 
-__all__ = ['QUIZ', 'WARM_UP']
+__all__ = ['GUESSES', 'QUIZ', 'WARM_UP']
 
 WORDS = words_of(__file__)
 
@@ -30,3 +30,5 @@ QUIZ = Quiz.of(
     'my_name_is',
     listeners_of_incomplete={'answer': _listeners_of_incomplete, 'explain': _nobody_listens},
 )
+
+GUESSES = guesses_of(WORDS)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from labkit.exercises import Lesson
 from labkit.lessons.names_and_launch import arguments, ending, faults, hearing, system
-from labkit.lessons.names_and_launch.quiz import QUIZ, WARM_UP
+from labkit.lessons.names_and_launch.quiz import GUESSES, QUIZ, WARM_UP
 
 __all__ = ['LESSON']
 
@@ -19,4 +19,5 @@ LESSON = Lesson(
     ),
     exercises=[system, hearing, faults, arguments, ending],
     quizzes=[WARM_UP, QUIZ],
+    guesses=GUESSES,
 )

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from labkit.exercises import Quiz, words_of
+from labkit.exercises import Quiz, guesses_of, words_of
 from labkit.lessons.odds.stadium import VISITORS
 
-__all__ = ['QUIZ', 'WARM_UP']
+__all__ = ['GUESSES', 'QUIZ', 'WARM_UP']
 
 WORDS = words_of(__file__)
 
@@ -31,3 +31,5 @@ QUIZ = Quiz.of(
     'odds',
     publishers_of_visitors={'answer': _publishers_of_visitors, 'explain': _stadium_is_closed},
 )
+
+GUESSES = guesses_of(WORDS)

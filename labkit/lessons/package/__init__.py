@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from labkit.exercises import Lesson
 from labkit.lessons.package import beacon, counter, listener, repair
-from labkit.lessons.package.quiz import QUIZ, WARM_UP
+from labkit.lessons.package.quiz import GUESSES, QUIZ, WARM_UP
 
 __all__ = ['LESSON']
 
@@ -19,5 +19,6 @@ LESSON = Lesson(
     ),
     exercises=[listener, repair, counter, beacon],
     quizzes=[WARM_UP, QUIZ],
+    guesses=GUESSES,
     topics=['/chatter', '/count', '/half', '/lit', '/news'],
 )

@@ -6,7 +6,7 @@ from labkit.exercises import Lesson
 from labkit.lessons.quality_of_service import door, silent_mast, site, watchdog
 from labkit.lessons.quality_of_service.lock import NODE as LOCK
 from labkit.lessons.quality_of_service.masts import NODES
-from labkit.lessons.quality_of_service.quiz import QUIZ, WARM_UP
+from labkit.lessons.quality_of_service.quiz import GUESSES, QUIZ, WARM_UP
 from labkit.lessons.quality_of_service.rover import NODE as ROVER
 from labkit.lessons.quality_of_service.rover import TOPICS
 
@@ -23,6 +23,7 @@ LESSON = Lesson(
     ),
     exercises=[site, watchdog, silent_mast, door],
     quizzes=[WARM_UP, QUIZ],
+    guesses=GUESSES,
     topics=['/frames', *TOPICS, '/numbers', '/fresh', '/kept', '/beat', '/range', '/display'],
     given={
         '/camera': 'slow',

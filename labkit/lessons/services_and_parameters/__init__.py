@@ -5,7 +5,7 @@ from __future__ import annotations
 from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
 from labkit.lessons.services_and_parameters import lamp, metronome, pilot, porter
-from labkit.lessons.services_and_parameters.quiz import QUIZ, WARM_UP
+from labkit.lessons.services_and_parameters.quiz import GUESSES, QUIZ, WARM_UP
 
 __all__ = ['LESSON']
 
@@ -20,6 +20,7 @@ LESSON = Lesson(
     ),
     exercises=[lamp, porter, metronome, pilot],
     quizzes=[WARM_UP, QUIZ],
+    guesses=GUESSES,
     topics=[
         *ROBOT_TOPICS,
         '/knock',

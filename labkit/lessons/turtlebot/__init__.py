@@ -5,7 +5,7 @@ from __future__ import annotations
 from labkit.exercises import Lesson
 from labkit.lessons._robot import ROBOT_TOPICS
 from labkit.lessons.turtlebot import bot, go_to, square, stop, wall
-from labkit.lessons.turtlebot.quiz import QUIZ, WARM_UP
+from labkit.lessons.turtlebot.quiz import GUESSES, QUIZ, WARM_UP
 
 __all__ = ['LESSON']
 
@@ -17,6 +17,7 @@ LESSON = Lesson(
     teaches='a robot on real topics: drive it, read its odometry, write its controller',
     exercises=[wall, bot, go_to, square, stop],
     quizzes=[WARM_UP, QUIZ],
+    guesses=GUESSES,
     topics=[
         *ROBOT_TOPICS,
     ],

@@ -80,12 +80,18 @@ def test_all_of_the_course_fits(store: ProgressStore) -> None:
             store.note_check(lesson, name, 'FAIL', mistake=longest.id)
             store.note_hint(lesson, name, 3)
             store.note_solution(lesson, name)
+        elif kind == 'guess':
+            store.note_guess(lesson, name, 1, told=False)
+            store.note_guess(lesson, name, 2, told=True)
         else:
             quiz, _, number = name.rpartition('.')
             store.note_answer(lesson, quiz, int(number), True, given='x' * 1000)
     text = text_of(store)
     assert len(text.encode()) < MOST_BYTES
-    assert read_sheet(text.encode(), catalogue()).entries.keys() == catalogue().keys()
+    entries = read_sheet(text.encode(), catalogue()).entries
+    assert entries.keys() == catalogue().keys()
+    guessed = {(e.before, e.after) for (_, kind, _), e in entries.items() if kind == 'guess'}
+    assert guessed == {(1, 2)}
 
 
 def test_a_progress_file_that_was_changed_by_hand_makes_no_bad_sheet() -> None:
