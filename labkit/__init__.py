@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from labkit.views.arena import arena
     from labkit.views.bag import bag
     from labkit.views.dock import dock
+    from labkit.views.frames import frames
     from labkit.views.graph import graph
     from labkit.views.image import image
     from labkit.views.monitor import monitor
@@ -62,6 +63,7 @@ __all__ = [
     'doctor',
     'domain',
     'export',
+    'frames',
     'graph',
     'image',
     'join',
@@ -99,6 +101,7 @@ _HOMES = {
     'doctor': 'labkit.checkup.report',
     'domain': 'labkit.sharing.domain',
     'export': 'labkit.packages.export',
+    'frames': 'labkit.views.frames',
     'graph': 'labkit.views.graph',
     'image': 'labkit.views.image',
     'join': 'labkit.sharing.joining',

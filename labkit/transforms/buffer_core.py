@@ -67,12 +67,12 @@ class BufferCore:
         rotation = normalized(matrix((turn.x, turn.y, turn.z, turn.w)))
         wrong = _problems(parent, child, translation, rotation, authority)
         for words in wrong:
-            get_logger('tf2').error(words)  # type: ignore[no-untyped-call]
+            self._refuse(words)
         if wrong:
             return
         sample = Sample(parent, translation, rotation)
         if not self.tree.insert(child, time, sample, authority=authority, is_static=is_static):
-            get_logger('tf2').warning(  # type: ignore[no-untyped-call]
+            self._warn(
                 f'TF_OLD_DATA ignoring data from the past for frame {child} at time '
                 f'{shown_time(time)} according to authority {authority}\nPossible reasons are '
                 'listed at http://wiki.ros.org/tf/Errors%20explained'
@@ -81,6 +81,11 @@ class BufferCore:
     def in_vain(self) -> dict[tuple[str, str], float]:
         """Return the pairs of frames between which callbacks look in vain: not noted here."""
         return {}
+    def _refuse(self, words: str) -> None:
+        get_logger('tf2').error(words)  # type: ignore[no-untyped-call]
+
+    def _warn(self, words: str) -> None:
+        get_logger('tf2').warning(words)  # type: ignore[no-untyped-call]
 
     # -- looking --------------------------------------------------------------------------------
 

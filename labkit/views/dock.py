@@ -32,8 +32,9 @@ def dock(*views: LivePage | GraphView, title: str = TITLE) -> None:
     panel is closed, they are there again.
 
     Args:
-        views: What `lab.arena()`, `lab.teleop()`, `lab.image()`, `lab.monitor()`, `lab.plot()` or
-            `lab.graph()` return. Without any: those that are live in this notebook.
+        views: What `lab.arena()`, `lab.teleop()`, `lab.image()`, `lab.monitor()`, `lab.plot()`,
+            `lab.graph()` or `lab.frames()` return. Without any: those that are live in this
+            notebook.
         title: The title of the panel. It takes the place of an earlier one with that title.
 
     Raises:

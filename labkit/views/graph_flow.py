@@ -9,7 +9,7 @@ from labkit.asking.traffic import Way
 from labkit.rosgraph.endpoints import Endpoint
 from labkit.rosgraph.snapshot import Graph, GraphTopic
 from labkit.silent.watch import seen_about
-from labkit.views.graph_picture import Line, Picture, Shape
+from labkit.views.svg_drawing import Drawing, Line, Shape
 
 __all__ = ['Flow', 'in_hertz', 'parts', 'way_of']
 
@@ -54,7 +54,7 @@ def way_of(line: Line) -> Way | None:
     return (line.kind, line.node, line.other) if line.kind in ('publishes', 'hears') else None
 
 
-def parts(data: Graph, picture: Picture, whole: Graph) -> dict[str, list[str]]:
+def parts(data: Graph, picture: Drawing, whole: Graph) -> dict[str, list[str]]:
     """Return the lines of details for each part of a picture, its name first.
 
     Args:

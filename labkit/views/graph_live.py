@@ -23,10 +23,11 @@ from labkit.silent.watch import watch
 from labkit.views.graph import bundle, names_of, not_drawn
 from labkit.views.graph_flow import Flow, in_hertz, parts, way_of
 from labkit.views.graph_fold import fold, folded, spaces_of
-from labkit.views.graph_picture import WIDTH, Picture
+from labkit.views.graph_picture import Picture
 from labkit.views.graph_words import description
 from labkit.views.live import helper
 from labkit.views.live_page import REFRESH_SEC, LivePage, Update
+from labkit.views.svg_drawing import WIDTH
 
 if TYPE_CHECKING:
     from rclpy.node import Node

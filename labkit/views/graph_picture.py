@@ -1,209 +1,80 @@
-"""The computation graph as an SVG, in the shapes and colours of the course's pictures.
+"""The computation graph as a drawing.
 
-The same drawing is stored with a lesson, printed, and live in JupyterLab. Nodes are round, topics
-are boxes, services are hexagons, and actions have double sides, so nothing depends on colour. It
-has its own background, because an image can't know whether the page is dark.
+Nodes are round, topics are boxes, services are hexagons, and actions have double sides.
 """
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
 
 from labkit.rosgraph.snapshot import Graph, GraphNode
-from labkit.views.graph_layout import HEADER, TO_WORDS, Arrow, Box, arrange
-from labkit.views.graph_words import (
-    description,
-    hearing,
-    in_lines,
-    safe,
-    text_width,
-    unheard,
+from labkit.views.graph_layout import Box
+from labkit.views.graph_words import description, hearing, in_lines, unheard
+from labkit.views.svg_drawing import (
+    IN_REASON,
+    IN_TYPE,
+    WIDTH,
+    Drawing,
+    Line,
+    Shape,
+    box_name,
+    labelled,
+    shape,
 )
 
-__all__ = ['WIDTH', 'Line', 'Picture', 'Shape']
+__all__ = ['Picture']
 
-# Width that fits a notebook page at full size, px.
-WIDTH = 900.0
-MARGIN = 24.0
-# Font sizes and line height, px.
-NAME, SMALL, ROW = 15, 13, 18
-# Characters in a line.
-IN_NAME, IN_TYPE, IN_REASON = 28, 36, 30
-# Least height of a box, and padding around its text, px.
-HEIGHT, PADDING = 48, 32
-# Height of a box per arrow, and its maximum, px.
-FOR_ARROW, HIGHEST = 14, 132
-# Half the size of a cross, px.
-CROSS = 11
+KINDS = ('node', 'topic', 'service', 'action')
 # At most this many unheard publishers are named.
 NAMED = 2
 
-INK, LINE, WRONG = '#1f2933', '#52606d', '#c62828'
-# A sign at a box that something is told about: fill, border, size in px.
-SIGN, SIGN_EDGE, SIGN_SIZE = '#ffc53d', '#7a4d00', 22
-# kind -> (fill, border)
-COLOURS = {
-    'node': ('#e3f0fb', '#1f6fb2'),
-    'topic': ('#fdf3d7', '#a8730a'),
-    'service': ('#e3f6e8', '#1b7f3b'),
-    'action': ('#f1eafa', '#6b3fa0'),
-}
-# Of the frame around a namespace; it is transparent.
-FRAME = '#9aa5b1'
 
-
-@dataclass(frozen=True, eq=False)
-class Shape:
-    """A box of the drawing.
-
-    Attributes:
-        kind: `'node'`, `'topic'`, `'service'` or `'action'`.
-        names: Its name, broken into lines.
-        small: Lines below the name.
-        own: Whether a node belongs to this process.
-        box: Its place.
-        wrong: Whether a fault is told about it, so that it has a sign.
-    """
-
-    kind: str
-    name: str
-    names: list[str]
-    small: list[str]
-    own: bool
-    box: Box
-    wrong: bool = False
-
-
-@dataclass(frozen=True, eq=False)
-class Line:
-    """An arrow of the drawing.
-
-    Attributes:
-        kind: `'publishes'`, `'hears'`, `'apart'`, `'service'` or `'action'`.
-        node: The node at one of its ends.
-        other: The topic, service or action at the other end.
-        words: Lines of its label.
-        arrow: Its route.
-    """
-
-    kind: str
-    node: str
-    other: str
-    words: list[str]
-    arrow: Arrow
-
-
-class Picture:
+class Picture(Drawing):
     """A drawing of a graph.
 
     Args:
         width: Width not to exceed if possible, px.
         wrong: Full names of the nodes and topics that a fault is told about.
-
-    Attributes:
-        shapes: Its boxes.
-        lines: Its arrows.
-        width: Its size, px; likewise `height`.
     """
 
     def __init__(self, data: Graph, width: float = WIDTH, wrong: Collection[str] = ()) -> None:
-        self._data = data
-        self.lines = list(_lines(data))
-        self.shapes = [*map(_of_node, data.nodes)]
+        shapes = [_of_node(node, node.name in wrong) for node in data.nodes]
         for kind, found in (
             ('topic', data.topics),
             ('service', data.services),
             ('action', data.actions),
         ):
-            self.shapes += [_shape(kind, each.name, each.types) for each in found]
-        self.shapes = [replace(shape, wrong=shape.name in wrong) for shape in self.shapes]
-        self._frames = _frames(data)
-        for shape in self.shapes:
-            shape.box.group = _frame_of(shape.name, self._frames)
-            ends = [
-                sum(getattr(line.arrow, end) == shape.box.name for line in self.lines)
-                for end in ('tail', 'head')
-            ]
-            shape.box.height = max(shape.box.height, min(12 + FOR_ARROW * max(ends), HIGHEST))
-        layout = arrange(
-            [shape.box for shape in self.shapes],
-            [line.arrow for line in self.lines],
-            width - 2 * MARGIN,
+            shapes += [_of_kind(kind, each.name, each.types, each.name in wrong) for each in found]
+        frames = _frames(data)
+        for one in shapes:
+            one.box.group = _frame_of(one.name, frames)
+        super().__init__(
+            shapes,
+            list(_lines(data)),
+            frames=frames,
+            title='Computation graph',
+            told=description(data),
+            width=width,
         )
-        self.width, self.height = layout.width + 2 * MARGIN, layout.height + 2 * MARGIN
-
-    def svg(self) -> str:
-        """Return the drawing as SVG, without scripts, the same for equal graphs."""
-        named = [(f'a{number}', line) for number, line in enumerate(self.lines)]
-        parts = [
-            *(_frame_svg(space, box) for space, box in self._frames.items()),
-            # Those with labels last: no line may cross a label.
-            *(_line_svg(*each) for each in sorted(named, key=lambda each: bool(each[1].words))),
-            *(_shape_svg(f'b{number}', shape) for number, shape in enumerate(self.shapes)),
-        ]
-        drawn = '\n'.join(parts)
-        told = safe(description(self._data))
-        # Several pictures on one page must not share ids.
-        name = f'graph-{zlib.crc32((drawn + told).encode()):08x}'
-        width, height = round(self.width), round(self.height)
-        return f"""\
-<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" \
-height="{height}" role="img" aria-labelledby="{name}-title {name}-desc" font-family="sans-serif" \
-font-size="{NAME}" fill="{INK}" style="max-width: 100%; height: auto">
-<title id="{name}-title">Computation graph</title>
-<desc id="{name}-desc">{told}</desc>
-<defs><marker id="{name}-tip" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="14" \
-markerHeight="14" markerUnits="userSpaceOnUse" orient="auto"><path class="tip" \
-d="M0 0 L10 5 L0 10 z" fill="{LINE}"/></marker></defs>
-<rect class="ground" x="0.5" y="0.5" width="{width - 1}" height="{height - 1}" rx="10" \
-fill="#ffffff" stroke="#9aa5b1"/>
-<g transform="translate({MARGIN:g} {MARGIN:g})">
-{drawn.replace('url(#tip)', f'url(#{name}-tip)')}
-</g>
-</svg>"""
 
 
-# -- from the graph -----------------------------------------------------------------------------
-
-
-def _of_node(node: GraphNode) -> Shape:
+def _of_node(node: GraphNode, wrong: bool) -> Shape:
     small = [] if node.own else ['another process']
     if node.count > 1:
         is_folded = node.name.endswith('/*')
         small += [f'{node.count} nodes' if is_folded else f'{node.count} nodes of this name']
-    return _shape('node', node.name, (), small=small, own=node.own)
+    return shape('node', node.name, small, own=node.own, wrong=wrong)
 
 
-def _shape(
-    kind: str,
-    name: str,
-    types: tuple[str, ...],
-    *,
-    small: Sequence[str] = (),
-    own: bool = True,
-) -> Shape:
-    names = in_lines(name, IN_NAME)
-    under = [*small, *(line for each in types for line in in_lines(each, IN_TYPE))]
-    wide = max(
-        *(text_width(line, NAME, bold=True) for line in names),
-        *(text_width(line, SMALL) for line in under or ['']),
-    )
-    high = ROW * (len(names) + len(under)) + 18
-    box = Box(_box_name(kind, name), wide + PADDING, max(HEIGHT, high))
-    return Shape(kind, name, names, under, own, box)
-
-
-def _box_name(kind: str, name: str) -> str:
-    """Return a unique name: a node and a topic may have the same one."""
-    return f'{kind} {name}'
+def _of_kind(kind: str, name: str, types: Sequence[str], wrong: bool) -> Shape:
+    under = [line for each in types for line in in_lines(each, IN_TYPE)]
+    return shape(kind, name, under, wrong=wrong)
 
 
 def _frames(data: Graph) -> dict[str, Box]:
     """Return a box for each namespace that has nodes, but for the root."""
     spaces = {node.name.rpartition('/')[0] for node in data.nodes}
-    return {space: Box(_box_name('namespace', space), 0, 0) for space in sorted(spaces - {''})}
+    return {space: Box(box_name('namespace', space), 0, 0) for space in sorted(spaces - {''})}
 
 
 def _frame_of(name: str, frames: dict[str, Box]) -> Box | None:
@@ -232,14 +103,11 @@ def _lines(data: Graph) -> list[Line]:
 def _line(
     kind: str, node: str, other: str, words: list[str] | None = None, *, serves: bool = False
 ) -> Line:
-    where = kind if kind in COLOURS else 'topic'
-    tail, head = _box_name('node', node), _box_name(where, other)
+    where = kind if kind in KINDS else 'topic'
+    tail, head = box_name('node', node), box_name(where, other)
     if kind in ('hears', 'apart') or serves:
         tail, head = head, tail
-    size = None
-    if words:
-        size = (max(text_width(line, SMALL) for line in words), ROW * len(words))
-    return Line(kind, node, other, words or [], Arrow(tail, head, size))
+    return labelled(kind, (node, other), (tail, head), words or [])
 
 
 def _why(whom: list[str], reason: str) -> list[str]:
@@ -247,106 +115,3 @@ def _why(whom: list[str], reason: str) -> list[str]:
     others = f' and {more} more' if more > 0 else ''
     first = f'does not hear {", ".join(whom[:NAMED])}{others}:'
     return [*in_lines(first, IN_REASON), *in_lines(reason, IN_REASON)]
-
-
-# -- as SVG -------------------------------------------------------------------------------------
-
-
-def _shape_svg(name: str, shape: Shape) -> str:
-    box = shape.box
-    fill, edge = COLOURS[shape.kind]
-    x, y, width, height = box.x - box.width / 2, box.y - box.height / 2, box.width, box.height
-    look = f'class="body" fill="{fill}" stroke="{edge}" stroke-width="2"'
-    if not shape.own:
-        look += ' stroke-dasharray="6 4"'
-    place = f'x="{x:.1f}" y="{y:.1f}" width="{width:.1f}" height="{height:.1f}"'
-    if shape.kind == 'node':
-        body = f'<rect {place} rx="24" {look}/>'
-    elif shape.kind == 'service':
-        left, right = x + 14, x + width - 14
-        body = (
-            f'<path d="M{left:.1f} {y:.1f} H{right:.1f} L{x + width:.1f} {box.y:.1f} '
-            f'L{right:.1f} {y + height:.1f} H{left:.1f} L{x:.1f} {box.y:.1f} z" {look}/>'
-        )
-    else:
-        body = f'<rect {place} rx="4" {look}/>'
-    if shape.kind == 'action':
-        for side in (x + 7, x + width - 7):
-            body += (
-                f'<path class="side" d="M{side:.1f} {y:.1f} V{y + height:.1f}" stroke="{edge}" '
-                'stroke-width="2"/>'
-            )
-    # The middle of a line of text is a third of the font size above its baseline.
-    down = box.y + 5 - ROW * (len(shape.names) + len(shape.small) - 1) / 2
-    text = ''
-    for number, line in enumerate([*shape.names, *shape.small]):
-        bold = number < len(shape.names)
-        style = 'font-weight="bold"' if bold else f'class="small" font-size="{SMALL}"'
-        text += (
-            f'<text x="{box.x:.1f}" y="{down + number * ROW:.1f}" text-anchor="middle" {style}>'
-            f'{safe(line)}</text>'
-        )
-    sign = _sign_svg(x + width - 10, y) if shape.wrong else ''
-    return f'<g class="{shape.kind}" data-part="{name}">{body}{text}{sign}</g>'
-
-
-def _sign_svg(x: float, y: float) -> str:
-    """Return a warning sign with its middle at a point."""
-    half = SIGN_SIZE / 2
-    return (
-        f'<path class="sign" d="M{x:.1f} {y - half:.1f} l{half:g} {SIGN_SIZE - 2:g} '
-        f'h-{SIGN_SIZE:g} z" fill="{SIGN}" stroke="{SIGN_EDGE}" stroke-width="1.5" '
-        'stroke-linejoin="round"/>'
-        f'<text x="{x:.1f}" y="{y + half - 4:.1f}" text-anchor="middle" font-weight="bold" '
-        f'font-size="{SMALL}" fill="{SIGN_EDGE}">!</text>'
-    )
-
-
-def _frame_svg(space: str, box: Box) -> str:
-    left, top = box.x - box.width / 2, box.y - box.height / 2
-    return (
-        f'<g class="namespace"><rect x="{left:.1f}" y="{top:.1f}" width="{box.width:.1f}" '
-        f'height="{box.height:.1f}" rx="12" fill="{FRAME}" fill-opacity="0.12" '
-        f'stroke="{FRAME}"/><text class="small" x="{left + 14:.1f}" y="{top + HEADER - 4:.1f}" '
-        f'font-size="{SMALL}">{safe(space)}</text></g>'
-    )
-
-
-def _line_svg(name: str, line: Line) -> str:
-    arrow = line.arrow
-    way = f'M{_at(arrow.begin)}' + ''.join(
-        f' {kind}{" ".join(_at(point) for point in points)}' for kind, points in arrow.steps
-    )
-    width = 4 if line.kind == 'action' else 2
-    dashes = ' stroke-dasharray="5 4"' if line.kind == 'apart' else ''
-    drawn = (
-        f'<path class="way" d="{way}" fill="none" stroke="{LINE}" stroke-width="{width}"{dashes} '
-        'marker-end="url(#tip)"/>'
-    )
-    if line.words:
-        drawn += _cross_svg(line)
-    return f'<g class="arrow {line.kind}" data-part="{name}">{drawn}</g>'
-
-
-def _cross_svg(line: Line) -> str:
-    (x, y), upright = line.arrow.mark, line.arrow.upright
-    a, b, c, d = x - CROSS, x + CROSS, y - CROSS, y + CROSS
-    drawn = (
-        f'<path class="cross" d="M{a:.1f} {c:.1f} L{b:.1f} {d:.1f} M{b:.1f} {c:.1f} '
-        f'L{a:.1f} {d:.1f}" stroke="{WRONG}" stroke-width="3" fill="none"/>'
-    )
-    if upright:
-        left, first, anchor = x + TO_WORDS, y + 5 - ROW * (len(line.words) - 1) / 2, 'start'
-    else:
-        left, first, anchor = x, y + TO_WORDS + 13, 'middle'
-    for number, words in enumerate(line.words):
-        drawn += (
-            f'<text class="small beside" x="{left:.1f}" y="{first + number * ROW:.1f}" '
-            f'text-anchor="{anchor}" font-size="{SMALL}" stroke="#ffffff" stroke-width="4" '
-            f'paint-order="stroke">{safe(words)}</text>'
-        )
-    return drawn
-
-
-def _at(point: tuple[float, float]) -> str:
-    return f'{point[0]:.1f} {point[1]:.1f}'

@@ -14,7 +14,13 @@ from labkit.background.compat import hear_while_cells_run
 __all__ = ['PageWidget', 'page_files', 'widget_class']
 
 # Files that several views share, loaded before the view's own.
-_SHARED = {'arena': ('map', 'occupancy_grid'), 'bag': ('map', 'chart'), 'plot': ('chart',)}
+_SHARED = {
+    'arena': ('map', 'occupancy_grid'),
+    'bag': ('map', 'chart'),
+    'frames': ('drawing',),
+    'graph': ('drawing',),
+    'plot': ('chart',),
+}
 
 
 def page_files(name: str) -> tuple[str, str]:

@@ -10,7 +10,8 @@ import pytest
 
 from labkit.rosgraph.snapshot import Graph
 from labkit.views.graph_layout import Arrow, Box
-from labkit.views.graph_picture import MARGIN, Picture
+from labkit.views.graph_picture import Picture
+from labkit.views.svg_drawing import MARGIN
 from tests.views.graphs import (
     ALL,
     CHAIN,
