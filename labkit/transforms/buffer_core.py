@@ -81,6 +81,7 @@ class BufferCore:
     def in_vain(self) -> dict[tuple[str, str], float]:
         """Return the pairs of frames between which callbacks look in vain: not noted here."""
         return {}
+
     def _refuse(self, words: str) -> None:
         get_logger('tf2').error(words)  # type: ignore[no-untyped-call]
 
