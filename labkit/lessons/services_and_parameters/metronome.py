@@ -63,7 +63,8 @@ def _clauses(words: Words, low: float, high: float) -> tuple[GraphClause, ...]:
 
 
 def _variant(*, low: float = LIMITS[0], high: float = LIMITS[1]) -> Exercise:
-    words = WORDS.of(low=low, high=high, off=OFF)
+    # As Python and YAML have a double: without a point it is an integer, and refused.
+    words = WORDS.of(low=str(low), high=str(high), off=OFF)
     return Exercise(
         words=words,
         publishes={TOPIC: EMPTY},
