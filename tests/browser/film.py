@@ -1,4 +1,4 @@
-"""Film the first five minutes of the course, in twenty seconds: the README's second picture.
+"""Film the first five minutes of the course, in twenty seconds: the README's picture that moves.
 
     python -m tests.browser.film --out docs/pictures/first_minutes.gif
 
