@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from labkit.exercises.exercise import Exercise
     from labkit.exercises.probe import Probe
 
-__all__ = ['definition', 'refuse_nameless', 'refuse_traces']
+__all__ = ['definition', 'refuse_nameless', 'refuse_traces', 'replaced_class']
 
 # Of a longer program the beginning is looked at, in characters.
 MAX_PROGRAM = 100_000
@@ -115,6 +115,8 @@ def _refuse_nodes(probe: Probe, exercise: Exercise, task: str) -> None:
     if not new:
         return
     name, what = next(iter(new.items()))
+    if name not in meant and settings.in_kernel():
+        _refuse_class(task)
     other = f', and {len(new) - 1} more' if len(new) > 1 else ''
     raise Fail(
         task,
@@ -222,6 +224,28 @@ def _classes() -> dict[str, type]:
         and thing not in used
         and not name.startswith('_')
     }
+
+
+def replaced_class(kind: str, topic: str) -> str:
+    """Return a class of the notebook that makes such an end, and whose nodes have all ended.
+
+    Args:
+        kind: `'publisher'` or `'subscription'`.
+        topic: Full name of the topic.
+
+    Returns:
+        Its name; `''` if there is none.
+    """
+    from labkit.background.nodes import existing_nodes, made
+
+    space, alive = vars(sys.modules['__main__']), {*map(type, existing_nodes())}
+    for each in made.kinds() if settings.in_kernel() else ():
+        if space.get(each.__name__) is not each or each in alive:
+            continue
+        written = definition(each)
+        if written is not None and _makes(ast.unparse(written), kind, topic):
+            return str(each.__name__)
+    return ''
 
 
 def _is_written(kind: type) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import linecache
 import re
+import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import FrameType
@@ -28,11 +29,14 @@ class Run:
         cell_id: Its id in the notebook, `''` where the front end does not send it.
         number: Which execution of the notebook it was, as in `In[12]`.
         error: What it raised, None if it ended well or was stopped.
+        stopped_in: The line of the learner's in which `__init__` of a node was stopped, `''` if
+            none was.
     """
 
     cell_id: str
     number: int
     error: BaseException | None
+    stopped_in: str = ''
 
 
 WORDS = words_of(__file__)
@@ -103,10 +107,11 @@ class LastCell:
     def _look(self, result: Any) -> None:
         if not self._asked:
             error = result.error_before_exec or result.error_in_exec
+            stopped_in = ''
             if isinstance(error, KeyboardInterrupt):
-                error = None
+                stopped_in, error = _stopped_in(error), None
             cell_id = getattr(result.info, 'cell_id', None) or ''
-            self.run = Run(cell_id, result.execution_count or 0, error)
+            self.run = Run(cell_id, result.execution_count or 0, error, stopped_in)
             self._runs[cell_id] = self.run
         self._asked = False
         for action in self._after:
@@ -114,6 +119,20 @@ class LastCell:
 
 
 last_cell = LastCell()
+
+
+def _stopped_in(error: KeyboardInterrupt) -> str:
+    """Return the line in which `__init__` of a class was stopped, `''` if none was."""
+    lines = [
+        (frame.f_code, number)
+        for frame, number in traceback.walk_tb(error.__traceback__)
+        if cell_name(frame.f_code.co_filename)
+    ]
+    if not any(code.co_name == '__init__' for code, _ in lines):
+        return ''
+    name, number = lines[-1][0].co_filename, lines[-1][1]
+    source = linecache.getline(name, number).strip()
+    return f'{cell_name(name)}, line {number}: {source}'
 
 
 def where_it_hangs(frame: FrameType | None) -> str:

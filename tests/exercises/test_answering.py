@@ -42,7 +42,7 @@ def evidence(heard: Timed, came: Timed) -> Evidence:
 
 def test_answer_to_what_came_before_the_check_is_no_extra_message() -> None:
     seen = evidence([(1.0, 5)], [(0.05, 652), (1.05, 6)])
-    assert CLAUSE.judge(seen).startswith('/postman has answered 1 messages')
+    assert CLAUSE.judge(seen).startswith('/postman has answered 1 message,')
 
 
 def test_answer_to_what_came_as_time_began_is_no_extra_message(lab: ModuleType) -> None:
@@ -155,7 +155,7 @@ def test_message_that_answers_nothing_is_one_too_many() -> None:
 def test_late_answer_to_what_was_sent_before_time_passed_is_no_extra_message() -> None:
     seen = evidence([(1.0, 5)], [(1.05, 6), (4.0, 652)])
     seen.asked = {'/odds': [{'data': 651}]}
-    assert CLAUSE.judge(seen).startswith('/postman has answered 1 messages')
+    assert CLAUSE.judge(seen).startswith('/postman has answered 1 message,')
 
 
 def test_stranger_who_has_not_found_the_node_takes_no_answer_of_a_test() -> None:
@@ -163,7 +163,7 @@ def test_stranger_who_has_not_found_the_node_takes_no_answer_of_a_test() -> None
     seen = evidence([(1.9, 5), (2.0, 5)], [(2.05, 6)])
     seen.life.sent = [Sent(2.0, '/odds', {'data': 5})]
     seen.life.strangers = {'/odds': 1}
-    assert CLAUSE.judge(seen).startswith('/postman has answered 1 messages')
+    assert CLAUSE.judge(seen).startswith('/postman has answered 1 message,')
     seen.life.samples['/evens'].clear()
     with pytest.raises(Fail, match='nothing on /evens'):
         CLAUSE.judge(seen)
@@ -336,7 +336,7 @@ def test_line_about_what_came_before_the_check_is_no_extra_line() -> None:
         'timers were looked at.'
     )
     seen = lines([(2.0, 'hello')], [(1.05, 'from nowhere'), (2.1, 'I heard hello')])
-    with pytest.raises(Fail, match='1 more lines'):
+    with pytest.raises(Fail, match='1 line more'):
         clause.judge(seen)
 
 

@@ -52,6 +52,17 @@ def test_each_slip_has_its_sentence(kernel: Any) -> None:
         assert '<tokenize>' not in told and 'ipykernel_' not in told, told
 
 
+def test_init_that_was_stopped_is_told_before_any_spin(kernel: Any) -> None:
+    kernel.run('import labkit as lab; lesson = lab.lesson("odds")')
+    timer = 'self.timer = self.create_timer(0.1, self.on_timer)'
+    waits = CLASS.replace(timer, 'while True:\n            raise KeyboardInterrupt')
+    kernel.run(waits, cell_id='ones-starter')
+    told = ' '.join(kernel.run('lesson.ones.check()').text.split())
+    assert told.startswith('FAIL: ones'), told
+    assert '__init__ had not returned when its cell was stopped (Cell In[' in told, told
+    assert 'line 9: raise KeyboardInterrupt' in told, told
+
+
 def test_what_is_logged_is_a_text(lab: ModuleType) -> None:
     with pytest.raises(TypeError) as caught:
         Node('teller').get_logger().info(5)  # type: ignore[arg-type]

@@ -193,7 +193,7 @@ def test_line_of_a_timer_from_before_the_check_is_seen(
         if not refused:
             assert clause.judge(evidence)
             return
-        with pytest.raises(Fail, match="1 more lines before the check: 'I am ready'"):
+        with pytest.raises(Fail, match="1 line more, before the check: 'I am ready'"):
             clause.judge(evidence)
 
 

@@ -138,7 +138,7 @@ def test_another_language_is_a_folder_of_the_same_files(
     assert (found.task, found.hints) == ('Zähle 1 dazu.', ['Zähle 1 zu {it}.', 'Publish.'])
     assert found.clause('answers') == 'each number plus 1'
     mistake = found.mistake('test-german/no')
-    assert (mistake.why, mistake.todo) == ('nein', 'Add {more:.1f}.')
+    assert (mistake.why, mistake.todo) == ('nein', 'Add {more}.')
     assert dict(mistake.change)['data + 1'] == 'abs(data) + 1'
     file = str(Path('lessons', 'evens.yaml'))
     assert lacking('de') == [

@@ -67,6 +67,7 @@ TALKS_BACK = WORDS.mistake('answers/talks-back')
 UNASKED = WORDS.mistake('answers/unasked')
 ITSELF = WORDS.mistake('answers/itself')
 MORE = WORDS.mistake('answers/more')
+SHARED = WORDS.mistake('answers/shared')
 
 
 @dataclass(frozen=True, eq=False)
@@ -516,7 +517,8 @@ class Answers(GraphClause):
             found = recognise(named, lambda each: each.answer(silent[-1]) in came)
             mistake = found if found is not None else NOT_DUE.of(value=show(silent[-1:]))
         elif _repeats(heard, left) >= MANY:
-            mistake = REPEATED
+            node = evidence.probe.node_object(evidence.subscription(self.inner, self.by).node)
+            mistake = REPEATED if node is None or any(node.timers) else SHARED
         elif answered:
             mistake = TWICE
         elif value in lately:

@@ -36,6 +36,7 @@ class Logs(GraphClause):
         line: What has to stand in the line, from the text; the text itself if None.
         mistakes: What a wrong node may log. The first one whose model, made from the text, stands
             in the line is the reason.
+        explain: Gets a text, and the line that came for it; returns the reason, or None.
         named: Returns the words of another clause, if that one says what is logged for a text, or,
             for None, that nothing else is.
     """
@@ -47,6 +48,7 @@ class Logs(GraphClause):
     field: str = 'data'
     line: Callable[[str], str] | None = None
     mistakes: Sequence[Mistake] = ()
+    explain: Callable[[str, str], Mistake | None] = lambda text, line: None
     named: Callable[[str | None], str] = lambda text: ''
 
     @property
@@ -162,9 +164,14 @@ class Logs(GraphClause):
         if not here:
             hanging()
         mistake = common_mistakes.LOGS_SOME if any(known) else common_mistakes.NOT_LOGGED
+        late = [t - sample.at for t, line in left if text and t > sample.at and text in line]
         if here:
-            found = recognise(self.mistakes, lambda each: _is_in(each, heard, here[0]))
+            found = self.explain(heard, here[0]) or recognise(
+                self.mistakes, lambda each: _is_in(each, heard, here[0])
+            )
             mistake = found or common_mistakes.LOGS_ELSE
+        elif late:
+            mistake = common_mistakes.LOGS_LATE.of(seconds=min(late))
         fail = Fail(
             f'{source.node} logs a line with {show([text])} when '
             f'{"that" if text == heard else show([heard])} comes on {self.topic}',

@@ -125,7 +125,9 @@ class Runs(GraphClause):
             raise Fail(
                 f'{name} runs: its callbacks are called when their time has come',
                 f'{name} is there, but it is not spun',
-                (common_mistakes.NOT_SPUN if here else common_mistakes.PROGRAM_WAITS).of(
-                    spin=spinning.how_to_spin(probe, name)
+                spinning.not_spun(
+                    probe,
+                    name,
+                    common_mistakes.NOT_SPUN if here else common_mistakes.PROGRAM_WAITS,
                 ),
             )

@@ -184,7 +184,10 @@ class Follows(GraphClause):
         except Fail as fail:
             expected = f'with {_show(values)}: {fail.expected}'
             if before is None or not self._is_as_before(evidence, before):
-                raise Fail(expected, fail.seen, fail.mistake, todo=fail.todo) from None
+                mistake = fail.mistake
+                if mistake is not None and mistake.id == common_mistakes.OTHER_RATE.id:
+                    mistake = common_mistakes.PARAMETER_RATE
+                raise Fail(expected, fail.seen, mistake, todo=fail.todo) from None
             raise Fail(
                 expected,
                 fail.seen,

@@ -23,6 +23,7 @@ from labkit.exercises.words import words_of
 
 if TYPE_CHECKING:
     from labkit.exercises.history import Note
+    from labkit.exercises.probe import Probe
     from labkit.rosgraph.endpoints import Endpoint
 
 __all__ = ['OFF', 'Publishes', 'in_words', 'often']
@@ -210,6 +211,7 @@ class Publishes(GraphClause):
         trouble = self._trouble(samples, life)
         if trouble is not None and probe.in_this_process(source):
             trouble = self._trouble(self._in_time(evidence, source.node, samples), life)
+            trouble = self._without_advice_taken(probe, source.node, trouble)
         if trouble is None:
             return Stream(self.topic, tuple(samples), True, life.seconds)
         if probe.in_this_process(source):
@@ -262,6 +264,20 @@ class Publishes(GraphClause):
             f'Too early to tell: the check has counted {many(sent, "message")} on {self.topic}, '
             'and waits for more, to see that they go on. Run this cell again.'
         )
+
+    def _without_advice_taken(
+        self, probe: Probe, name: str, trouble: Trouble | None
+    ) -> Trouble | None:
+        """Return what is wrong, with another reason if a timer has the right period already."""
+        node = probe.node_object(name)
+        if trouble is None or node is None:
+            return trouble
+        seen, mistake = trouble
+        periods = [timer.timer_period_ns * 1e-9 for timer in node.timers]
+        right = any(abs(period - self.period) < 1e-6 for period in periods)
+        if right and mistake.id in (common_mistakes.OTHER_RATE.id, common_mistakes.TOO_FEW.id):
+            return seen, common_mistakes.RIGHT_PERIOD.of(node=name)
+        return trouble
 
     def _refuse_burst(self, earlier: Sequence[Note]) -> None:
         """Raise Fail if a node has begun with more messages than it has had time for.

@@ -83,7 +83,8 @@ def node(probe: Probe, name: str) -> str:
         if not probe.attempt():
             raise NotAttempted
         names = probe.node_names()
-        other = nearest(name, names)
+        same = (each for each in names if _bare(each) == _bare(name))
+        other = next(same, '') or nearest(name, names)
         raise Fail(
             f'a node called {name}',
             f'{_list(names) or "no node"}',
@@ -235,6 +236,8 @@ def _refuse_best_effort(publisher: Endpoint) -> None:
 
 def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str) -> NoReturn:
     """Raise Fail with the likeliest reason why an endpoint is missing, or NotAttempted."""
+    from labkit.exercises.attempts import replaced_class
+
     nodes = probe.attempt()
     if not nodes or probe.process_is_starting():
         raise NotAttempted
@@ -270,10 +273,12 @@ def _explain_missing(probe: Probe, kind: str, topic: str, msg_type: str, by: str
             seen or f'{_list(names)}, and no node called {by}',
             _named(name_trouble(by, near) if near else None, common_mistakes.NO_NODE, by),
         )
+    ended = replaced_class(kind, topic)
+    mistake = common_mistakes.REPLACED.of(name=ended) if ended else common_mistakes.NOT_MADE
     raise Fail(
         expected,
         seen or f'{_list(sorted(nodes))} without any {kind}',
-        common_mistakes.NOT_MADE.of(kind=kind, msg_type=_bare(msg_type), topic=topic),
+        mistake.of(kind=kind, msg_type=_bare(msg_type), topic=topic),
     )
 
 
@@ -306,7 +311,9 @@ def name_trouble(wanted: str, seen: str) -> Mistake:
 def _named(found: Mistake | None, usual: Mistake, name: str) -> Mistake:
     """Return what is wrong with the name of a node, with what to do about it."""
     usual = usual.of(node=name, bare=_bare(name))
-    return usual if found is None else found.then(usual.step)
+    if found is None or found.id == common_mistakes.NAMESPACE.id:
+        return found or usual
+    return found.then(usual.step)
 
 
 def _bare(name: str) -> str:

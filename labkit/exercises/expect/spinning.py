@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from labkit.errors import LabError
 from labkit.exercises import common_mistakes
+from labkit.exercises.learner_errors import last_cell
 from labkit.exercises.mistakes import Mistake
 from labkit.exercises.probe import Probe
 from labkit.exercises.time.hanging import Hanging, find_hanging
@@ -14,7 +15,16 @@ from labkit.exercises.verdict import Fail
 if TYPE_CHECKING:
     from labkit.rosgraph.endpoints import Endpoint
 
-__all__ = ['earlier', 'hanging', 'how_to_spin', 'outlasts', 'overloaded', 'runs', 'spun']
+__all__ = [
+    'earlier',
+    'hanging',
+    'how_to_spin',
+    'not_spun',
+    'outlasts',
+    'overloaded',
+    'runs',
+    'spun',
+]
 
 
 def hanging(found: Hanging | None = None) -> None:
@@ -88,8 +98,20 @@ def spun(probe: Probe, endpoint: Endpoint) -> None:
         raise Fail(
             f'{endpoint.node} takes its messages and calls its callbacks',
             f'{endpoint.node} is there, but it is not spun',
-            common_mistakes.NOT_TAKEN.of(spin=how_to_spin(probe, endpoint.node)),
+            not_spun(probe, endpoint.node, common_mistakes.NOT_TAKEN),
         )
+
+
+def not_spun(probe: Probe, name: str, usual: Mistake) -> Mistake:
+    """Return why nobody spins a node: its cell was stopped before, or what usually is the case."""
+    from labkit.background.nodes import made
+
+    node = probe.node_object(name)
+    origin = made.origins.get(node) if node is not None else None
+    run = last_cell.run_of(origin.cell.cell_id) if origin is not None else None
+    if origin is None or run is None or run.number != origin.cell.number or not run.stopped_in:
+        return usual.of(spin=how_to_spin(probe, name))
+    return common_mistakes.INIT_WAITS.of(line=run.stopped_in)
 
 
 def how_to_spin(probe: Probe, name: str) -> str:

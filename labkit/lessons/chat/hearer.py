@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 
-from labkit.exercises import Exercise, anything, words_of
+from labkit.exercises import Exercise, Mistake, anything, words_of
 from labkit.exercises.clauses import WITHIN, Logs, Subscribes, Words
 from labkit.exercises.draws import KNOWN, draw_names, draw_texts, in_a_row
 
@@ -43,6 +43,21 @@ def _draw() -> list[str]:
     return in_a_row(said[:2], [*said[2:], *more])
 
 
+CUT_NAME = WORDS.mistake('hearer/cut-name')
+CHANGED_NAME = WORDS.mistake('hearer/changed-name')
+
+
+def _name_trouble(message: str, line: str) -> Mistake | None:
+    """Return what is wrong with the name in a line, if the rest of it is right."""
+    who, colon, text = message.partition(': ')
+    said, says, rest = line.partition(' says ')
+    if not colon or not says or rest != text or said == who or not said:
+        return None
+    if said in who:
+        return CUT_NAME.of(who=who, said=said)
+    return CHANGED_NAME.of(who=who, said=said) if said.lower() == who.lower() else None
+
+
 MISTAKES = (
     WORDS.mistake(
         'hearer/nobody', lambda message: None if ': ' in message else message.partition(':')[0]
@@ -67,6 +82,7 @@ exercise = Exercise(
             _draw,
             line=_line,
             mistakes=MISTAKES,
+            explain=_name_trouble,
             named=_named,
         ),
         NAMELESS,

@@ -37,6 +37,7 @@ ELSEWHERE = WORDS.mistake('typed-text/elsewhere')
 SILENT = WORDS.mistake('typed-text/silent')
 TWICE = WORDS.mistake('typed-text/twice')
 EMPTY_TOO = WORDS.mistake('typed-text/empty-too')
+OTHER_NAME = WORDS.mistake('typed-text/another-name')
 MISTAKES = (
     WORDS.mistake('typed-text/without-a-name', lambda line: line.strip() or None),
     WORDS.mistake('typed-text/with-the-blanks', lambda line: f'{WHO}: {line}'),
@@ -166,6 +167,9 @@ class _Says(GraphClause):
             assert found is not None  # the last one of them fits anything
             trouble = text_trouble(came[0], right)
             mistake = found if trouble is None or found is not MISTAKES[-1] else trouble
+            name, colon, text = came[0].partition(': ')
+            if colon and text == line.strip() and name != WHO:
+                mistake = OTHER_NAME.of(name=name)
         fail = Fail(wanted, seen, mistake)
         if mistake is not None and mistake.id == EMPTY_TOO.id:
             fail.clause = NOTHING.text

@@ -59,6 +59,12 @@ FIELDS = (
         ('linear: {x: 0.2}, angular: {z: 0.5}', 'angular: {x: 0.2}, linear: {z: 0.5}'),
     ),
     _told_by(
+        lambda used: used.get('linear.x', 0.0) < 0.0,
+        'backwards',
+        'A negative linear.x drives back. Leave the minus away.',
+        ('x: 0.2', 'x: -0.2'),
+    ),
+    _told_by(
         lambda used: used.get('angular.z', 0.0) < 0.0,
         'to-the-right',
         'A turn to the left is positive, to the right negative.',

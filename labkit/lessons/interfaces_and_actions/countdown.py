@@ -38,6 +38,7 @@ NO_FEEDBACK = WORDS.mistake('countdown/no-feedback', anything)
 ALL_AT_ONCE = WORDS.mistake('countdown/all-at-once')
 TOO_SLOW = WORDS.mistake('countdown/too-slow')
 EMPTY_RESULT = WORDS.mistake('countdown/an-empty-result')
+MORE_NUMBERS = WORDS.mistake('countdown/more-than-fed-back')
 LATE = WORDS.mistake('countdown/late')
 OTHERS = WORDS.mistake('countdown/other-numbers')
 
@@ -107,7 +108,8 @@ def _is_canceled(pursuit: Pursuit) -> None:
     if wanted[: len(seen)] == seen:
         if least <= len(seen) <= least + MORE:
             return
-        mistake = LATE if len(seen) > least else mistake
+        counted = len(pursuit.feedback) > least + MORE
+        mistake = (LATE if counted else MORE_NUMBERS) if len(seen) > least else mistake
     expected, shown = apart(wanted[:least], seen)
     raise Fail(
         f'result = {expected}, as in the feedback before it was canceled, or {MORE} number more',

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from labkit.exercises import Exercise, Fail, Mistake, Probe, Solution, expect, words_of
 from labkit.exercises.clauses import WITHIN, Answers, Evidence
@@ -18,6 +19,7 @@ WORDS = words_of(__file__)
 HEARS, SAYS = '/complete', '/greeting'
 ENDING = '. Nice to meet you.'
 
+IN_FRONT = WORDS.mistake('third-stage/in-front')
 GOES_PAST = WORDS.mistake('third-stage/goes-past')
 
 
@@ -40,7 +42,9 @@ class _AtTheEnd(Answers):
         super().find(evidence)
 
 
-def _trouble(text: str, came: Sequence[str]) -> Mistake | None:
+def _trouble(ending: str, text: str, came: Sequence[str]) -> Mistake | None:
+    if f'{ending}{text}' in came:
+        return IN_FRONT.of(ending=ending)
     return NOT_IN_IT if came and not any(text in other for other in came) else None
 
 
@@ -56,7 +60,7 @@ def _variant(*, ending: str = ENDING) -> Exercise:
                 words.clause('at-the-end'),
                 answer=lambda text: f'{text}{ending}',
                 mistakes=[NOTHING_ADDED],
-                explain=_trouble,
+                explain=partial(_trouble, ending),
             ),
         ),
         answer=Solution.of(words).changed((ENDING, ending)),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -38,6 +39,8 @@ ALL_IN_ONE = WORDS.mistake('welcome/all-in-one')
 SEVERAL_HOSTS = WORDS.mistake('welcome/several-hosts')
 APART = WORDS.mistake('welcome/apart')
 REPLACED = WORDS.mistake('welcome/replaced')
+DEAF = WORDS.mistake('welcome/deaf')
+NO_HOST = WORDS.mistake('welcome/no-host')
 TOO_MANY = WORDS.mistake('welcome/too-many')
 ELSEWHERE = WORDS.mistake('welcome/elsewhere')
 PASSED_ON = WORDS.mistake('welcome/passed-on', str)
@@ -54,6 +57,7 @@ class _ThreeNodes(GraphClause):
     def find(self, evidence: Evidence) -> None:
         """Look for the host by its topic, and for the guests by what it hears."""
         probe = evidence.probe
+        _refuse_no_host(probe)
         host = evidence.publisher(OUTER).node
         ends = [end.node for end in probe.publishers(OUTER)]
         if len(ends) > 1:
@@ -74,7 +78,9 @@ class _ThreeNodes(GraphClause):
                 'subscribes',
                 f'{", ".join(guests) or "none"}; {host} subscribes to '
                 f'{", ".join(sorted(hears)) or "nothing"}',
-                _not_two(len(guests), all_in_one=host in listeners),
+                _not_two(len(guests), all_in_one=host in listeners)
+                if len(guests) != 1 or not _others_speak(probe, guests[0], host, hears)
+                else DEAF.of(guest=guests[0]),
             )
         for end in said:
             evidence.ends['publisher', end.topic, end.node] = end
@@ -155,6 +161,25 @@ class _OneIsEnough(GraphClause):
             except Fail as fail:
                 raise Fail(fail.expected, fail.seen, WAITS) from None
         return ''
+
+
+def _refuse_no_host(probe: Probe) -> None:
+    """Raise Fail if guests are there, and no host: it is not that a topic has another name."""
+    if probe.publishers(OUTER):
+        return
+    listeners = {end.node for end in probe.subscriptions(INNER)}
+    said = [e for e in probe.all_publishers() if e.node in listeners and e.msg_type == STRING]
+    known = probe.scope.known
+    new = sorted({end.node for end in said if end.topic not in known})
+    heard = {end.topic for end in probe.all_subscriptions()}
+    if len(new) == 2 and not any(end.topic in heard for end in said if end.node in new):
+        raise Fail(f'a publisher on {OUTER}', f'{" and ".join(new)}, and no host', NO_HOST)
+
+
+def _others_speak(probe: Probe, guest: str, host: str, hears: Collection[str]) -> bool:
+    """Tell whether another node than the one guest says something to the host."""
+    ends = [end for end in probe.all_publishers() if end.topic in hears and end.msg_type == STRING]
+    return any(end.node not in (guest, host) for end in ends)
 
 
 def _is_here(probe: Probe, end: Endpoint) -> None:

@@ -13,6 +13,7 @@ from labkit.lessons.names_and_launch.launch_clauses import (
     Launches,
     OnlyNodes,
     RunsNode,
+    refuse_missing,
 )
 from labkit.lessons.names_and_launch.learner_launch import Launched, System
 from labkit.lessons.names_and_launch.system import DECLARED
@@ -43,6 +44,8 @@ NEVER = WORDS.mistake('arguments/never')
 def _talks_if_wanted(system: System) -> None:
     """Raise Fail if it is there and not wanted, or the other way round."""
     talker, wanted = f'/{system.values["robot"]}/talker', system.values['talk'] == 'true'
+    if wanted and any(node.endswith('/talker') for node in system.nodes):
+        refuse_missing(system, talker, space='$(var robot)')
     if (talker in system.nodes) != wanted:
         raise Fail(
             f'{talker if wanted else "no talker"} with talk:={system.values["talk"]}',

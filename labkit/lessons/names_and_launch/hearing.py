@@ -19,6 +19,8 @@ ABSOLUTE_FROM = WORDS.mistake('hearing/absolute-from')
 RELATIVE_TO = WORDS.mistake('hearing/relative-to')
 HEARS_BOTH = WORDS.mistake('hearing/both')
 HEARS_NOBODY = WORDS.mistake('hearing/nobody')
+OWN_TOPIC = WORDS.mistake('hearing/own-topic')
+TALKER_REMAPPED = WORDS.mistake('hearing/talker-remapped')
 
 
 def _hears_the_other(robot: str) -> Asked[System]:
@@ -32,8 +34,12 @@ def _hears_the_other(robot: str) -> Asked[System]:
         if heard == {other}:
             return
         if heard == {robot}:
-            given = [old for old, _ in system.remaps(f'/{robot}/listener')]
+            given = dict(system.remaps(f'/{robot}/listener'))
             mistake = ABSOLUTE_FROM if '/chatter' in given else HEARS_ITSELF
+            if f'/{robot}/chatter' in given.values():
+                mistake = OWN_TOPIC
+            elif system.remaps(f'/{robot}/talker'):
+                mistake = TALKER_REMAPPED
         elif heard:
             mistake = HEARS_BOTH
         else:

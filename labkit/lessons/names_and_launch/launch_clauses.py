@@ -18,7 +18,9 @@ _COMMON = {'/rosout', '/parameter_events'}
 FAULT = WORDS.mistake('launch/fault')
 NAMESPACE = WORDS.mistake('launch/namespace')
 NODE_NAME = WORDS.mistake('launch/node-name')
+NODE_CAPITALS = WORDS.mistake('launch/node-capitals')
 NO_NODE = WORDS.mistake('launch/no-node')
+NOTHING = WORDS.mistake('launch/nothing')
 TOO_MANY = WORDS.mistake('launch/too-many')
 TWICE = WORDS.mistake('launch/twice')
 NO_REMAP = WORDS.mistake('launch/no-remap')
@@ -26,6 +28,7 @@ NO_MATCH = WORDS.mistake('launch/no-match')
 ABSOLUTE = WORDS.mistake('launch/absolute')
 WITHIN = WORDS.mistake('launch/within')
 OTHER_TOPIC = WORDS.mistake('launch/other-topic')
+NO_TOPIC = WORDS.mistake('launch/no-topic')
 DEFAULT_VALUE = WORDS.mistake('launch/default-value')
 OTHER_VALUE = WORDS.mistake('launch/other-value')
 
@@ -59,7 +62,7 @@ class RunsNode(Clause[System]):
 
     def judge(self, system: System) -> str:
         """Raise Fail if it does not."""
-        refuse_missing(system, self.node.format_map(system.values))
+        refuse_missing(system, self.node.format_map(system.values), space=_space(self.node))
         return ''
 
 
@@ -76,7 +79,7 @@ class OnlyNodes(Names):
 
         wanted = [node.format_map(system.values) for node in self.nodes]
         for node in wanted:
-            refuse_missing(system, node, wanted)
+            refuse_missing(system, node)
         expected = f'{", ".join(wanted)}, and no others'
         more = [node for node in system.nodes if node not in wanted]
         if more:
@@ -90,14 +93,31 @@ class OnlyNodes(Names):
         return ''
 
 
-def refuse_missing(system: System, node: str, wanted: Sequence[str] = ()) -> None:
-    """Raise Fail if a node does not run; those that are wanted, too, are not meant to be it."""
+def _space(node: str) -> str:
+    """Return the namespace of a node as a file says it: `{robot}` is an argument there."""
+    space = node.rpartition('/')[0].lstrip('/') or '/'
+    return space.replace('{', '$(var ').replace('}', ')')
+
+
+def refuse_missing(system: System, node: str, *, space: str = '') -> None:
+    """Raise Fail if a node does not run; those that are wanted, too, are not meant to be it.
+
+    Args:
+        system: What runs.
+        node: Its full name.
+        space: Its namespace as the file is to say it, if that is not the one of its name.
+    """
     if node in system.nodes:
         return
-    space, _, base = node.rpartition('/')
-    others = [one for one in system.nodes if one not in wanted]
-    if any(one.endswith(f'/{base}') for one in others):
-        mistake = NAMESPACE.of(space=space.lstrip('/') or '/')
+    told, (space, _, base) = space or _space(node), node.rpartition('/')
+    others = [one for one in system.nodes if one not in system.wanted]
+    alike = next((one for one in others if one.lower() == node.lower()), '')
+    if not system.launch.processes:
+        mistake = NOTHING
+    elif alike:
+        mistake = NODE_CAPITALS.of(seen=alike, wanted=node)
+    elif any(one.endswith(f'/{base}') for one in others):
+        mistake = NAMESPACE.of(space=told)
     elif any(one.startswith(f'{space}/') for one in others):
         mistake = NODE_NAME.of(base=base)
     else:
@@ -123,20 +143,24 @@ class _HasTopic(Clause[System]):
 
     def _has(self, system: System, does: str, found: Mapping[str, set[str]]) -> None:
         node, topic = (name.format_map(system.values) for name in (self.node, self.topic))
-        refuse_missing(system, node)
+        refuse_missing(system, node, space=_space(self.node))
         seen = sorted(found.get(node, set()) - _COMMON)
         if topic in seen:
             return
         raise Fail(
             f'{node} {does} {topic}',
             f'it {does}: {", ".join(seen) or "no topic"}',
-            self._why(node, topic, seen, system.remaps(node)).of(code=self.code, topic=topic),
+            self._why(node, topic, seen, system.remaps(node)).of(
+                code=self.code, topic=topic, node=node, does=does.partition(' ')[0]
+            ),
         )
 
     def _why(
         self, node: str, topic: str, seen: Sequence[str], remaps: Sequence[tuple[str, str]]
     ) -> Mistake:
         space = node.rpartition('/')[0]
+        if not seen:
+            return NO_TOPIC
         if f'{space}/{self.code}' in seen:
             return NO_MATCH.of(given=remaps[0][0]) if remaps else NO_REMAP
         if f'/{topic.rpartition("/")[2]}' in seen:
@@ -181,7 +205,7 @@ class HasParameters(Clause[System]):
     def judge(self, system: System) -> str:
         """Raise Fail if one has another value."""
         node = self.node.format_map(system.values)
-        refuse_missing(system, node)
+        refuse_missing(system, node, space=_space(self.node))
         found = system.parameters(node)
         for name, value in self.values.items():
             wanted = float(f'{value}'.format_map(system.values))

@@ -55,6 +55,7 @@ class System:
         publishes: The topics on which each node publishes, by its full name.
         hears: The topics to which each node subscribes, likewise.
         programs: The program of each node, where its topics tell.
+        wanted: The full names of the nodes that the file has to start.
     """
 
     probe: Probe
@@ -65,6 +66,7 @@ class System:
     publishes: dict[str, set[str]] = field(default_factory=dict)
     hears: dict[str, set[str]] = field(default_factory=dict)
     programs: dict[str, Program] = field(default_factory=dict)
+    wanted: Sequence[str] = ()
 
     @property
     def nodes(self) -> list[str]:
@@ -279,7 +281,7 @@ def _launched(
     _refuse_running(wanted, before)
     cell = runtime.console.current_cell()
     launch = keep(Launch(f'launch of {path.name}', str(path), arguments, cell))
-    system = System(probe, path, arguments, launch)
+    system = System(probe, path, arguments, launch, wanted=wanted)
     try:
         with probe.uncounted():
             try:

@@ -25,6 +25,7 @@ SOON_SEC = 1.2
 _AGAIN = 'Run the cell of your node again before each check: it speaks once only.'
 NOT_HEARD = WORDS.mistake('say-once/not-heard')
 TOO_EARLY = WORDS.mistake('say-once/too-early')
+SAID_AGAIN = WORDS.mistake('say-once/said-again')
 GOES_ON = WORDS.mistake('say-once/goes-on')
 HEARD_BEFORE = WORDS.mistake('say-once/heard-before')
 
@@ -95,11 +96,13 @@ class _SilentBefore(GraphClause):
 def _silent_after(evidence: Evidence) -> None:
     """Judge what else came."""
     watch = _heard(evidence)
+    node = evidence.probe.node_object(evidence.publisher(TOPIC).node)
+    stopped = node is not None and all(timer.is_canceled() for timer in node.timers)
     if evidence.probe.wait(lambda: len(watch) > 1, SOON_SEC):
         raise Fail(
             f'one message on {TOPIC}, and no other',
             f'{many(len(watch), "message")}: {expect.show(watch.values("data"))}',
-            GOES_ON,
+            SAID_AGAIN if stopped else GOES_ON,
         )
 
 

@@ -38,6 +38,7 @@ WAY = (0.5, 1.0)
 TURNED = 0.15
 
 NOT_WRAPPED = WORDS.mistake('go_to/not-wrapped')
+FULL_TURN = WORDS.mistake('go_to/from-0-to-2-pi')
 WRONG_SIGN = WORDS.mistake('go_to/wrong-sign')
 EXCHANGED = WORDS.mistake('go_to/exchanged')
 MIXED = WORDS.mistake('go_to/mixed')
@@ -60,6 +61,9 @@ def _turns(drive: Drive) -> None:
         f'the goal, {bearing:.2f} rad'
     )
     difference = bearing - start.yaw
+    if _is_wrapped_to_full_turn(drive, goal):
+        mistake = FULL_TURN.of(error=error)
+        raise Fail(expected, 'it turns to the left, the long way round', mistake)
     if abs(difference) > math.pi:
         told = {'bearing': bearing, 'yaw': start.yaw, 'difference': difference}
         mistake = NOT_WRAPPED.of(**{name: f'{angle:.2f}' for name, angle in told.items()})
@@ -83,6 +87,18 @@ _ERRORS: Sequence[tuple[Mistake | None, Callable[[float, float], float]]] = (
     (MIXED, lambda bearing, yaw: math.degrees(bearing) - yaw),
     (MIXED, lambda bearing, yaw: math.degrees(bearing - yaw)),
 )
+
+
+def _is_wrapped_to_full_turn(drive: Drive, goal: Point) -> bool:
+    """Tell whether each command is in proportion to an angle from 0 to 2 * pi."""
+    ratios = []
+    for command in drive.moving:
+        pose = drive.seen(command.at)[-1]
+        angle = (math.atan2(goal[1] - pose.y, goal[0] - pose.x) - pose.yaw) % math.tau
+        if angle > TURNED:
+            ratios.append(command.w / angle)
+    mean = statistics.fmean(ratios) if ratios else 0.0
+    return len(ratios) > 3 and mean > 0 and statistics.pstdev(ratios) < 0.05 * mean
 
 
 def _why_away(drive: Drive, goal: Point) -> Mistake | None:

@@ -37,6 +37,7 @@ BACKWARDS = WORDS.mistake('wall/backwards')
 OTHER_SPEED = WORDS.mistake('wall/other-speed')
 TURNS = WORDS.mistake('wall/turns')
 SAID_ONCE = WORDS.mistake('wall/said-once')
+NAN_HIDES = WORDS.mistake('wall/nan-hides')
 TOO_NEAR = WORDS.mistake('wall/too-near')
 ZERO = WORDS.mistake('wall/zero')
 NO_NUMBER = WORDS.mistake('wall/no-number')
@@ -87,7 +88,10 @@ def _stops_in_time(drive: Drive) -> None:
     if near and stop > near[0] + LATE_SEC + drive.margin and (drive.ending or drive.cut):
         way = min(_ahead(scan) for at, scan in drive.scans if at <= stop)
         expected = f'it stops within {LATE_SEC} s after the first scan below {NEAR} m ahead'
-        raise Fail(expected, f'the wall came as near as {way:.2f} m', TOO_NEAR)
+        seen = next(scan for at, scan in drive.scans if at >= near[0])
+        hides = any(math.isnan(other) for other in (*seen[:AHEAD], *seen[-AHEAD:]))
+        mistake = NAN_HIDES if hides else TOO_NEAR
+        raise Fail(expected, f'the wall came as near as {way:.2f} m', mistake)
 
 
 def _drives_on(drive: Drive) -> None:

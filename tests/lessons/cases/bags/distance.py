@@ -14,7 +14,7 @@ ANSWERS = [
     ),
     wrong(
         'leaves out tiny steps',
-        'That is not the length of this step.',
+        'The sum is wrong from this step on.',
         ('step < 0.5', '0.001 < step < 0.5'),
     ),
     wrong('a limit that is too high', 'The jump was counted', ('step < 0.5', 'step < 1.0')),

@@ -32,7 +32,7 @@ ANSWERS = [
     ),
     wrong(
         'does not wait',
-        'Begin to record, then play to the end, then stop.',
+        'What comes after them is missing.',
         (', wait=True', ''),
         ('wait_for(30)', 'wait_for(3)'),
     ),

@@ -41,6 +41,24 @@ ANSWERS = [
         'The callback does not log it.',
         ('self.get_logger().info(', 'print('),
     ),
+    wrong(
+        'two seconds later',
+        'It was logged 2 s later.',
+        (
+            "        self.get_logger().info(f'{who} says {text}')\n",
+            '        self.lines.append((self.get_clock().now().nanoseconds, who, text))\n\n'
+            '    def on_timer(self):\n'
+            '        now = self.get_clock().now().nanoseconds\n'
+            '        while self.lines and now - self.lines[0][0] >= 2e9:\n'
+            '            _, who, text = self.lines.pop(0)\n'
+            "            self.get_logger().info(f'{who} says {text}')\n",
+        ),
+        (
+            "super().__init__('hearer')\n",
+            "super().__init__('hearer')\n        self.lines = []\n"
+            '        self.create_timer(0.1, self.on_timer)\n',
+        ),
+    ),
     wrong('another topic', 'subscribes to /hal'),
     wrong(
         'logs twice',

@@ -102,6 +102,15 @@ ANSWERS = [
             'canceled()\n                return Fibonacci.Result(sequence=numbers[:2])',
         ),
     ),
+    wrong(
+        'all numbers in the result of a canceled goal',
+        'The result holds numbers that no feedback had.',
+        (
+            'canceled()\n                return Fibonacci.Result(sequence=numbers)',
+            'canceled()\n                order = goal_handle.request.order\n'
+            '                return Fibonacci.Result(sequence=list(range(order, -1, -1)))',
+        ),
+    ),
     right('one second for each number', ('create_timer(0.05,', 'create_timer(1.0,')),
     right(
         'looks after it has counted',

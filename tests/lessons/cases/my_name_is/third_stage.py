@@ -99,6 +99,17 @@ ANSWERS = [
         ),
     ),
     wrong(
+        'says all that it has heard',
+        'no timer sends them',
+        ("super().__init__('polite')\n", "super().__init__('polite')\n        self.texts = []\n"),
+        (
+            "        self.publisher.publish(String(data=msg.data + '. Nice to meet you.'))\n",
+            "        self.texts.append(msg.data + '. Nice to meet you.')\n"
+            '        for text in self.texts:\n'
+            '            self.publisher.publish(String(data=text))\n',
+        ),
+    ),
+    wrong(
         'answers both stages',
         'What comes on /incomplete is answered, too.',
         (

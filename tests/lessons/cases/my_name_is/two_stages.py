@@ -48,6 +48,12 @@ ANSWERS = [
         ('from rclpy', 'from time import sleep\n\nfrom rclpy'),
     ),
     wrong(
+        'stage two takes a second',
+        'A timer of /opener has the period that is asked for.',
+        ('def on_text(self, msg):\n', 'def on_text(self, msg):\n        sleep(0.9)\n'),
+        ('from rclpy', 'from time import sleep\n\nfrom rclpy'),
+    ),
+    wrong(
         'publisher made in the callback',
         'makes a publisher again and again',
         ("        self.publisher = self.create_publisher(String, 'complete', 10)\n", ''),
@@ -57,6 +63,11 @@ ANSWERS = [
         ),
     ),
     wrong('one node for both', 'One node does the work of both stages'),
+    wrong(
+        'two nodes of one name',
+        'A node of Completer was made, and has ended.',
+        ("__init__('completer')", "__init__('opener')"),
+    ),
     wrong(
         'second stage missing',
         'create_subscription() for this topic has not been called',

@@ -137,6 +137,18 @@ ANSWERS = [
             "            self.publisher.publish(String(data='Hello'))\n\n\nclass Guest",
         ),
     ),
+    wrong(
+        'Bob hears Ada',
+        'Only /ada hears /incomplete.',
+        ('(self, node_name, first_name)', "(self, node_name, first_name, hears='incomplete')"),
+        ("String, 'incomplete', self", 'String, hears, self'),
+        ("'bob', 'Bob'", "'bob', 'Bob', 'names'"),
+    ),
+    wrong(
+        'the host is not started',
+        'nobody publishes on /welcome',
+        ('host = lab.spin(Host())\n', ''),
+    ),
     wrong('capital letter', 'Capital and small letters differ in names'),
     wrong('publishes twice', 'A message is answered more than once.'),
     wrong('another welcome', 'Capital and small letters differ', ("'. Welcome!'", "'. welcome!'")),

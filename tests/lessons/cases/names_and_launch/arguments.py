@@ -9,7 +9,7 @@ __all__ = ['ANSWERS']
 ANSWERS = [
     wrong(
         'the namespace is fixed',
-        'The name is right, and the namespace is not.',
+        'namespace="$(var robot)" in the node',
         ('"$(var robot)"', '"robot1"'),
     ),
     wrong('a default is missing', 'arguments.launch.xml, line 2', (' default="robot1"', '')),
@@ -36,7 +36,7 @@ ANSWERS = [
     wrong('an argument misspelt', 'arguments.launch.xml, line', ('$(var talk)', '$(var tallk)')),
     wrong(
         'the talker is outside',
-        'it is not there',
+        'namespace="$(var robot)"',
         (
             '    <node pkg="demo_nodes_py" exec="talker" if="$(var talk)"/>\n  </group>\n',
             '  </group>\n  <node pkg="demo_nodes_py" exec="talker" if="$(var talk)"/>\n',
@@ -73,6 +73,11 @@ ANSWERS = [
             '    <timer period="3600.0">\n'
             '      <node pkg="demo_nodes_py" exec="talker" if="$(var talk)"/>\n    </timer>\n',
         ),
+    ),
+    wrong(
+        'the condition is at the group',
+        'an if= or unless= keeps it away',
+        ('  <group>', '  <group if="$(var talk)">'),
     ),
     wrong(
         'at most 0.11',

@@ -37,7 +37,8 @@ ANSWERS = [
         'the node was given no remap',
         ('      <remap from="chatter" to="news"/>\n', ''),
     ),
-    wrong('the talker is gone', 'the node /amy/talker', (TALKER, '')),
+    wrong('the talker is gone', 'The file starts no node of such a name.', (TALKER, '')),
+    wrong('the turn of the code', 'as if the file gave it none', ('"-0.5"', '"0.5"')),
     wrong('the turn is turned', 'The file gives it another value.', ('"-0.5"', '"0.6"')),
     wrong(
         'one more',

@@ -67,10 +67,20 @@ ANSWERS = [
     ),
     wrong(
         'one twice',
-        'Two nodes have one name',
+        'Take one of them out.',
         ('</launch>', f'{DRIVER}</launch>'),
     ),
     wrong('no driver', 'The file starts no node of such a name.', (DRIVER, '')),
+    wrong(
+        'a capital letter in the name',
+        '/tower/Speaker is not /tower/speaker',
+        ('name="speaker"', 'name="Speaker"'),
+    ),
+    wrong(
+        'the listener for the speaker',
+        'it is another program than the one that is meant',
+        ('exec="talker"', 'exec="listener"'),
+    ),
     wrong(
         'in a folder beside',
         'Write your code in the cell above',

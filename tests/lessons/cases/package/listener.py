@@ -79,7 +79,7 @@ ANSWERS = [
     ),
     wrong(
         'the first 1000 letters',
-        'Some messages are logged as they came, and this one is not.',
+        'its line does not hold what the message says',
         ('{msg.data}', '{msg.data[:1000]}'),
     ),
     wrong(

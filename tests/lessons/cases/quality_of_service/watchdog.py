@@ -9,7 +9,7 @@ __all__ = ['ANSWERS']
 ANSWERS = [
     wrong(
         'no event callback',
-        'Nobody is told in time that heartbeats are missing',
+        'No alarm came in time',
         ('            event_callbacks=SubscriptionEventCallbacks(deadline=self.on_missed),\n', ''),
         ('from rclpy.event_handler import SubscriptionEventCallbacks\n', ''),
     ),
@@ -22,7 +22,7 @@ ANSWERS = [
     ),
     wrong(
         'a timer that nobody sets back',
-        'The alarm does not depend on whether heartbeats come',
+        'There was an alarm while heartbeats came',
         ('        self.timer.reset()\n', '        pass\n'),
         of='a timer that each beat sets back',
     ),
@@ -58,7 +58,7 @@ ANSWERS = [
     ),
     wrong(
         'one alarm only',
-        'Something is used up by an alarm',
+        'There was an alarm before, and none this time',
         (
             "        super().__init__('watchdog')\n",
             "        super().__init__('watchdog')\n        self.told = False\n",
@@ -71,7 +71,7 @@ ANSWERS = [
     ),
     wrong(
         'three alarms and no more',
-        'Something is used up by an alarm',
+        'There was an alarm before, and none this time',
         (
             "        super().__init__('watchdog')\n",
             "        super().__init__('watchdog')\n        self.alarms = 0\n",
@@ -84,7 +84,7 @@ ANSWERS = [
     ),
     wrong(
         'at three silences and no more',
-        'Something is used up by an alarm',
+        'There was an alarm before, and none this time',
         (
             "        super().__init__('watchdog')\n",
             "        super().__init__('watchdog')\n        self.silences, self.told = 0, False\n",
@@ -122,7 +122,7 @@ ANSWERS = [
     ),
     wrong(
         'a false alarm at each twelfth beat',
-        'The alarm does not depend on whether heartbeats come',
+        'There was an alarm while heartbeats came',
         (
             "        super().__init__('watchdog')\n",
             "        super().__init__('watchdog')\n        self.beats = 0\n",
@@ -157,7 +157,7 @@ ANSWERS = [
     ),
     wrong(
         'no event callback, in a process of its own',
-        'Nobody is told in time that heartbeats are missing',
+        'No alarm came in time',
         ('            event_callbacks=SubscriptionEventCallbacks(deadline=self.on_missed),\n', ''),
         ('from rclpy.event_handler import SubscriptionEventCallbacks\n', ''),
         run='process',

@@ -15,6 +15,20 @@ ANSWERS = [
     ),
     wrong('publishes twice', 'one message on /door, and no other'),
     wrong(
+        'a thread says it again',
+        'Does a thread or a loop publish?',
+        (
+            "            self.publisher.publish(String(data='The door is open'))\n"
+            '            self.timer.cancel()\n',
+            '            self.timer.cancel()\n'
+            '            threading.Thread(target=self.say, daemon=True).start()\n\n'
+            '    def say(self):\n        for _ in range(2):\n'
+            "            self.publisher.publish(String(data='The door is open'))\n"
+            '            time.sleep(3)\n',
+        ),
+        ('from rclpy', 'import threading\nimport time\n\nfrom rclpy'),
+    ),
+    wrong(
         'says it again after a while',
         'Nothing stops the node after its first message.',
         (

@@ -46,6 +46,16 @@ ANSWERS = [
         (WRITE, "xml.write_text(xml.read_text() + ''.join(lines[1:]))\n"),
     ),
     wrong(
+        'an import is taken out',
+        'does not import geometry_msgs any more',
+        (", 'geometry_msgs'", ''),
+        (
+            BUILD,
+            "code = xml.parent / 'courier_lab/courier.py'\n"
+            "code.write_text(code.read_text().replace('geometry_msgs.msg', 'nowhere'))\n" + BUILD,
+        ),
+    ),
+    wrong(
         'the code is empty',
         'The entry in setup.py names a function that the module does not have.',
         (BUILD, "(xml.parent / 'courier_lab/courier.py').write_text('')\n" + BUILD),
