@@ -165,7 +165,7 @@ class _OneIsEnough(GraphClause):
 
 def _refuse_no_host(probe: Probe) -> None:
     """Raise Fail if guests are there, and no host: it is not that a topic has another name."""
-    if probe.publishers(OUTER):
+    if probe.wait_to_appear(lambda: probe.publishers(OUTER)):
         return
     listeners = {end.node for end in probe.subscriptions(INNER)}
     said = [e for e in probe.all_publishers() if e.node in listeners and e.msg_type == STRING]

@@ -140,9 +140,21 @@ ANSWERS = [
     wrong(
         'Bob hears Ada',
         'Only /ada hears /incomplete.',
-        ('(self, node_name, first_name)', "(self, node_name, first_name, hears='incomplete')"),
+        (
+            '(self, node_name, first_name)',
+            "(self, node_name, first_name, hears='incomplete', says='names')",
+        ),
         ("String, 'incomplete', self", 'String, hears, self'),
-        ("'bob', 'Bob'", "'bob', 'Bob', 'names'"),
+        (
+            "self.publisher = self.create_publisher(String, 'names', 10)",
+            'self.publisher = self.create_publisher(String, says, 10)',
+        ),
+        ("'bob', 'Bob'", "'bob', 'Bob', 'names', 'more'"),
+        (
+            "super().__init__('host')\n",
+            "super().__init__('host')\n"
+            "        self.create_subscription(String, 'more', self.on_text, 10)\n",
+        ),
     ),
     wrong(
         'the host is not started',
