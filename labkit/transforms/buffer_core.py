@@ -6,6 +6,7 @@ ros2/geometry2, branch jazzy, tf2/src/buffer_core.cpp and tf2_py/src/tf2_py.cpp.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from geometry_msgs.msg import TransformStamped
@@ -58,10 +59,11 @@ class BufferCore:
         self.tree.clear()
 
     def _set(self, transform: TransformStamped, authority: str, *, is_static: bool) -> None:
-        parent = transform.header.frame_id.removeprefix('/')
+        header, place = transform.header, transform.transform
+        parent = header.frame_id.removeprefix('/')
         child = transform.child_frame_id.removeprefix('/')
-        time = _ns(transform.header.stamp)
-        shift, turn = transform.transform.translation, transform.transform.rotation
+        time = header.stamp.sec * NANOSECONDS + header.stamp.nanosec
+        shift, turn = place.translation, place.rotation
         translation = (shift.x, shift.y, shift.z)
         # tf2 makes a matrix of it, which is that of the quaternion with length 1.
         rotation = normalized(matrix((turn.x, turn.y, turn.z, turn.w)))
@@ -228,6 +230,10 @@ def _problems(
     parent: str, child: str, translation: Vector, rotation: Quaternion, authority: str
 ) -> list[str]:
     """Return why a transform can't be used, in the words of tf2."""
+    squares = sum([part * part for part in rotation])
+    is_unit = abs(squares - 1.0) < TOLERANCE
+    if is_unit and child != parent and child and parent and not math.isnan(sum(translation)):
+        return []  # as nearly all are
     found = []
     if child == parent:
         found.append(
@@ -252,7 +258,7 @@ def _problems(
             f'TF_NAN_INPUT: Ignoring transform for child_frame_id "{child}" from authority '
             f'"{authority}" because of a nan value in the transform ({shift}) ({turn})'
         )
-    if not abs(sum(part * part for part in rotation) - 1.0) < TOLERANCE:
+    if not is_unit:
         turn = ' '.join(f'{part:f}' for part in rotation)
         found.append(
             f'TF_DENORMALIZED_QUATERNION: Ignoring transform for child_frame_id "{child}" from '

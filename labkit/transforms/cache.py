@@ -5,7 +5,7 @@ The rules are those of tf2: ros2/geometry2, tf2/src/cache.cpp and static_cache.c
 
 from __future__ import annotations
 
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from typing import NamedTuple
 
 from labkit.transforms.exceptions import ExtrapolationException
@@ -146,13 +146,19 @@ class MovingCache:
         Returns:
             Whether it is new enough to be remembered.
         """
-        times, earliest = self._times, self.latest - self._limit
-        gone = 0
-        while gone < len(times) and times[gone] < earliest:
-            gone += 1
-        del times[:gone], self._samples[:gone]
-        if times and time < earliest:
-            return False
+        times = self._times
+        if times:
+            newest = times[-1]
+            earliest = newest - self._limit
+            if times[0] < earliest:
+                gone = bisect_left(times, earliest)
+                del times[:gone], self._samples[:gone]
+            if time < earliest:
+                return False
+            if time > newest:  # as nearly all are
+                times.append(time)
+                self._samples.append(sample)
+                return True
         place = same = bisect_right(times, time)
         while same and times[same - 1] == time:
             same -= 1

@@ -93,8 +93,12 @@ def rotated(q: Quaternion, v: Vector) -> Vector:
 
 def slerp(a: Quaternion, b: Quaternion, ratio: float) -> Quaternion:
     """Return the rotation between two at a constant angular speed, the shorter way round."""
-    dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
-    length = math.sqrt(sum(part * part for part in a) * sum(part * part for part in b))
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
+    dot = ax * bx + ay * by + az * bz + aw * bw
+    length = math.sqrt(
+        (ax * ax + ay * ay + az * az + aw * aw) * (bx * bx + by * by + bz * bz + bw * bw)
+    )
     sign = -1.0 if dot < 0 else 1.0
     theta = math.acos(min(sign * dot / length, 1.0))
     if theta == 0.0:
@@ -103,10 +107,10 @@ def slerp(a: Quaternion, b: Quaternion, ratio: float) -> Quaternion:
     of_a = math.sin((1.0 - ratio) * theta)
     of_b = sign * math.sin(ratio * theta)
     return (
-        (a[0] * of_a + b[0] * of_b) * inverse_sine,
-        (a[1] * of_a + b[1] * of_b) * inverse_sine,
-        (a[2] * of_a + b[2] * of_b) * inverse_sine,
-        (a[3] * of_a + b[3] * of_b) * inverse_sine,
+        (ax * of_a + bx * of_b) * inverse_sine,
+        (ay * of_a + by * of_b) * inverse_sine,
+        (az * of_a + bz * of_b) * inverse_sine,
+        (aw * of_a + bw * of_b) * inverse_sine,
     )
 
 

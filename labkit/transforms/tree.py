@@ -12,7 +12,7 @@ from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
 from operator import mul
-from typing import Any, cast
+from typing import cast
 
 from labkit.transforms.cache import NANOSECONDS, MovingCache, Sample, StaticCache, shown_time
 from labkit.transforms.exceptions import (
@@ -231,7 +231,8 @@ class Tree:
                 frame = step[1]
                 if frame == target:
                     return _earliest(ways)
-                self._refuse_loop(ways)
+                if len(ways) > MAX_DEPTH:
+                    raise self._loop()
             parents = [parent for _, parent in ways]
             others: list[tuple[int, str]] = []
             frame = target
@@ -242,7 +243,8 @@ class Tree:
                     return _earliest([*others, *ways[: parents.index(frame) + 1]])
                 if frame == source:
                     return _earliest(others)
-                self._refuse_loop(others)
+                if len(others) > MAX_DEPTH:
+                    raise self._loop()
         raise _unconnected(target, source)
 
     def _latest(self, frame: str) -> tuple[int, str]:
@@ -270,7 +272,8 @@ class Tree:
                 return time, up, []
             up.append(sample)
             top = sample.parent
-            self._refuse_loop(up)
+            if len(up) > MAX_DEPTH:
+                raise self._loop()
         down: list[Sample] = []
         frame = target
         while frame != top and (cache := self._frames[frame]) is not None:
@@ -282,7 +285,8 @@ class Tree:
                 return time, [], down
             down.append(sample)
             frame = sample.parent
-            self._refuse_loop(down)
+            if len(down) > MAX_DEPTH:
+                raise self._loop()
         if frame == top:
             return time, up, down
         if late is not None:
@@ -293,11 +297,10 @@ class Tree:
         for argument, frame in frames.items():
             self.check_frame(f'lookupTransform argument {argument}', frame)
 
-    def _refuse_loop(self, way: list[Any]) -> None:
-        if len(way) > MAX_DEPTH:
-            raise LookupException(
-                f'The tf tree is invalid because it contains a loop.\n{self.as_string()}\n'
-            )
+    def _loop(self) -> LookupException:
+        return LookupException(
+            f'The tf tree is invalid because it contains a loop.\n{self.as_string()}\n'
+        )
 
     # -- all of it ------------------------------------------------------------------------------
 
