@@ -358,7 +358,9 @@ def topics() -> str:
         for action in graph.actions
         if len(action.servers) > 1
     ]
-    _raise_for_faults('names', 'types', 'qos', 'messages', besides=[*apart, *twice], said=said)
+    _raise_for_faults(
+        'names', 'types', 'qos', 'messages', 'frames', besides=[*apart, *twice], said=said
+    )
     actions = [f'{action.name} (action)' for action in graph.actions]
     names = [*(topic.name for topic in graph.topics), *actions]
     return first_few(names) if names else 'none'

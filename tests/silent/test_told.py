@@ -161,6 +161,42 @@ def test_it_is_told_wherever_one_looks(notebook: Kernel) -> None:
     assert 'All is well' in notebook.run('print(lab.doctor())').text
 
 
+TWO_PARENTS = """
+from geometry_msgs.msg import TransformStamped
+from tf2_ros import TransformBroadcaster
+
+def tell(name, parent):
+    node = lab.spin(Node(name))
+    broadcaster = TransformBroadcaster(node)
+    def tick():
+        t = TransformStamped(child_frame_id='base')
+        t.header.frame_id, t.header.stamp = parent, node.get_clock().now().to_msg()
+        broadcaster.sendTransform(t)
+    node.create_timer(0.02, tick)
+    return node
+
+"""
+
+
+@pytest.mark.timeout(900)  # a first build of the type
+def test_a_frame_with_two_parents_is_told_wherever_one_looks(notebook: Kernel) -> None:
+    notebook.run(TWO_PARENTS, timeout=800)
+    notebook.run("a = tell('a', 'odom')")
+    made = notebook.run("b = tell('b', 'map')")
+    notebook.run('from labkit.silent.watch import watch\nlab.wait_until(lambda: watch.seen)')
+    said = '/a says that base is in odom, and /b that it is in map'
+    view = "from labkit.views.monitor import _faults\nprint(*_faults('/tf', hears=True))"
+    for code in ('a', 'b', 'print(lab.graph(live=False))', 'print(lab.doctor())', view):
+        assert said in ' '.join(notebook.run(code).text.split()), code
+    assert said in notebook.run('%ros2 doctor').text
+    # The two nodes and the topic have a sign.
+    signs = "lab.graph(live=False)._repr_mimebundle_()['image/svg+xml'].count('class=\"sign\"')"
+    assert notebook.run(f'print({signs})').text.strip() == '3'
+    assert not notebook.run('lab.remove(b)').error
+    notebook.wait_until_gone(made.msg_id, said)
+    assert 'All is well' in notebook.run('print(lab.doctor())').text
+
+
 @pytest.mark.slow('waits in real time')
 def test_the_doctor_hides_no_fault_behind_another(notebook: Kernel) -> None:
     made = notebook.run("""
