@@ -188,16 +188,16 @@ class ExecuteLocal(Action):
         self.process_details: dict[str, Any] | None = None
         self._executed = False
 
-    def execute(self, context: Context) -> None:
+    def execute(self, context: Context) -> Sequence[Action] | None:
         start = self._start(context, *self.words(context))
         missing = self._missing(start)
         if context.rehearsing:
-            return
+            return None
         if missing is not None:
             # As with the real one, the others start all the same.
             context.say('ERROR', start.name, f'can not be started: {at(missing, self.place)}')
             context.emit_event_sync(events.ExecutionComplete(self))
-            return
+            return None
         if self._executed:
             raise LaunchError(f'{start.name} was started already: one action, one process.')
         self._executed = True
@@ -211,6 +211,7 @@ class ExecuteLocal(Action):
             'env': start.environment,
         }
         context.starts.append(start)
+        return None
 
     def words(self, context: Context) -> tuple[str, list[str | Written]]:
         """Return the name of the program, and the words of its command."""

@@ -26,6 +26,8 @@ from labkit.launching import events
 from labkit.launching.event_handlers import BaseEventHandler, entities_in
 from labkit.launching.execute import Start, Written
 from labkit.launching.launch_files import load
+from labkit.launching.lifecycle import ChangeState
+from labkit.launching.managed_nodes import ManagedNodes
 from labkit.launching.model import Action, Context, Timer, raised
 
 __all__ = ['Service']
@@ -118,6 +120,8 @@ class Service:
             loop.add_signal_handler(signal.SIGCHLD, self._reap)
             for number in (signal.SIGINT, *_ENDING):
                 stack.callback(signal.signal, number, signal.signal(number, self._on_signal))
+            self._managed = ManagedNodes(loop, self._say, self._on_transition, self._runs)
+            stack.callback(self._managed.close)
             stack.callback(self._kill_all)
             loop.call_soon(self._begin)
             loop.run_until_complete(self._done)
@@ -162,6 +166,9 @@ class Service:
         """Do what the context was asked for: start programs and timers, let events happen."""
         context = self._context
         while context.starts or context.timers or context.events:
+            for action in context.managed:  # before its program starts
+                self._managed.watch(action)
+            context.managed.clear()
             starts, context.starts = context.starts, []
             timers, context.timers = context.timers, []
             happened, context.events = context.events, []
@@ -227,6 +234,17 @@ class Service:
             self._shut_down(due_to_sigint=event.due_to_sigint)
         elif isinstance(event, events.ProcessTargetedEvent):
             self._ask(event)
+        elif isinstance(event, ChangeState):
+            self._managed.change(event)
+
+    def _on_transition(self, event: events.Event) -> None:
+        self._emit(event)
+        self._settle()
+        self._end_if_idle()
+
+    def _runs(self, action: Action) -> bool:
+        """Return whether the program of an action runs, or is about to."""
+        return any(program.start.action is action for program in self._programs)
 
     def _ask(self, event: events.ProcessTargetedEvent) -> None:
         """Send a signal to the programs that an event is about."""
@@ -256,7 +274,7 @@ class Service:
         except OSError as error:
             self._programs.remove(program)
             self._say('ERROR', start.name, f'can not be started: {error.strerror}')
-            self._emit(events.ExecutionComplete(start.action))
+            self._over(start.action)
             return
         self._say('INFO', start.name, f'process started with pid [{popen.pid}]')
         if self._debug or start.log_command:
@@ -339,7 +357,12 @@ class Service:
             self._programs.append(program)
             program.timers = [self._loop.call_later(start.respawn_delay, self._again, program)]
             return
-        self._emit(events.ExecutionComplete(start.action))
+        self._over(start.action)
+
+    def _over(self, action: Action) -> None:
+        """Note that nothing more comes of an action that starts a program."""
+        self._managed.abandon('' if self._shutting_down else 'the end of its program', action)
+        self._emit(events.ExecutionComplete(action))
 
     def _again(self, program: _Program) -> None:
         self._start(program)
@@ -372,6 +395,7 @@ class Service:
 
     def _shut_down(self, *, due_to_sigint: bool) -> None:
         """Interrupt all programs, and be stricter with those that do not end."""
+        self._managed.abandon('shutdown')
         for handle, timer in list(self._timers.items()):
             if timer.cancel_on_shutdown:
                 handle.cancel()

@@ -6,6 +6,7 @@ import contextlib
 import shlex
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 from xml.parsers import expat
 
@@ -14,6 +15,7 @@ import yaml
 from labkit.errors import LabError, did_you_mean, nearest
 from labkit.launching import actions, execute, ros_actions
 from labkit.launching.conditions import IfCondition, UnlessCondition
+from labkit.launching.lifecycle import LifecycleNode
 from labkit.launching.model import (
     Action,
     LaunchDescription,
@@ -36,6 +38,7 @@ _PARTS = {
     'include': ('arg', 'let'),
     'executable': ('env',),
     'node': ('env', 'param', 'remap'),
+    'lifecycle_node': ('env', 'param', 'remap'),
     'param': ('param',),
     'reset': ('keep',),
 }
@@ -43,11 +46,12 @@ _PARTS = {
 _WITH_ACTIONS = ('launch', 'group', 'ros_timer', 'timer')
 # Numbers that YAML has to write with a point.
 _FLOATS = ('period', 'respawn_delay', 'sigkill_timeout', 'sigterm_timeout')
+_COMPONENTS = 'nodes that share a process are in C++; take a <node> for each, if it has a program'
 _REFUSED = {
-    'node_container': 'nodes that share a process are programs in C++',
-    'composable_node': 'nodes that share a process are programs in C++',
-    'load_composable_node': 'nodes that share a process are programs in C++',
-    'lifecycle_node': 'nodes with a life cycle are not part of this course',
+    'node_container': _COMPONENTS,
+    'composable_node': _COMPONENTS,
+    'composable_lifecycle_node': _COMPONENTS,
+    'load_composable_node': _COMPONENTS,
     'set_use_sim_time': 'take <set_parameter name="use_sim_time" value="true"/>',
     # ROS 1.
     'rosparam': 'that is ROS 1; ROS 2 writes <param from="file.yaml"/> in a <node>',
@@ -400,7 +404,7 @@ def _executable(entity: Entity) -> Action:
     )
 
 
-def _node(entity: Entity) -> Action:
+def _node(entity: Entity, make: Callable[..., Action] = ros_actions.Node) -> Action:
     if 'type' in entity.values and 'exec' not in entity.values:
         raise entity.wrong(
             "has 'type', which is ROS 1", todo='ROS 2 writes the program as exec="..."'
@@ -410,12 +414,18 @@ def _node(entity: Entity) -> Action:
     for argument, name in (('arguments', 'args'), ('ros_arguments', 'ros_args')):
         if entity.has(name):
             options[argument] = _command_line(entity.pieces(name))
-    return ros_actions.Node(
+    return make(
         executable=entity.pieces('exec'),
         parameters=[_parameter(part) for part in entity.named('param')],
         remappings=_pairs(entity, 'remap', 'from', 'to'),
         **options,
     )
+
+
+def _lifecycle_node(entity: Entity) -> Action:
+    for name in ('name', 'namespace'):
+        entity.text(name)
+    return _node(entity, partial(LifecycleNode, **_settings(entity, 'autostart')))
 
 
 def _parameter(entity: Entity) -> Any:
@@ -535,6 +545,7 @@ _BUILDERS: dict[str, Callable[[Entity], Action]] = {
     'group': _group,
     'include': _include,
     'let': _with(actions.SetLaunchConfiguration, 'name', 'value'),
+    'lifecycle_node': _lifecycle_node,
     'log': lambda entity: actions.LogInfo(msg=entity.pieces('message')),
     'node': _node,
     'push_ros_namespace': _with(ros_actions.PushROSNamespace, 'namespace'),

@@ -276,6 +276,7 @@ class Context:
         argv: Arguments of the command line.
         files: The launch files that are being visited, the innermost last.
         starts: Processes that are to be started.
+        managed: Actions of nodes with a life cycle, whose states are to be listened to.
         uses_sim_time: Whether timers of ROS are to go by the time of a simulator.
         rehearsing: Whether nothing is to happen, because only faults are looked for.
         say: Shows a line: level, who, text.
@@ -288,6 +289,7 @@ class Context:
     noninteractive: bool = False
     files: list[str] = field(default_factory=list)
     starts: list[Any] = field(default_factory=list)
+    managed: list[Any] = field(default_factory=list)
     timers: list[Timer] = field(default_factory=list)
     handlers: list[BaseEventHandler] = field(default_factory=list)
     events: list[Any] = field(default_factory=list)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
-from typing import Any, ClassVar, NoReturn
+from typing import Any, NoReturn
 
 from labkit.launching import (
     actions,
@@ -13,6 +13,7 @@ from labkit.launching import (
     event_handlers,
     events,
     execute,
+    lifecycle,
     model,
     ros_actions,
     substitutions,
@@ -26,8 +27,9 @@ __all__ = ['FOLLOWS', 'contents']
 FOLLOWS = {'launch': '3.4.10', 'launch_ros': '0.26.10'}
 """The versions of the real packages that launch files are read as by."""
 
-_COMPONENTS = 'nodes that share a process are programs in C++'
-_LIFECYCLE = 'nodes with a life cycle are not part of this course'
+_COMPONENTS = (
+    'nodes that share a process are in C++; take a Node for each, if its package has a program'
+)
 _RUNS = 'this launch runs already; take IncludeLaunchDescription to launch another file with it'
 _GRAPH = 'a launch has no node of its own; take an rclpy node, in a program'
 _INSIDE = 'it is a part of the real launch that has no counterpart here'
@@ -60,7 +62,13 @@ LEFT_OUT: dict[str, dict[str, str]] = {
     ),
     'launch_ros.utilities': dict.fromkeys(
         (
-            *('PluginException', 'add_node_name', 'evaluate_parameters', 'get_node_name_count'),
+            *(
+                'LifecycleEventManager',
+                'PluginException',
+                'add_node_name',
+                'evaluate_parameters',
+                'get_node_name_count',
+            ),
             *('normalize_parameters', 'normalize_remap_rule', 'normalize_remap_rules'),
             'to_parameters_list',
         ),
@@ -75,18 +83,10 @@ ACTIONS_LEFT_OUT: dict[str, dict[str, str]] = {
     'launch_ros.actions': {
         'ComposableNodeContainer': _COMPONENTS,
         'LoadComposableNodes': _COMPONENTS,
-        'LifecycleNode': _LIFECYCLE,
-        'LifecycleTransition': _LIFECYCLE,
     },
 }
-# What only these actions, or their events, are made of.
-_OF_THEM = {
-    'launch_ros.descriptions': ('ComposableNode',),
-    'launch_ros.event_handlers': ('OnStateTransition',),
-    'launch_ros.events': ('matches_node_name',),
-    'launch_ros.events.lifecycle': ('ChangeState', 'StateTransition', 'matches_node_name'),
-    'launch_ros.events.matchers': ('matches_node_name',),
-}
+# What only these actions are made of.
+PARTS_LEFT_OUT = {'launch_ros.descriptions': ('ComposableLifecycleNode', 'ComposableNode')}
 # Modules in which the real packages keep what a module above them has too.
 _WITHIN = {
     'launch': """action condition event event_handler invalid_launch_file_error launch_context
@@ -130,13 +130,14 @@ _WITHIN = {
     'launch_ros.actions': """composable_node_container lifecycle_node lifecycle_transition
         load_composable_nodes node push_ros_namespace ros_timer set_parameter
         set_parameters_from_file set_remap set_ros_log_dir set_use_sim_time""",
-    'launch_ros.descriptions': 'composable_node',
+    'launch_ros.descriptions': 'composable_lifecycle_node composable_node',
     'launch_ros.event_handlers': 'on_state_transition',
     'launch_ros.events.lifecycle': 'change_state lifecycle_node_matchers state_transition',
     'launch_ros.events.matchers': 'matches_node_name',
     'launch_ros.substitutions': 'executable_in_package find_package parameter',
-    'launch_ros.utilities': """evaluate_parameters namespace_utils normalize_parameters
-        normalize_remap_rule plugin_support to_parameters_list track_node_names""",
+    'launch_ros.utilities': """evaluate_parameters lifecycle_event_manager namespace_utils
+        normalize_parameters normalize_remap_rule plugin_support to_parameters_list
+        track_node_names""",
     'launch_xml': 'entity parser',
     'launch_xml.launch_description_sources': 'xml_launch_description_source',
     'launch_yaml': 'entity parser',
@@ -201,7 +202,7 @@ def contents() -> dict[str, dict[str, Any]]:
     for module, names in ACTIONS_LEFT_OUT.items():
         for name, why in names.items():
             found[module][name] = type(name, (_ActionLeftOut,), {'why': why})
-    for module, parts in _OF_THEM.items():
+    for module, parts in PARTS_LEFT_OUT.items():
         for name in parts:
             found.setdefault(module, {})[name] = type(name, (_OfThem,), {})
     found['launch_ros.parameter_descriptions'] = found['launch_ros.descriptions']
@@ -238,14 +239,11 @@ class _ActionLeftOut(model.Action):
         raise LaunchError(f'{name} is not supported here: {self.why}.')
 
 
-class _OfThem(events.Event, event_handlers.BaseEventHandler):
+class _OfThem:
     """The basis of what such actions are made of: nothing ever comes of it."""
 
-    valid_states: ClassVar[dict[int, str]] = {}
-    valid_transitions: ClassVar[dict[int, str]] = {}
-
     def __init__(self, *args: Any, **options: Any) -> None:
-        super().__init__(matcher=lambda event: False)
+        pass
 
 
 def _of_launch() -> dict[str, dict[str, Any]]:
@@ -317,6 +315,8 @@ def _functions(module: ModuleType) -> dict[str, Callable[..., Any]]:
 def _of_launch_ros() -> dict[str, dict[str, Any]]:
     ros = {
         **_public(ros_actions),
+        'LifecycleNode': lifecycle.LifecycleNode,
+        'LifecycleTransition': lifecycle.LifecycleTransition,
         'PushRosNamespace': ros_actions.PushROSNamespace,
         'RosTimer': ros_actions.ROSTimer,
     }
@@ -326,12 +326,16 @@ def _of_launch_ros() -> dict[str, dict[str, Any]]:
         'Parameter',
     )
     joined = ros_actions.joined_namespace
+    by_name = {'matches_node_name': lifecycle.matches_node_name}
+    happened = {'ChangeState': lifecycle.ChangeState, 'StateTransition': lifecycle.StateTransition}
     return {
         'launch_ros': {},
         'launch_ros.actions': ros,
         'launch_ros.descriptions': values,
-        'launch_ros.event_handlers': {},
-        'launch_ros.events': {},
+        'launch_ros.event_handlers': {'OnStateTransition': lifecycle.OnStateTransition},
+        'launch_ros.events': by_name,
+        'launch_ros.events.lifecycle': {**by_name, **happened},
+        'launch_ros.events.matchers': by_name,
         'launch_ros.substitutions': {name: vars(substitutions)[name] for name in of_ros},
         'launch_ros.utilities': {
             'is_namespace_absolute': lambda ns: ns.startswith('/'),

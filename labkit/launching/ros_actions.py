@@ -247,7 +247,7 @@ class Node(ExecuteProcess):
             for word, text in shown.items()
             if text is not None
         ]
-        return f'Node({", ".join(words)})'
+        return f'{type(self).__name__}({", ".join(words)})'
 
 
 def joined_namespace(base: str | None, namespace: str | None) -> str | None:

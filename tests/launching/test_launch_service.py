@@ -4,106 +4,18 @@ Texts, exit codes and the order of signals are those of the real `launch`.
 """
 
 import os
-import re
 import signal
 import subprocess
 import sys
-import uuid
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from tests.conftest import TIMEOUT_SEC
-from tests.launching.stage import write
+from tests.launching.stage import Launched, write
 
 # Each start and Ctrl-C at another moment; 200 of them take minutes.
 COUNT = int(os.environ.get('LABKIT_TEST_LAUNCHES', '8'))
-# Among the flags in /proc/PID/stat (include/linux/sched.h).
-PF_EXITING = 0x4
-
-
-class Launched:
-    """`ros2 launch` of a file, in a process of its own."""
-
-    def __init__(self, path: Path, *arguments: str) -> None:
-        self.mark = f'LAB_MARK={uuid.uuid4().hex}'
-        name, _, value = self.mark.partition('=')
-        self.lines: list[str] = []
-        self.popen = subprocess.Popen(
-            [sys.executable, '-m', 'labkit.ros2', 'launch', str(path), *arguments],
-            env={
-                **os.environ,
-                **{'ROS_DOMAIN_ID': '0', 'ROS_LOG_DIR': str(path.parent / 'log'), name: value},
-            },
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-        )
-
-    def wait_for(self, text: str) -> None:
-        """Read until a line has a text."""
-        assert self.popen.stdout is not None
-        for line in self.popen.stdout:
-            self.lines.append(line.rstrip())
-            if text in line:
-                return
-        pytest.fail(f'{text!r} never came:\n' + self.shown)
-
-    def send(self, number: int) -> None:
-        self.popen.send_signal(number)
-
-    def end(self) -> int:
-        """Wait for its end, and return its exit code."""
-        rest, _ = self.popen.communicate(timeout=TIMEOUT_SEC)
-        self.lines += rest.splitlines()
-        return self.popen.returncode
-
-    @property
-    def shown(self) -> str:
-        """All lines but that of the log, with P for process ids."""
-        lines = [line for line in self.lines if 'All log files' not in line]
-        return re.sub(r'pid (\[?)\d+', r'pid \1P', '\n'.join(lines))
-
-    @property
-    def left(self) -> list[int]:
-        """Processes that it has started and that are still there."""
-        found = []
-        for folder in Path('/proc').glob('[0-9]*'):
-            try:
-                if self.mark.encode() in (folder / 'environ').read_bytes() and _lives(folder):
-                    found.append(int(folder.name))
-            except OSError:
-                continue
-        return found
-
-
-def _lives(process: Path) -> bool:
-    """Return whether a process runs on: one that was killed may wait for a processor to end."""
-    words = (process / 'stat').read_text(errors='replace').rpartition(')')[2].split()
-    if words[0] in 'ZX' or int(words[6]) & PF_EXITING:
-        return False
-    status = (process / 'status').read_text(errors='replace')
-    pending = re.findall(r'^(?:SigPnd|ShdPnd):\s*(\w+)', status, re.MULTILINE)
-    return not any(int(mask, 16) & 1 << (signal.SIGKILL - 1) for mask in pending)
-
-
-@pytest.fixture
-def launch(tmp_path: Path) -> Iterator[type]:
-    started: list[Launched] = []
-
-    class Here(Launched):
-        def __init__(self, text: str, *arguments: str) -> None:
-            name = 'main.launch.xml' if text.startswith('<') else 'main.launch.py'
-            super().__init__(write(tmp_path, {name: text}), *arguments)
-            started.append(self)
-
-    yield Here
-    for one in started:
-        one.popen.kill()
-        one.popen.communicate()
-        assert one.left == [], one.shown
 
 
 def xml(*body: str) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from labkit.errors import LabError
-from labkit.launching.modules import LEFT_OUT, contents
+from labkit.launching.modules import ACTIONS_LEFT_OUT, LEFT_OUT, PARTS_LEFT_OUT, contents
 from tests.launching.stage import visit, write
 
 REAL = Path(__file__).with_name('real_modules.txt').read_text(encoding='utf-8')
@@ -31,6 +31,15 @@ def test_what_is_left_out_can_be_imported_and_says_so_when_it_is_used(tmp_path: 
             assert str(caught.value) == f'{path}, line 3: {name} is not supported here: {why}.'
 
 
+def test_the_page_lists_what_is_left_out():
+    page = (Path(__file__).parents[2] / 'docs' / 'launch.md').read_text(encoding='utf-8')
+    left_out = page.partition('\nLeft out:')[2].partition('\n## ')[0]
+    for names in (LEFT_OUT, ACTIONS_LEFT_OUT, PARTS_LEFT_OUT):
+        assert [
+            name for part in names.values() for name in part if f'`{name}`' not in left_out
+        ] == []
+
+
 CONDITIONAL = """\
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, EmitEvent, GroupAction, RegisterEventHandler
@@ -45,7 +54,7 @@ from lifecycle_msgs.msg import Transition
 
 
 def generate_launch_description():
-    node = LifecycleNode(package='a', executable='b', name='c', namespace='')
+    node = LifecycleNode(executable='true', name='c', namespace='')
     return LaunchDescription([
         DeclareLaunchArgument('composed', default_value='false'),
         DeclareLaunchArgument('managed', default_value='false'),
@@ -67,19 +76,18 @@ def test_an_action_that_is_left_out_may_stand_below_a_condition(tmp_path: Path):
     assert visit(path).started == []
     with pytest.raises(LabError, match=r'line 19: LoadComposableNodes is not supported here: '):
         visit(path, 'composed:=true')
-    with pytest.raises(LabError, match=r'line 14: LifecycleNode is not supported here: '):
-        visit(path, 'managed:=true')
+    assert [name for name, *_ in visit(path, 'managed:=true').started] == ['true-1']
 
 
 def test_a_left_out_class_may_be_named_for_the_types(tmp_path: Path):
     text = (
         'from launch import LaunchDescription\n'
         'from launch.actions import LogInfo\n'
-        'from launch_ros.actions import LifecycleNode\n\n\n'
-        'class Mine(LifecycleNode):\n    pass\n\n\n'
+        'from launch_ros.actions import LoadComposableNodes\n\n\n'
+        'class Mine(LoadComposableNodes):\n    pass\n\n\n'
         'def generate_launch_description() -> LaunchDescription:\n'
         '    log = LogInfo(msg="here")\n'
-        '    assert not isinstance(log, LifecycleNode)\n'
+        '    assert not isinstance(log, LoadComposableNodes)\n'
         '    return LaunchDescription([log])\n'
     )
     assert visit(write(tmp_path, {'main.launch.py': text})).said == ['here']
