@@ -47,6 +47,14 @@ class Glide {
   }
 }
 
+// The other way than onMap.
+function fromMap(base, [x, y, yaw]) {
+  if (!base) return [x, y, yaw];
+  const [c, s] = [Math.cos(base[2]), Math.sin(base[2])];
+  const [right, up] = [x - base[0], y - base[1]];
+  return [c * right + s * up, c * up - s * right, yaw - base[2]];
+}
+
 // The map with what was seen before, and the part of it that is looked at.
 class ArenaMap extends Map2d {
   constructor(canvas, occupancy) {
@@ -64,19 +72,32 @@ class ArenaMap extends Map2d {
   show(scene, cursor) {
     if (this.followed) {
       this.view ??= { scale: this.scale * FOLLOWED };
-      [this.view.x, this.view.y] = this.followed.pose;
+      [this.view.x, this.view.y] = onMap(this.followed.base, this.followed.pose);
     }
-    this.draw(scene, cursor, this.view);
+    this.draw({ ...scene, shown: this.shown(scene) }, cursor, this.view);
   }
 
-  below() {
+  // What has to be seen, where another frame than theirs stands still. It never shrinks either.
+  shown({ robots, shown }) {
+    const [left, bottom, right, top] = shown;
+    const base = robots[0]?.base;
+    if (!base) return shown;
+    this.around ??= emptyScene().shown;
+    for (const corner of [[left, bottom], [left, top], [right, bottom], [right, top]]) {
+      const [x, y] = onMap(base, corner);
+      include(this.around, x, y);
+    }
+    return this.around;
+  }
+
+  below({ robots }) {
     const { context } = this;
     // What nobody has seen is a little darker, or lighter, than the floor.
     context.fillStyle = this.colour('ink');
     context.globalAlpha = 0.05;
     context.fillRect(0, 0, this.width, this.height);
     context.globalAlpha = 1;
-    this.occupancy.draw(this);
+    this.turned(robots[0]?.base, () => this.occupancy.draw(this));
   }
 
   // Nearer by a factor; the place under (px, py) stays there.
@@ -217,6 +238,8 @@ function render({ model, el }) {
   const map = new ArenaMap(canvas, occupancy);
   const scene = emptyScene();
   const { robots } = scene;
+  // Where the frame of each one's odometry is on the map.
+  const bases = {};
   // Each joins when it has told where it is.
   const robotNamed = (name) => {
     const known = robots.find((robot) => robot.name === name);
@@ -237,8 +260,11 @@ function render({ model, el }) {
     const robot = robotNamed(name);
     take(scene.shown, robot, news, news.eye ? buffers.shift() : null);
     if (news.pose) robot.glide.take(news.pose);
-    if (news.eye) occupancy.take(robot.scan, robot.eye);
-    if (news.met) occupancy.meet(numbers(buffers.shift()));
+    // In another frame, robots have no floor in common.
+    const walls = !scene.fixed || robot === robots[0];
+    if (news.eye && walls) occupancy.take(robot.scan, robot.eye);
+    const met = news.met ? numbers(buffers.shift()) : [];
+    if (walls) occupancy.meet(met);
     if (news.bump) {
       bumpedAt = performance.now();
       canvas.dataset.bumps = Number(canvas.dataset.bumps ?? 0) + 1;
@@ -250,14 +276,16 @@ function render({ model, el }) {
     frame ||= requestAnimationFrame((now) => {
       frame = 0;
       if (!canvas.clientWidth) return;
-      for (const robot of robots) robot.pose = robot.glide.at(now);
+      // What tf2 turns stays where tf2 has it.
+      const glides = !scene.axes;
+      for (const robot of robots) robot.pose = glides ? robot.glide.at(now) : robot.glide.pose;
       map.show(scene, cursor);
       buttons.show();
       canvas.style.cursor = map.aims ? 'crosshair' : '';
       // For those who look on from outside, such as tests.
       canvas.dataset.view = map.view
         ? ['x', 'y', 'scale'].map((part) => map.view[part].toFixed(2)).join(' ') : 'all';
-      if (robots.some(({ glide }) => glide.moves(now))) redraw();
+      if (glides && robots.some(({ glide }) => glide.moves(now))) redraw();
     });
   };
   const buttons = arenaButtons(map, robots, redraw, el, (content) => send(content));
@@ -268,6 +296,10 @@ function render({ model, el }) {
     }
     const parts = [...buffers ?? []];
     for (const [name, told] of Object.entries(news.robots ?? {})) takeRobot(name, told, parts);
+    scene.fixed = news.fixed ?? scene.fixed;
+    scene.axes = news.axes ?? scene.axes;
+    Object.assign(bases, news.bases);
+    for (const robot of robots) robot.base = bases[robot.name];
     if (news.text) setText(words, news.text);
     badge.hidden = !robots.some(({ bump }) => bump);
     if (performance.now() - bumpedAt > BUMP_MS) badge.hidden = true;
@@ -282,9 +314,9 @@ function render({ model, el }) {
   });
   el.append(element('div', { className: 'labkit-arena-map' }, canvas, badge, buttons.place),
     words, note);
-  const setGoal = ([x, y], yaw) => {
+  const setGoal = (place, turn) => {
     map.aims = false;
-    send({ goal: [x, y, yaw] });
+    send({ goal: fromMap(robots[0]?.base, [...place, turn]) });
     redraw();
   };
   pointAt(canvas, map, (place) => {
@@ -311,7 +343,8 @@ function render({ model, el }) {
     const far = PAN * map.width;
     if (!event.shiftKey) map.pan(-far * arrow[0], far * arrow[1]);
     else {
-      cursor = [0, 1].map((axis) => (cursor ?? robots[0]?.pose ?? [0, 0])[axis]
+      const at = robots[0]?.pose && onMap(robots[0].base, robots[0].pose);
+      cursor = [0, 1].map((axis) => (cursor ?? at ?? [0, 0])[axis]
         + CROSS_STEP * arrow[axis]);
     }
     redraw();

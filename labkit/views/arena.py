@@ -1,6 +1,7 @@
 """A live map of robots by their `/odom` and `/scan`: `lab.arena()`.
 
 It is an ordinary subscriber of those topics, so it shows a robot in Gazebo or a real one as well.
+On demand it draws frames as tf2 hears them, and all in a frame of one's choice.
 Python keeps a scene for each robot and describes it; a canvas in the page draws them. Where
 widgets can't run, the scenes are a picture (`labkit.views.arena_picture`). A goal that is set on
 the map is published, as RViz does.
@@ -12,13 +13,16 @@ import math
 import threading
 import time
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from labkit.asking.delivery import wait_until_found
 from labkit.background.nodes import node_exists
 from labkit.errors import LabError, quoted
+from labkit.sim.kinematics import Pose
 from labkit.views import dock
-from labkit.views.arena_picture import Scene, to_svg
+from labkit.views.arena_frames import ArenaFrames
+from labkit.views.arena_picture import Axes, Scene, seen_from, to_svg
 from labkit.views.arena_robot import MappedRobot
 from labkit.views.feed import Feed, subscribed
 from labkit.views.live import helper, live_views
@@ -46,9 +50,19 @@ class Arena(LivePage):
     _period = 0.25
 
     def __init__(
-        self, *, odom: str, scan: str, namespace: str | None, goals: Iterable[tuple[float, float]]
+        self,
+        *,
+        odom: str,
+        scan: str,
+        namespace: str | None,
+        goals: Iterable[tuple[float, float]],
+        frames: Iterable[str],
+        fixed_frame: str | None,
     ) -> None:
         self._topics = odom, scan
+        names, fixed = _checked_frames(frames, fixed_frame)
+        # None to draw all in the frame of the odometry, without tf2.
+        self._frames = ArenaFrames(names, fixed, helper()) if names or fixed else None
         self._namespace = namespace
         # Points, and for one that was set on the map the heading there, rad.
         self._goals: list[tuple[float, ...]] = [*_checked(goals)]
@@ -58,7 +72,8 @@ class Arena(LivePage):
         self._why = ''
         # First: a name of a topic may be invalid.
         robots = [self._new_robot(name) for name in self._names()]
-        super().__init__([feed for robot in robots for feed in robot.feeds])
+        feeds = [feed for robot in robots for feed in robot.feeds]
+        super().__init__([*feeds, *(self._frames.heard.feeds if self._frames else ())])
         # Changes that the page has not received yet.
         self._fresh = True
         self._text_sent_at = 0.0
@@ -74,11 +89,21 @@ class Arena(LivePage):
     @property
     def text(self) -> str:
         """The scenes in words."""
-        words = '\n'.join(filter(None, (scene.words() for scene in self.scenes.values())))
-        why = self._why or 'Start a robot with lab.spin(lab.Turtlebot()).'
-        if any(robot.has_gone for robot in self._robots.values()):
-            return words or f'The robot has gone. {why}'
-        return words or f'Nothing was heard on {self._feeds[0].topic} yet. {why}'
+        with self._lock:
+            return '\n'.join([*self._told(), *self._unknown()])
+
+    def _told(self) -> list[str]:
+        """Return what is drawn, in words."""
+        shown, axes = self._shown()
+        told = [words for words in (scene.words() for scene in shown) if words]
+        if told and self._frames is not None and self._frames.fixed:
+            told.insert(0, f'All is told in the frame {self._frames.fixed}.')
+        if not any(robot.scene.pose for robot in self._robots.values()):
+            why = self._why or 'Start a robot with lab.spin(lab.Turtlebot()).'
+            has_gone = any(robot.has_gone for robot in self._robots.values())
+            nothing = f'Nothing was heard on {self._feeds[0].topic} yet.'
+            told.append(f'{"The robot has gone." if has_gone else nothing} {why}')
+        return [*told, *(one.words() for one in axes)]
 
     def __repr__(self) -> str:
         self._wait_for_first()
@@ -94,7 +119,43 @@ class Arena(LivePage):
     def _stored_form(self) -> dict[str, str]:
         with self._lock:
             text = self.text
-            return {'text/plain': text, 'image/svg+xml': to_svg([*self.scenes.values()], text)}
+            shown, axes = self._shown()
+            fixed = self._frames.fixed if self._frames is not None else ''
+            picture = to_svg(shown, text, axes=axes, frame=fixed)
+            return {'text/plain': text, 'image/svg+xml': picture}
+
+    # -- frames ---------------------------------------------------------------------------------
+
+    def _shown(self) -> tuple[list[Scene], list[Axes]]:
+        """Return the scenes as they are drawn, and axes; without what tf2 knows no place of."""
+        frames, scenes = self._frames, list(self.scenes.values())
+        if frames is None:
+            return scenes, []
+        shown = []
+        for robot, scene in zip(self._robots.values(), scenes, strict=True):
+            base = self._base(robot)
+            if base is not None:
+                at, place = base
+                pose = robot.pose_at(at) if frames.fixed else scene.pose
+                shown.append(seen_from(replace(scene, pose=pose), place))
+        return shown, self._axes()
+
+    def _base(self, robot: MappedRobot) -> tuple[float, Pose] | None:
+        """Return when and where its odometry's frame is in the map; None if that is unknown."""
+        assert self._frames is not None
+        if not robot.frame:
+            return 0.0, Pose()
+        return self._frames.base(f'What {robot.feeds[0].topic} says', robot.frame)
+
+    def _axes(self) -> list[Axes]:
+        assert self._frames is not None
+        odom = next((robot.frame for robot in self._robots.values() if robot.frame), '')
+        target = self._frames.fixed or odom
+        return self._frames.axes(target) if target else []
+
+    def _unknown(self) -> list[str]:
+        """Return what can't be drawn, with the reason."""
+        return list(self._frames.why.values()) if self._frames is not None else []
 
     # -- ROS ------------------------------------------------------------------------------------
 
@@ -105,12 +166,16 @@ class Arena(LivePage):
         with self._lock:
             self._find_robots()
             robots = list(self._robots.values())
+        heard = self._frames.heard if self._frames is not None else None
         if self._node is None:
             for robot in robots:
                 robot.forget_heard()
+            if heard is not None:
+                heard.forget()
 
         def enough() -> bool:
-            return all(robot.is_heard for robot in robots)
+            known = heard is None or heard.is_complete()
+            return known and all(robot.is_heard for robot in robots)
 
         with subscribed(list(self._feeds), enough, timeout_sec=FIRST_SEC):
             odom = self._feeds[0]
@@ -123,7 +188,15 @@ class Arena(LivePage):
                 self._node.destroy_publisher(publisher)
             super()._close()
 
+    def _open(self) -> None:
+        with self._lock:
+            if self._frames is not None and self._node is None:
+                self._frames.heard.begin()
+            super()._open()
+
     def _tick(self) -> None:
+        if self._frames is not None:
+            self._frames.heard.follow_publishers()
         self._find_robots()
         super()._tick()
 
@@ -167,12 +240,15 @@ class Arena(LivePage):
         from sensor_msgs.msg import LaserScan
 
         robot = MappedRobot(name, self._goals)
+        robot.frames = self._frames
 
         def on_odometry(message: Odometry) -> None:
             with self._lock:
                 if robot.take_odometry(message):
                     self._text_sent_at = 0.0  # announce a bump immediately
-                if self._node is not None and robot.is_news(self._sent_at):
+                # What is turned by tf2 can't be foretold in the page.
+                news = self._frames is not None or robot.is_news(self._sent_at)
+                if self._node is not None and news:
                     self._send()
 
         def on_scan(message: LaserScan) -> None:
@@ -251,15 +327,20 @@ class Arena(LivePage):
         now = time.monotonic()
         robots, buffers = {}, []
         for name, robot in self._robots.items():
-            changes, parts = robot.update(everything)
+            base = self._base(robot) if self._frames is not None else None
+            pose = robot.pose_at(base[0]) if base is not None and self._is_turned() else None
+            changes, parts = robot.update(everything, pose)
             if changes:
                 robots[name] = changes
                 buffers += parts
-        state: dict[str, object] = {'goals': self._goals}
+        state: dict[str, object] = {'goals': self._goals, **self._frames_state()}
         if everything or now - self._text_sent_at >= TEXT_SEC:
             self._text_sent_at = now
-            silences = (feed.silence() for feed in self._feeds)
-            state |= {'text': self.text, 'note': next(filter(None, silences), '')}
+            # One that is latched is silent as a rule.
+            of_frames = self._frames.heard.feeds if self._frames is not None else []
+            silences = (feed.silence() for feed in self._feeds if feed not in of_frames)
+            why = next(filter(None, silences), '') or ' '.join(self._unknown())
+            state |= {'text': '\n'.join(self._told()), 'note': why}
         changes = self._changes(state)
         if robots:
             changes['robots'] = robots
@@ -269,6 +350,32 @@ class Arena(LivePage):
             self._fresh = False
         return changes, buffers
 
+    def _is_turned(self) -> bool:
+        return self._frames is not None and bool(self._frames.fixed)
+
+    def _frames_state(self) -> dict[str, object]:
+        """Return what the page draws by tf2."""
+        frames = self._frames
+        if frames is None:
+            return {}
+        bases = {name: self._base(robot) for name, robot in self._robots.items()}
+        return {
+            'fixed': frames.fixed,
+            'bases': {name: base and _short(base[1]) for name, base in bases.items()},
+            'axes': [
+                [
+                    one.name,
+                    _short(one.origin),
+                    {axis: _short(tip) for axis, tip in one.tips.items()},
+                ]
+                for one in self._axes()
+            ],
+        }
+
+
+def _short(numbers: Iterable[float]) -> list[float]:
+    return [round(number, 5) for number in numbers]
+
 
 def arena(
     *,
@@ -276,6 +383,8 @@ def arena(
     scan: str = 'scan',
     namespace: str | None = None,
     goals: Iterable[tuple[float, float]] = (),
+    frames: Iterable[str] = (),
+    fixed_frame: str | None = None,
 ) -> Arena:
     """Show a live map of the `/odom` and `/scan` of robots.
 
@@ -285,20 +394,47 @@ def arena(
     side by side. The button Goal publishes where one clicks as `geometry_msgs/msg/PoseStamped` on
     `goal_pose`, as RViz does; the button Dock is `lab.dock()`.
 
+    With `frames` or `fixed_frame` it also hears `/tf` and `/tf_static`, and draws scans where tf2
+    says that they were taken. What tf2 does not know is left out, and named with its reason.
+
     Args:
         odom: Topic with the robot's `nav_msgs/msg/Odometry`.
         scan: Topic with its `sensor_msgs/msg/LaserScan`.
         namespace: One of several robots: `'robot1'` makes these `/robot1/odom` and so on. By
             default all robots are on the map, as soon as they publish their odometry.
         goals: Points (x, y) to be marked, m, in the frame of the odometry.
+        frames: Names of frames whose axes are drawn, such as `['odom', 'base_scan']`.
+        fixed_frame: The frame that stands still; by default that of the odometry. In `base_link`
+            the world turns round the robot.
 
     Returns:
         A map in a cell, text for `print()`. `.close()` ends it.
 
     Raises:
-        LabError: A goal is not a pair of numbers.
+        LabError: A goal is not a pair of numbers, or a frame no name.
+        ImportError: Frames are asked for, and the type of transforms can't be built here.
     """
-    return Arena(odom=odom, scan=scan, namespace=namespace, goals=goals)
+    return Arena(
+        odom=odom,
+        scan=scan,
+        namespace=namespace,
+        goals=goals,
+        frames=frames,
+        fixed_frame=fixed_frame,
+    )
+
+
+def _checked_frames(frames: Iterable[str], fixed: str | None) -> tuple[list[str], str]:
+    """Return names of frames, and the fixed one, '' without one; tf2 knows none with a slash."""
+    names = [] if isinstance(frames, str) else list(frames)
+    every = [*names, *([] if fixed is None else [fixed])]
+    if isinstance(frames, str) or not all(isinstance(name, str) and name for name in every):
+        raise LabError(
+            f'frames is a list of names, and fixed_frame a name, but they are {quoted(frames)} '
+            f'and {quoted(fixed)}.',
+            todo="Write them like this: lab.arena(frames=['odom'], fixed_frame='base_link')",
+        )
+    return names, fixed or ''
 
 
 def _is_finite(value: object) -> bool:

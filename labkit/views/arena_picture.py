@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import html
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from labkit.sim.kinematics import Pose, Twist2, wrap_angle
 from labkit.sim.robots import BURGER
 
-__all__ = ['Scene', 'bounds', 'joined', 'row', 'to_svg', 'two']
+__all__ = ['Axes', 'Scene', 'bounds', 'joined', 'row', 'seen_from', 'to_svg', 'two']
 
 Point = tuple[float, float]
 
@@ -45,6 +45,35 @@ _INK, _GRID, _WALL, _TRAIL, _ROBOT, _GOAL = (
 _BUMP = '#c62828'
 # Of several robots on one map, and of their trails; as in `map.js`.
 _SEVERAL = (_ROBOT, '#1976d2', '#8e24aa', '#2e7d32')
+# The axes of a frame, as in RViz; each has its letter, too. Their length, m, and the least, px.
+_AXES = {'x': '#c62828', 'y': '#2e7d32', 'z': '#1565c0'}
+AXIS, AXIS_PX = 0.25, 40
+# Room for the name of a frame, px.
+NAME_PX = 120, 14
+
+
+@dataclass(frozen=True)
+class Axes:
+    """The axes of a frame on the map.
+
+    Attributes:
+        name: Name of the frame.
+        origin: Its place, m.
+        tips: The directions of its axes, of length 1 if they are level, by their letters.
+    """
+
+    name: str
+    origin: Point
+    tips: Mapping[str, Point]
+
+    def words(self) -> str:
+        """Return where it is, in words."""
+        x, y = (two(number) for number in self.origin)
+        words = f'Frame {self.name} at x = {x} m, y = {y} m'
+        if 'x' not in self.tips:
+            return f'{words}.'
+        ahead, left = self.tips['x']
+        return f'{words}, its x axis at {round(math.degrees(math.atan2(left, ahead))) + 0}°.'
 
 
 @dataclass
@@ -63,6 +92,7 @@ class Scene:
         why: Why it stands, if it says so.
         frame: Name of the frame; '' for the frame of the odometry.
         name: Name of the robot, '' for the only one.
+        eye: Place of the scanner; None where it is on a Burger.
     """
 
     pose: Pose | None = None
@@ -76,6 +106,7 @@ class Scene:
     why: str = ''
     frame: str = ''
     name: str = ''
+    eye: Point | None = None
 
     def words(self) -> str:
         """Return the scene in words; '' without a pose."""
@@ -99,6 +130,34 @@ class Scene:
         elif self.reach:
             text += f' Nothing within {self.reach:.1f} m.'
         return text
+
+
+def seen_from(scene: Scene, base: Pose) -> Scene:
+    """Return a scene in another frame.
+
+    Args:
+        scene: The scene.
+        base: Where its frame is in the other one.
+    """
+    cos, sin = math.cos(base.yaw), math.sin(base.yaw)
+
+    def moved(point: Point) -> Point:
+        x, y = point
+        return base.x + cos * x - sin * y, base.y + sin * x + cos * y
+
+    def all_moved(points: Iterable[Point]) -> list[Point]:
+        return [moved(point) for point in points]
+
+    pose = scene.pose
+    return replace(
+        scene,
+        pose=pose and Pose(*moved(pose[:2]), wrap_angle(pose.yaw + base.yaw)),
+        trail=all_moved(scene.trail),
+        scan=[end and moved(end) for end in scene.scan],
+        goals=all_moved(scene.goals),
+        bump=scene.bump and moved(scene.bump),
+        eye=scene.eye and moved(scene.eye),
+    )
 
 
 def bounds(points: Iterable[Point], *, least: float = LEAST) -> tuple[float, float, float, float]:
@@ -134,7 +193,13 @@ def joined(scan: Sequence[Point | None], eye: Point) -> list[tuple[Point, Point]
 
 
 def to_svg(
-    scenes: Scene | Sequence[Scene], text: str = '', *, least: float = LEAST, font: int = 11
+    scenes: Scene | Sequence[Scene],
+    text: str = '',
+    *,
+    least: float = LEAST,
+    font: int = 11,
+    axes: Sequence[Axes] = (),
+    frame: str = '',
 ) -> str:
     """Return robots and their surroundings as an SVG picture.
 
@@ -143,14 +208,17 @@ def to_svg(
         text: Text alternative; by default the scenes in words.
         least: Least distance around the origin that is shown, m.
         font: Font size, px.
+        axes: Axes of frames to draw.
+        frame: Name of the frame; by default that of the first scene.
     """
     scenes = [scenes] if isinstance(scenes, Scene) else scenes
-    first = scenes[0]
-    paper = _Paper(bounds(_points(scenes), least=least))
+    first = scenes[0] if scenes else Scene()
+    points = [*_points(scenes), *(one.origin for one in axes)]
+    paper = _Paper(bounds(points, least=least))
     paper.grid()
     for scene in scenes:
         if scene.pose is not None:
-            paper.scan(scene.scan, scene.pose)
+            paper.scan(scene.scan, scene.pose, scene.eye)
     colours = [(_TRAIL, _ROBOT)] if len(scenes) == 1 else [(one, one) for one in _SEVERAL]
     for number, scene in enumerate(scenes):
         paper.path(scene.trail, colours[number % len(colours)][0])
@@ -163,8 +231,9 @@ def to_svg(
     for scene in scenes:
         if scene.bump is not None:
             paper.bump(scene.bump)
-    if first.frame:
-        paper.name(first.frame)
+    paper.axes(axes)
+    if frame or first.frame:
+        paper.name(frame or first.frame)
     words = '\n'.join(filter(None, (scene.words() for scene in scenes)))
     text = html.escape(text or words or 'An empty map')
     return (
@@ -265,13 +334,13 @@ class _Paper:
         path = ''.join(f'M{" ".join(self.at(a))}L{" ".join(self.at(b))}' for a, b in lines)
         self.parts.append(f'<path d="{path}" stroke="{colour}" stroke-width="{width}"/>')
 
-    def scan(self, scan: Sequence[Point | None], pose: Pose) -> None:
+    def scan(self, scan: Sequence[Point | None], pose: Pose, eye: Point | None = None) -> None:
         """Draw the walls that a robot's scanner sees, and the area before them."""
         seen = [end for end in scan if end is not None]
         if not seen:
             return
         x, y, yaw = pose
-        eye = x + BURGER.scan_x * math.cos(yaw), y + BURGER.scan_x * math.sin(yaw)
+        eye = eye or (x + BURGER.scan_x * math.cos(yaw), y + BURGER.scan_x * math.sin(yaw))
         self.fan(scan, eye)
         self.lines(joined(scan, eye), _WALL, 2.5)
         self.dots(seen, _WALL)
@@ -340,6 +409,32 @@ class _Paper:
                 f'{html.escape(name)}</text>'
             )
 
+    def axes(self, every: Sequence[Axes]) -> None:
+        """Draw the axes of frames, each with its letter, and their names below each other."""
+        length = max(AXIS, AXIS_PX / self.scale)
+        names: list[tuple[float, float]] = []
+        for one in every:
+            x, y = one.origin
+            for letter, (ahead, left) in one.tips.items():
+                tip = x + length * ahead, y + length * left
+                self.lines([(one.origin, tip)], _AXES[letter], 3)
+                beyond = x + 1.2 * length * ahead, y + 1.2 * length * left
+                px, py = self.at(beyond)
+                self._over(float(px), float(py) + 4, letter, _AXES[letter])
+            px, py = self.at(one.origin)
+            place = float(px), float(py) + 16
+            while any(_are_near(place, other) for other in names):
+                place = place[0], place[1] + NAME_PX[1]
+            names.append(place)
+            self._over(*place, one.name, _INK)
+
+    def _over(self, x: float, y: float, text: str, colour: str) -> None:
+        """Write at a point, in px, over what is drawn."""
+        self.parts.append(
+            f'<text x="{x:.1f}" y="{y:.1f}" fill="{colour}" text-anchor="middle" '
+            f'stroke="#ffffff" stroke-width="3" paint-order="stroke">{html.escape(text)}</text>'
+        )
+
     def bump(self, point: Point) -> None:
         """Draw a star at the point of contact."""
         x, y = self.at(point)
@@ -352,6 +447,11 @@ class _Paper:
             f'<polygon transform="translate({x} {y})" points="{corners}" fill="{_BUMP}" '
             f'stroke="#ffffff"/>'
         )
+
+
+def _are_near(one: Point, other: Point) -> bool:
+    """Return whether the names at two points may overlap."""
+    return abs(one[0] - other[0]) < NAME_PX[0] and abs(one[1] - other[1]) < NAME_PX[1]
 
 
 def _multiples(step: float, middle: float, reach: float) -> list[float]:

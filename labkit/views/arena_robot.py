@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from nav_msgs.msg import Odometry
     from sensor_msgs.msg import LaserScan
 
+    from labkit.views.arena_frames import ArenaFrames, PlacedScan
     from labkit.views.feed import Feed
     from labkit.views.timed_out import TimedOut
 
@@ -42,6 +43,8 @@ MAX_WALLS = 20_000
 NEAR_SEC, FAR_SEC = 0.01, 10.0
 MAX_WAITING = 30
 MAX_POSES = 300
+# Stamps that are no farther apart than this, s, are the same.
+SAME_SEC = 1e-4
 
 
 class MappedRobot:
@@ -58,6 +61,8 @@ class MappedRobot:
         timed_out: The last of them.
         others: The other robots on the map.
         frame: The frame of its odometry, '' before the first message.
+        frames: Where tf2 says that scans were taken; None to trust the odometry, and that the
+            scanner is where a Burger has it.
         has_gone: Whether it was there, and nobody publishes its odometry any more.
     """
 
@@ -68,6 +73,7 @@ class MappedRobot:
         self.trail: deque[tuple[float, float]] = deque(maxlen=TRAIL_LENGTH)
         self.feeds: list[Feed] = []
         self.timed_out: TimedOut | None = None
+        self.frames: ArenaFrames | None = None
         self.others: list[MappedRobot] = []
         # Topics with a message since the subscription began.
         self._heard: set[str] = set()
@@ -165,7 +171,28 @@ class MappedRobot:
 
     def _place_scans(self) -> None:
         while self._waiting and (pose := self._pose_of(self._waiting[0])) is not None:
-            self._place(self._waiting.popleft(), pose)
+            message, frames = self._waiting[0], self.frames
+            if frames is None:
+                self._place(message, pose, (beam_ends(message, pose), scanner_place(pose)))
+            elif frames.is_late(message, self.frame) and len(self._waiting) < MAX_WAITING:
+                return
+            elif (placed := frames.scan(self.scan_name, message, self.frame)) is not None:
+                self._place(message, pose, placed)
+            else:
+                self._heard.add(self.feeds[1].topic)
+                if len(self._waiting) == 1:
+                    return  # what is not known yet may be soon
+            self._waiting.popleft()
+
+    @property
+    def scan_name(self) -> str:
+        """What its scan is called where it can't be drawn."""
+        return f'The scan on {self.feeds[1].topic}'
+
+    def pose_at(self, at: float) -> Pose | None:
+        """Return where it was at a time, s, if that is among what is remembered."""
+        known = [pose for time, pose, _ in self._poses if abs(time - at) < SAME_SEC]
+        return known[-1] if known else self.scene.pose
 
     def _pose_of(self, message: LaserScan) -> Pose | None:
         """Return where the robot was at the time of a scan; None if that is still to come."""
@@ -183,14 +210,14 @@ class MappedRobot:
         x, y = pose.x + way * math.cos(middle), pose.y + way * math.sin(middle)
         return Pose(x, y, pose.yaw + turn)
 
-    def _place(self, message: LaserScan, pose: Pose) -> None:
+    def _place(self, message: LaserScan, pose: Pose, placed: PlacedScan) -> None:
         self._heard.add(self.feeds[1].topic)
         if self._received_scan == (message.ranges, pose):
             return  # at rest, every scan is the same
         self._received_scan = (message.ranges, pose)
         self._unread_scan = message
-        ends = self._ends = beam_ends(message, pose)
-        self._scanner = scanner_place(pose)
+        ends, self._scanner = placed
+        self._ends = ends
         self._new_scan = ends.astype('<f4').tobytes()
         walls = ends[np.isfinite(ends[:, 0])]
         for other in self._places_of_others():
@@ -203,6 +230,7 @@ class MappedRobot:
 
     def current_scene(self) -> Scene:
         """Return the scene with the latest scan: not every scan is needed."""
+        self._place_scans()
         message, self._unread_scan = self._unread_scan, None
         if message is not None:
             self.scene.scan = [
@@ -210,6 +238,7 @@ class MappedRobot:
             ]
             self.scene.reach = float(message.range_max)
             self.scene.nearest = nearest_of(message)
+            self.scene.eye = self._scanner if self.frames is not None else None
         self.scene.trail = list(self.trail)
         self.scene.why = self.timed_out.words if self.timed_out is not None else ''
         return self.scene
@@ -239,8 +268,14 @@ class MappedRobot:
 
     # -- the page -------------------------------------------------------------------------------
 
-    def update(self, everything: bool) -> Update:
-        """Return what the page does not know of it yet, or everything."""
+    def update(self, everything: bool, pose: Pose | None = None) -> Update:
+        """Return what the page does not know of it yet, or everything.
+
+        Args:
+            everything: Whether the page knows nothing.
+            pose: Where it is drawn, if it is not its latest pose.
+        """
+        self._place_scans()
         scene = self.scene
         buffers: list[bytes] = []
         if scene.pose is None:
@@ -251,7 +286,10 @@ class MappedRobot:
             self._in_page.clear()
             self._lifted, self._new_scan = True, self._new_scan or self._last_scan
             self._new_trail = [number for point in self.trail for number in point]
-        state: dict[str, object] = {'pose': (*scene.pose, *scene.twist), 'bump': scene.bump}
+        state: dict[str, object] = {
+            'pose': (*(pose or scene.pose), *scene.twist),
+            'bump': scene.bump,
+        }
         changes = {
             key: value
             for key, value in state.items()

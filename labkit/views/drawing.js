@@ -57,9 +57,9 @@ class Dots {
 
 // The drawing, and what is known of each of its parts by the part's name.
 class Drawing {
-  constructor(tell, { label, ask = () => {} }) {
+  constructor(tell, { label, ask = () => {}, least = 0 }) {
     this.place = element('div', { className: 'labkit-graph-drawing' });
-    [this.tell, this.name, this.ask] = [tell, label, ask];
+    [this.tell, this.name, this.ask, this.least] = [tell, label, ask, least];
     // Node -> its parameters, as far as they were asked for.
     this.parameters = {};
     this.dots = new Dots();
@@ -101,10 +101,12 @@ class Drawing {
     // As large as the letters of the page: its width is in theirs, not in its own.
     const letters = width / LETTERS_PX;
     const least = this.scale === null ? READABLE * letters : 0;
+    // What must not shrink further scrolls.
+    const wide = this.scale === null ? this.least * letters : 0;
     const whole = `${width / height} * var(--labkit-graph-high)`;
     this.svg.style.maxWidth = 'none';
     this.svg.style.width = this.scale ? `${this.scale * letters}em`
-      : `min(${letters}em, 100%, max(${least}em, ${whole}))`;
+      : `max(${wide}em, min(${letters}em, 100%, max(${least}em, ${whole})))`;
   }
 
   // Make it larger by a factor. A point of the page stays where it is.

@@ -12,32 +12,41 @@ function render({ model, el }) {
   const drawing = new Drawing(([first, ...lines]) => {
     setText(name, first ?? '');
     setText(about, first ? lines.join(' · ') : hint);
-  }, { label: 'Frames' });
+  }, { label: 'Frames', least: READABLE });
   const zoom = zoomButtons(drawing);
   zoom.hidden = true;
-  const known = { small: {}, result: '' };
-  // The lines below the names, and the one above all, as they are now.
+  const empty = element('p', { className: 'labkit-graph-empty', hidden: true });
+  const known = { small: {}, caption: [] };
+  // The lines below the names, and the numbers above all, as they are now.
   const write = () => {
     for (const [part, lines] of Object.entries(known.small)) {
       const places = drawing.find(part)?.querySelectorAll('.small') ?? [];
       places.forEach((place, index) => setText(place, lines[index] ?? ''));
     }
-    const caption = known.result && drawing.place.querySelector('.caption');
-    if (caption) setText(caption, known.result);
+    const above = drawing.place.querySelectorAll('.caption');
+    known.caption.forEach((line, index) => above[index] && setText(above[index], line));
   };
   const { note, send, end } = follow(model, el, (news) => {
     if (news.svg !== undefined) {
+      const isFirst = !drawing.svg;
       drawing.draw(news.svg, news.parts);
+      // Where the root is, if it scrolls.
+      const { place } = drawing;
+      if (isFirst) place.scrollLeft = (place.scrollWidth - place.clientWidth) / 2;
       details.hidden = zoom.hidden = !news.svg;
     }
     if (news.told !== undefined) setText(told, news.told);
+    if (news.empty !== undefined) {
+      setText(empty, news.empty);
+      empty.hidden = !news.empty;
+    }
     if (news.rates) drawing.setRates(news.rates);
     for (const key of Object.keys(known)) known[key] = news[key] ?? known[key];
     write();
     if (news.ended) el.classList.add('labkit-graph-ended');
   });
   drawing.tell([]);
-  el.append(told, drawing.place, note,
+  el.append(told, drawing.place, empty, note,
     element('div', { className: 'labkit-graph-foot' }, details, zoom));
   const unfit = fitWidth(drawing, el, send);
   return () => {

@@ -13,7 +13,7 @@ from labkit.views.frames_tree import FrameChain, FrameEdge, FrameTree
 from labkit.views.graph_flow import in_hertz
 from labkit.views.live import helper
 from labkit.views.live_page import LivePage, Update
-from labkit.views.svg_drawing import WIDTH
+from labkit.views.svg_drawing import WIDTH, caption_lines
 
 __all__ = ['Frames', 'frames']
 
@@ -29,6 +29,7 @@ class Frames(LivePage):
     """The tree of frames, to be shown in a cell; see `frames`."""
 
     _name = 'frames'
+    _called = 'tree of frames'
     # Faster changes can't be read.
     _period = 0.5
 
@@ -111,7 +112,9 @@ class Frames(LivePage):
         tree = self._heard.found()
         chain, why = self._chain() if tree.edges else (None, '')
         drawn = (tree, chain.edges if chain is not None else (), why, self._width)
-        state: dict[str, Any] = {'note': '' if tree.edges else self._silence()}
+        told = '' if tree.edges else self._silence()
+        is_empty = told == EMPTY
+        state: dict[str, Any] = {'note': '' if is_empty else told, 'empty': EMPTY * is_empty}
         if everything or drawn != self._drawn:
             self._drawn = drawn
             self._picture = picture = FramesPicture(tree, chain, why, self._width)
@@ -121,7 +124,7 @@ class Frames(LivePage):
                 'told': picture.told,
             }
         if chain is not None:
-            state['result'] = chain.result
+            state['caption'] = [line for line, _ in caption_lines([chain.result], self._width)]
         small, rates = {}, {}
         for number, edge in self._picture.edges.items():
             pace = self._pace(edge)

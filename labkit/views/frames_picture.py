@@ -141,7 +141,7 @@ def _of_edge(edge: FrameEdge, tree: FrameTree, boxes: dict[str, str]) -> Line:
             'apart',
             ends,
             between,
-            ['one parent of two,', *in_lines(f'from {edge.source}', IN_NODE)],
+            ['two parents:', *in_lines(f'from {edge.source}', IN_NODE)],
         )
     return labelled('apart' if loop else 'holds', ends, between, loop)
 

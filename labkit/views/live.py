@@ -45,8 +45,9 @@ class Live:
     They extend `_open` and `_close`, and do their periodic work in `_tick`.
     """
 
-    # Its name in messages.
+    # Its name; and the one in messages, if that is another.
     _name: ClassVar[str] = 'view'
+    _called: ClassVar[str] = ''
     # Period of `_tick`, s.
     _period: ClassVar[float]
 
@@ -64,7 +65,7 @@ class Live:
 
     def close(self) -> None:
         """Unsubscribe. The last picture stays."""
-        self._end(f'This {self._name} has ended. Run its cell to start a new one.')
+        self._end(f'This {self._called or self._name} has ended. Run its cell to start a new one.')
 
     def __enter__(self) -> Self:
         return self

@@ -54,7 +54,7 @@ class LivePage(Live):
         self._stored: Stored | None = None
         if self._watched:
             self._widget = widget_class(self._name)()
-            self._stored = Stored(self._widget)
+            self._stored = Stored(self._widget, self._called)
             self._widget.on_msg(self._on_message)
             self._start()
 

@@ -15,8 +15,12 @@ const LIDAR = 0.035;
 const LEAST_PX = 13; // drawn no smaller than this radius
 const FADE_MS = 60000; // by then a point of the trail is as pale as it gets
 const SHADES = 10;
+const [AXIS, AXIS_PX] = [0.25, 40]; // length of the axes of a frame, m, and the least one, pixels
+const NAME_PX = 120; // room for the name of a frame
 const SEVERAL = 4; // colours of robots that share a map
 
+// Its base is where its frame is on the map: x, y and yaw; undefined if it is the map's own, and
+// null if nobody knows.
 function emptyRobot(name = '') {
   return { name, pose: null, trail: [], fades: false, scan: null, eye: null, bump: null };
 }
@@ -77,11 +81,19 @@ function eachEnd(scan, [x, y], call) {
   }
 }
 
+// A pose, or the place of a point, on the map.
+function onMap(base, [x, y, yaw = 0, ...more]) {
+  if (!base) return [x, y, yaw, ...more];
+  const [c, s] = [Math.cos(base[2]), Math.sin(base[2])];
+  return [base[0] + c * x - s * y, base[1] + s * x + c * y, yaw + base[2], ...more];
+}
+
 class Map2d {
   constructor(canvas) {
     this.canvas = canvas;
     this.context = canvas.getContext('2d');
     this.above = 0; // pixels at the top that something else covers
+    this.yaw = 0; // by which what is drawn is turned
   }
 
   // Fit the floor that is shown into the canvas, or look at one place of it; y goes up.
@@ -123,25 +135,87 @@ class Map2d {
     this.below(scene);
     this.grid();
     const { robots } = scene;
-    for (const { pose, scan, eye: seen } of robots) {
+    const each = (act) => robots.forEach((robot, i) => this.turned(robot.base, () => act(robot, i)));
+    each(({ pose, scan, eye: seen }) => {
       const eye = pose && (seen ?? this.ahead(pose, SCAN_X));
       if (scan && eye) {
         this.fan(scan, eye);
         this.walls(scan, eye);
       }
-    }
+    });
     const colour = (index, only) => (robots.length > 1 ? `robot-${index % SEVERAL}` : only);
-    robots.forEach(({ trail, fades }, i) => this.trail(trail, fades, colour(i, 'trail')));
-    robots.forEach(({ name, pose }, i) => {
+    each(({ trail, fades }, i) => this.trail(trail, fades, colour(i, 'trail')));
+    each(({ name, pose }, i) => {
       if (pose) this.robot(name, pose, colour(i, 'robot-0'));
     });
     // Above the robots, which may stand on one.
-    scene.goals.forEach(([x, y, yaw], index) => {
+    this.turned(robots[0]?.base, () => scene.goals.forEach(([x, y, yaw], index) => {
       this.goal(x, y, scene.goals.length > 1 ? `${index + 1}` : '', yaw);
-    });
-    for (const { bump } of robots) if (bump) this.bump(...bump);
+    }));
+    each(({ bump }) => { if (bump) this.bump(...bump); });
+    this.axes(scene.axes ?? []);
     this.ruler();
+    if (scene.fixed) this.label(scene.fixed, 6, 1.3 * this.letters);
     if (cursor) this.cursor(cursor);
+  }
+
+  // Draw in the frame of a robot, see emptyRobot.
+  turned(base, draw) {
+    if (base === null) return;
+    if (!base) {
+      draw();
+      return;
+    }
+    const { context } = this;
+    context.save();
+    context.translate(this.px(base[0]), this.py(base[1]));
+    context.rotate(-base[2]);
+    context.translate(-this.x0, -this.y0);
+    this.yaw = base[2];
+    draw();
+    this.yaw = 0;
+    context.restore();
+  }
+
+  // Write upright beside (px, py), however the map is turned.
+  write(text, px, py, right, down, around = null) {
+    const { context } = this;
+    context.save();
+    context.translate(px, py);
+    context.rotate(this.yaw);
+    if (around) {
+      context.lineWidth = 3;
+      context.strokeStyle = around;
+      context.strokeText(text, right, down);
+    }
+    context.fillText(text, right, down);
+    context.restore();
+  }
+
+  // The axes of frames, each with its letter: colour alone says nothing. Their names stand below
+  // each other.
+  axes(every) {
+    const { context } = this;
+    const length = Math.max(AXIS, AXIS_PX / this.scale);
+    const [ground, row] = [this.colour('ground'), 1.3 * this.letters];
+    const names = [];
+    context.textAlign = 'center';
+    for (const [name, [x, y], tips] of every) {
+      for (const [letter, [ahead, left]] of Object.entries(tips)) {
+        const at = (part) => [x + part * length * ahead, y + part * length * left];
+        this.line([[x, y], at(1)], `axis-${letter}`, 3);
+        context.fillStyle = this.colour(`axis-${letter}`);
+        const [beyondX, beyondY] = at(1.2);
+        this.write(letter, this.px(beyondX), this.py(beyondY), 0, 4, ground);
+      }
+      const place = [this.px(x), this.py(y) + row];
+      const near = ([px, py]) => Math.abs(px - place[0]) < NAME_PX && Math.abs(py - place[1]) < row;
+      while (names.some(near)) place[1] += row;
+      names.push(place);
+      context.fillStyle = this.colour('ink');
+      this.write(name, ...place, 0, 0, ground);
+    }
+    context.textAlign = 'start';
   }
 
   // What lies on the floor, for those that know more of it.
@@ -244,7 +318,7 @@ class Map2d {
       context.lineTo(px + 30 * Math.cos(yaw), py - 30 * Math.sin(yaw));
     }
     context.stroke();
-    context.fillText(label, px + 12, py - 8);
+    this.write(label, px, py, 12, -8);
   }
 
   // From above: two wheels, a body with round corners, the scanner on top, and a nose ahead.
@@ -286,12 +360,8 @@ class Map2d {
     context.restore();
     if (!name) return;
     context.textAlign = 'center';
-    context.lineWidth = 3;
-    context.strokeStyle = ground;
     context.fillStyle = ink;
-    const at = [name, this.px(x), this.py(y) - scale * RADIUS - 5];
-    context.strokeText(...at);
-    context.fillText(...at);
+    this.write(name, this.px(x), this.py(y), 0, -scale * RADIUS - 5, ground);
     context.textAlign = 'start';
   }
 

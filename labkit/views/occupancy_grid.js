@@ -107,7 +107,7 @@ class OccupancyGrid {
       const edge = (number) => (number * SIDE - 0.5) * CELL;
       const [left, right] = [map.px(edge(tile.i)), map.px(edge(tile.i + 1))].map(Math.round);
       const [top, bottom] = [map.py(edge(tile.j + 1)), map.py(edge(tile.j))].map(Math.round);
-      if (right < 0 || bottom < 0 || left > map.width || top > map.height) continue;
+      if (map.yaw === 0 && (right < 0 || bottom < 0 || left > map.width || top > map.height)) continue;
       context.drawImage(tile.canvas, left, top, right - left, bottom - top);
     }
   }

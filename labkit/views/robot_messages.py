@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from nav_msgs.msg import Odometry
     from sensor_msgs.msg import LaserScan
 
-__all__ = ['beam_ends', 'motion_of', 'nearest_of', 'scanner_place']
+__all__ = ['beam_ends', 'beams_of', 'motion_of', 'nearest_of', 'scanner_place']
 
 
 # The page has numbers of single precision.
@@ -34,7 +34,7 @@ def motion_of(message: Odometry) -> tuple[Pose, Twist2] | None:
 
 def beam_ends(message: LaserScan, pose: Pose) -> Any:
     """Return the ends of a scan's beams: x and y, m; NaN where a beam hit nothing."""
-    ranges, angles = _beams(message)
+    ranges, angles = beams_of(message)
     eye_x, eye_y = scanner_place(pose)
     x, y = eye_x + ranges * np.cos(pose.yaw + angles), eye_y + ranges * np.sin(pose.yaw + angles)
     return np.stack([x, y], axis=1)
@@ -48,14 +48,14 @@ def scanner_place(pose: Pose) -> tuple[float, float]:
 
 def nearest_of(message: LaserScan) -> tuple[float, float] | None:
     """Return distance and direction of the nearest obstacle, None if there is none."""
-    ranges, angles = _beams(message)
+    ranges, angles = beams_of(message)
     if np.isnan(ranges).all():
         return None
     beam = int(np.nanargmin(ranges))
     return float(ranges[beam]), wrap_angle(float(angles[beam]))
 
 
-def _beams(message: LaserScan) -> tuple[Any, Any]:
+def beams_of(message: LaserScan) -> tuple[Any, Any]:
     """Return ranges, m, NaN where invalid, and directions, rad."""
     ranges = np.array(message.ranges, dtype=np.float64)
     # REP 117: +inf is nothing, -inf too near. Some drivers write 0 for nothing.

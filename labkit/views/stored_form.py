@@ -33,10 +33,12 @@ class Stored:
 
     Args:
         widget: The view's widget.
+        name: What the view is; by default as its widget is called.
     """
 
-    def __init__(self, widget: PageWidget) -> None:
+    def __init__(self, widget: PageWidget, name: str = '') -> None:
         self._widget = widget
+        self._name = name or type(widget).__name__.removesuffix('Page').lower()
         # The page puts it on the view, so that the style sheet can tell whether it exists.
         self._mark = widget.mark
         # The current content of the output; None before it is shown.
@@ -72,7 +74,7 @@ class Stored:
             if kind.startswith('image/'):
                 # As a separate image: its ids must not clash with those of the live one.
                 body = picture(text, as_source(kind, data))
-        docked = DOCKED.format(type(self._widget).__name__.removesuffix('Page').lower())
+        docked = DOCKED.format(self._name)
         now = datetime.now()
         words = f'Stored on {now.day} {now:%B %Y} at {now:%H:%M:%S}. <span>{TODO}</span>'
         page = (

@@ -25,6 +25,7 @@ __all__ = [
     'Line',
     'Shape',
     'box_name',
+    'caption_lines',
     'labelled',
     'shape',
 ]
@@ -124,7 +125,6 @@ class Drawing:
         shapes: Its boxes.
         lines: Its arrows.
         told: See above.
-        caption: The lines above it.
         width: Its size, px; likewise `height`.
     """
 
@@ -141,10 +141,7 @@ class Drawing:
     ) -> None:
         self.shapes, self.lines = list(shapes), list(lines)
         self._title, self.told = title, told
-        room = max(IN_REASON, int((width - 2 * MARGIN) / LETTER))
-        self._caption = [
-            (line, part.startswith('✗')) for part in caption for line in in_lines(part, room)
-        ]
+        self._caption = caption_lines(caption, width)
         self._frames = frames or {}
         for one in self.shapes:
             ends = [
@@ -152,7 +149,6 @@ class Drawing:
                 for end in ('tail', 'head')
             ]
             one.box.height = max(one.box.height, min(12 + FOR_ARROW * max(ends), HIGHEST))
-        self.caption = [line for line, _ in self._caption]
         layout = arrange(
             [one.box for one in self.shapes],
             [line.arrow for line in self.lines],
@@ -192,6 +188,12 @@ fill="#ffffff" stroke="#9aa5b1"/>{_caption_svg(self._caption)}
 {drawn.replace('url(#tip)', f'url(#{name}-tip)')}
 </g>
 </svg>"""
+
+
+def caption_lines(caption: Sequence[str], width: float) -> list[tuple[str, bool]]:
+    """Return the lines of a caption, and whether each is red; see `Drawing`."""
+    room = max(IN_REASON, int((width - 2 * MARGIN) / LETTER))
+    return [(line, part.startswith('✗')) for part in caption for line in in_lines(part, room)]
 
 
 def shape(

@@ -489,3 +489,130 @@ def test_nonsense_of_a_page_is_no_goal(kernel, goal):
     kernel.run(GOAL.format(topic='/goal_pose', arguments=''))
     set_goal(kernel, f"{{'goal': {goal}}}")
     assert kernel.run('print(view._goals, view._goal_publisher)').text == '[] None\n'
+
+
+# -- frames ---------------------------------------------------------------------------------------
+
+# Where the robot is then: x = 0.34 m, y = 0.17 m, heading 55°.
+TURNED = f'{ROBOT}\nfrom tf2_msgs.msg import TFMessage\ndrive(0.2, 0.5, 20)'
+
+
+@pytest.fixture
+def still(start_kernel):
+    """Give a function that shows an arena with these arguments, without a page."""
+    kernel = start_kernel(LABKIT_HEADLESS='1')
+    kernel.run(TURNED)
+    return lambda arguments: shown(kernel.run(f'lab.arena({arguments})'))
+
+
+def test_axes_of_frames_are_where_tf2_has_them(still):
+    data = still("frames=['odom', 'base_scan', 'camera_rgb_optical_frame']")
+    first, *axes = data['text/plain'].splitlines()
+    assert first.startswith('Robot at x = 0.34 m, y = 0.17 m, heading 55°.')
+    # The scanner is 0.032 m behind the middle, the camera 0.040 m ahead of it.
+    assert axes == [
+        'Frame odom at x = 0.00 m, y = 0.00 m, its x axis at 0°.',
+        'Frame base_scan at x = 0.32 m, y = 0.14 m, its x axis at 55°.',
+        'Frame camera_rgb_optical_frame at x = 0.36 m, y = 0.20 m, its x axis at -35°.',
+    ]
+    drawn = [
+        each.text for each in ElementTree.fromstring(data['image/svg+xml']).iter() if each.text
+    ]
+    assert {'odom', 'base_scan', 'camera_rgb_optical_frame', 'z'} <= set(drawn)
+    # A camera looks along its z axis, and its y axis points down.
+    assert drawn.count('z') == 1
+
+
+def test_in_a_fixed_frame_the_world_turns_round_the_robot(still):
+    plain = still('')['text/plain']
+    text = still("frames=['odom'], fixed_frame='base_link'")['text/plain'].splitlines()
+    assert text[0] == 'All is told in the frame base_link.'
+    assert text[1].startswith('Robot at x = 0.00 m, y = 0.00 m, heading 0°. It drives')
+    assert text[2] == 'Frame odom at x = -0.33 m, y = 0.18 m, its x axis at -55°.'
+    # What the scanner sees does not depend on who draws it.
+    assert text[1].partition('Nearest')[2] == plain.partition('Nearest')[2]
+
+
+def test_what_tf2_does_not_know_is_named_with_its_reason_and_left_out(still):
+    data = still("frames=['bas_scan'], fixed_frame='base_link'")
+    *_, last = data['text/plain'].splitlines()
+    assert last == (
+        'bas_scan can\'t be drawn in base_link: "bas_scan" passed to lookupTransform argument '
+        "source_frame does not exist. Did you mean 'base_scan'?"
+    )
+    data = still("fixed_frame='moon'")
+    assert data['text/plain'].startswith('What /odom says can\'t be drawn in moon: "moon" passed')
+    assert 'polyline' not in data['image/svg+xml']
+
+
+def test_a_scan_is_drawn_where_tf2_has_its_scanner_not_where_a_burger_has_it(kernel):
+    kernel.run(ROBOT)
+    # The wall is 1 m ahead of the scanner, and that is 2 m to the left of the odometry's frame.
+    kernel.run("""
+from geometry_msgs.msg import TransformStamped
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import LaserScan
+from tf2_ros import StaticTransformBroadcaster
+odometry = Odometry()
+odometry.header.frame_id, odometry.pose.pose.orientation.w = 'odom', 1.0
+scan = LaserScan(range_min=0.1, range_max=3.5, ranges=[1.0])
+scan.header.frame_id = 'mast'
+mast = TransformStamped()
+mast.header.frame_id, mast.child_frame_id = 'odom', 'mast'
+mast.transform.translation.y = 2.0
+mast.transform.rotation.z = mast.transform.rotation.w = 0.5 ** 0.5
+view = lab.arena(odom='/elsewhere', scan='/nowhere', frames=['mast'])
+robot = view._robots['']
+robot.take_odometry(odometry)
+robot.take_scan(scan)
+""")
+    ends = 'print([[round(n, 3) + 0.0 for n in end] for end in robot.current_scene().scan])'
+    assert kernel.run(ends).text.strip() == '[]'
+    assert (
+        'The scan on /nowhere can\'t be drawn in odom: "odom" passed'
+        in kernel.run('print(view.text)').text
+    )
+    kernel.run('view._frames.heard.set_transform_static(mast, "test")')
+    assert kernel.run(ends).text.strip() == '[[0.0, 3.0]]'
+    assert "can't be drawn" not in kernel.run('print(view.text)').text
+
+
+def test_a_scan_that_is_newer_than_the_transforms_waits_for_them(kernel):
+    kernel.run(TURNED)
+    kernel.run("view = lab.arena(frames=['odom'])\nview._wait_for_first()")
+    kernel.run("""
+from sensor_msgs.msg import LaserScan
+robot_of_map = view._robots['']
+late = lab.wait_for_message('/scan', LaserScan)
+late.header.stamp.sec += 1
+robot_of_map.take_scan(late)
+""")
+    assert kernel.run('print(len(robot_of_map._waiting))').text == '1\n'
+    kernel.run(SPY + "say('seen')\ndrive(0.2, 0.5, 20)")
+    kernel.run('lab.wait_until(lambda: not robot_of_map._waiting, timeout_sec=20)')
+
+
+def test_the_page_gets_axes_and_where_the_odometry_is(kernel):
+    kernel.run(TURNED)
+    kernel.run("view = lab.arena(frames=['odom'], fixed_frame='base_link')" + SPY + "say('seen')")
+    kernel.run("lab.wait_until(lambda: any(c.get('bases', {}).get('') for c, _ in sent))")
+    told = kernel.run("""
+bases = [c['bases'][''] for c, _ in sent if c.get('bases', {}).get('')]
+(name, origin, tips), = [c['axes'] for c, _ in sent if c.get('axes')][-1]
+print([round(n, 2) for n in bases[-1]], name, [round(n, 2) for n in origin], sorted(tips))
+print([c['fixed'] for c, _ in sent if 'fixed' in c][0])
+""").text
+    assert told == "[-0.33, 0.18, -0.95] odom [-0.33, 0.18] ['x', 'y']\nbase_link\n"
+    # Without frames, nobody listens to them.
+    kernel.run('view.close()')
+    plain = 'view = lab.arena()' + SPY + "say('seen')"
+    kernel.run(plain)
+    heard = kernel.run('print([s.topic_name for s in runtime.helper.subscriptions])').text
+    assert '/tf' not in heard
+    assert '/odom' in heard
+
+
+@pytest.mark.parametrize('arguments', ['frames="odom"', 'frames=[3]', 'fixed_frame=""'])
+def test_frames_that_are_no_names_are_refused(kernel, arguments):
+    result = kernel.run(f'import labkit as lab\nlab.arena({arguments})')
+    assert 'frames is a list of names' in result.traceback
