@@ -13,7 +13,7 @@ from labkit.views.frames_tree import FrameChain, FrameEdge, FrameTree
 from labkit.views.graph_flow import in_hertz
 from labkit.views.live import helper
 from labkit.views.live_page import LivePage, Update
-from labkit.views.svg_drawing import WIDTH, caption_lines
+from labkit.views.svg_drawing import WIDTH, caption_lines, fitting
 
 __all__ = ['Frames', 'frames']
 
@@ -21,8 +21,6 @@ EMPTY = (
     'No transform was heard on /tf or /tf_static. Start a robot with lab.spin(lab.Turtlebot()), '
     'or publish one with a tf2_ros.TransformBroadcaster: it appears here.'
 )
-# The picture shrinks with the page, down to this width, px.
-NARROWEST = 340.0
 
 
 class Frames(LivePage):
@@ -105,7 +103,7 @@ class Frames(LivePage):
 
     def _handle_request(self, content: dict[str, Any]) -> None:
         if isinstance(content.get('width'), (int, float)):
-            self._width = min(max(float(content['width']), NARROWEST), WIDTH)
+            self._width = fitting(content['width'])
             self._send(everything=True)
 
     def _update(self, everything: bool) -> Update:

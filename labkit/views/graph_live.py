@@ -27,15 +27,13 @@ from labkit.views.graph_picture import Picture
 from labkit.views.graph_words import description
 from labkit.views.live import helper
 from labkit.views.live_page import REFRESH_SEC, LivePage, Update
-from labkit.views.svg_drawing import WIDTH
+from labkit.views.svg_drawing import WIDTH, fitting
 
 if TYPE_CHECKING:
     from rclpy.node import Node
 
 __all__ = ['LiveGraph']
 
-# The picture shrinks with the page, down to this width, px.
-NARROWEST = 340.0
 # Period of rates, s: faster changes can't be read.
 RATES_SEC = 1.0
 # Name of the switch of a namespace, with that behind it.
@@ -110,7 +108,7 @@ class LiveGraph(LivePage):
             self._ask(content['ask'])
             return
         if isinstance(content.get('width'), (int, float)):
-            self._width = min(max(float(content['width']), NARROWEST), WIDTH)
+            self._width = fitting(content['width'])
         for name in self._shown:
             self._shown[name] = bool(content.get(name, self._shown[name]))
         for space in spaces_of(self._now):

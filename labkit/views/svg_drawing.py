@@ -26,12 +26,13 @@ __all__ = [
     'Shape',
     'box_name',
     'caption_lines',
+    'fitting',
     'labelled',
     'shape',
 ]
 
-# Width that fits a notebook page at full size, px.
-WIDTH = 900.0
+# Width that fits a notebook page at full size; and how narrow a picture may become, px.
+WIDTH, NARROWEST = 900.0, 340.0
 MARGIN = 24.0
 # Font sizes and line height, px.
 NAME, SMALL, ROW = 15, 13, 18
@@ -188,6 +189,12 @@ fill="#ffffff" stroke="#9aa5b1"/>{_caption_svg(self._caption)}
 {drawn.replace('url(#tip)', f'url(#{name}-tip)')}
 </g>
 </svg>"""
+
+
+def fitting(page_width: float) -> float:
+    """Return the width of a picture in a page that is so wide, px; for NaN, the narrowest."""
+    # In this order: whatever is compared to NaN is not less.
+    return min(max(NARROWEST, float(page_width)), WIDTH)
 
 
 def caption_lines(caption: Sequence[str], width: float) -> list[tuple[str, bool]]:
