@@ -71,7 +71,6 @@ class Sent:
         frame: The frame in its header; '' if it has none.
         each: Whether each message is looked at, since one does not say what the others say.
         parts: What was noted of the parts of messages, by their names.
-        frames: Of transforms: each frame that was sent, with its parent and the number of times.
     """
 
     count: int = 0
@@ -83,15 +82,6 @@ class Sent:
     frame: str = ''
     each: bool = False
     parts: dict[Any, Any] = field(default_factory=dict)
-    frames: dict[str, tuple[str, int]] | None = None
-
-    def note_frames(self, transforms: Iterable[Any]) -> None:
-        """Note frames that were sent: a message does not say by whom."""
-        if self.frames is None:
-            self.frames = {}
-        for one in transforms:
-            child, parent = one.child_frame_id, one.header.frame_id
-            self.frames[child] = parent, self.frames.get(child, ('', 0))[1] + 1
 
 
 # Looks into a message now and then, see `keep_counting`.
@@ -167,9 +157,6 @@ def _publish(publisher: Publisher, msg: Any) -> None:
         sent = publisher._labkit_sent = Sent(first=now)  # type: ignore[attr-defined]
     sent.count += 1
     sent.last = now
-    transforms = getattr(msg, 'transforms', None)
-    if transforms is not None:
-        sent.note_frames(transforms)
     ended = time.time_ns()
     for note in tuple(_notes):
         note(Publication(publisher, began, ended, _caller()), msg)

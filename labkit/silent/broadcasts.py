@@ -23,8 +23,8 @@ MOST = 200
 LOOK_SEC, COUNTS_SEC = 0.5, 3.0
 
 
-def note_transforms(sent: Sent, transforms: list[Any], topic: str) -> None:
-    """Note the transforms of a message that was published just now."""
+def note_transforms(sent: Sent, transforms: list[Any], topic: str, *, looks: bool = True) -> None:
+    """Note the transforms of a message that was published just now, and look at their numbers."""
     sent.each = True
     is_static, now, known = topic == STATIC, sent.last, sent.parts
     looked = False
@@ -38,7 +38,7 @@ def note_transforms(sent: Sent, transforms: list[Any], topic: str) -> None:
             noted = known[key] = Broadcast(parent, child, first=now)
         noted.count += 1
         noted.last = now
-        if is_static or now - noted.looked_at >= LOOK_SEC:
+        if looks and (is_static or now - noted.looked_at >= LOOK_SEC):
             noted.looked_at, looked = now, True
             _look_into(noted, transform, is_static=is_static)
     if looked:

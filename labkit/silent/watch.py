@@ -212,13 +212,16 @@ class _Note:
 
 def _look_into(publisher: Any, message: Any, sent: Sent) -> None:
     """Look into a message that was published: a few fields, for types that are known."""
-    # What a check sends, and what answers it, is drawn: no fault of anybody.
-    if watch.is_resting or isinstance(message, bytes):
+    if isinstance(message, bytes):
         return
+    # What a check sends, and what answers it, is drawn: its numbers are no fault of anybody.
+    looks = not watch.is_resting
     try:
         if publisher.msg_type.__name__ == 'TFMessage':
             if publisher.topic_name in (MOVING, STATIC):
-                note_transforms(sent, message.transforms, publisher.topic_name)
+                note_transforms(sent, message.transforms, publisher.topic_name, looks=looks)
+            return
+        if not looks:
             return
         take = stamp_of(publisher.msg_type)
         sent.stamp = take(message) if take is not None else None

@@ -261,9 +261,10 @@ class HeardFrames(BufferCore):
         """Return who of this process has published what how often, by topic and edge."""
         found: dict[tuple[str, _Key], dict[str, int]] = {}
         for name, publisher in self._publishers_here():
-            for child, (parent, count) in list((sent_by(publisher).frames or {}).items()):
-                by_name = found.setdefault((publisher.topic_name, _key(parent, child)), {})
-                by_name[name] = by_name.get(name, 0) + count
+            for each in tuple(sent_by(publisher).parts.values()):
+                key = publisher.topic_name, _key(each.parent, each.child)
+                by_name = found.setdefault(key, {})
+                by_name[name] = by_name.get(name, 0) + each.count
         return found
 
     def _publishers_here(self) -> Iterator[tuple[str, Any]]:
