@@ -3,10 +3,6 @@
 What is said, and in which order, is as with the real launch.
 """
 
-from tests.launching.test_launch_service import launch
-
-__all__ = ['launch']
-
 HEAD = """
 import signal
 from launch import LaunchDescription
