@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
+from operator import attrgetter
 
 from labkit.errors import did_you_mean, first_few
 from labkit.silent.broadcasts import COUNTS_SEC, MOVING, STATIC
@@ -26,8 +27,8 @@ UNKNOWN = kind(
     'Publish where it is in its parent: with a StaticTransformBroadcaster or a '
     'static_transform_publisher if it does not move. `ros2 run tf2_tools view_frames` shows all '
     'frames.',
-    'nobody publishes transforms; other processes do, and no TransformListener of the notebook '
-    'hears them; a cell asks, which gets the error itself',
+    'nobody publishes transforms, or other processes do and no TransformListener of the notebook '
+    'hears them; if a cell asks, which gets the error itself',
     others=_OTHERS,
 )
 TWO_PARENTS = kind(
@@ -46,7 +47,7 @@ TWO_SOURCES = kind(
 )
 LOOP = kind(
     'frames.loop',
-    'No lookup ends: the tree of frames has a loop',
+    'Lookups fail: the tree of frames has a loop',
     'Each frame is in its parent, and the parent is nearer to the root. Swap header.frame_id, the '
     'parent, and child_frame_id where they are the wrong way round.',
     'there is a root',
@@ -127,7 +128,11 @@ class _Tree:
 
 def look_at_frames(scene: Scene) -> Iterator[Fault]:
     """Find what is wrong with the frames that are published, heard or asked for."""
+    said: set[str] = set()
     for fault in _found(scene):
+        if str(fault) in said:
+            continue  # two listeners hear the same
+        said.add(str(fault))
         topic = STATIC if fault.kind is STATIC_MOVES else MOVING
         # One that is about a topic is shown there.
         yield fault if fault.about.startswith('/') else replace(fault, topic=topic)
@@ -155,8 +160,9 @@ def _found(scene: Scene) -> Iterator[Fault]:
 
 
 def _publishers(scene: Scene) -> Iterator[tuple[OwnNode, Publisher]]:
-    for node in scene.nodes:
-        for pub in node.publishers:
+    # In an order that is the same at the next look, for whoever says what of a frame.
+    for node in sorted(scene.nodes, key=attrgetter('name')):
+        for pub in sorted(node.publishers, key=attrgetter('topic')):
             if pub.topic in (MOVING, STATIC):
                 yield node, pub
 
@@ -277,7 +283,7 @@ def _loops(scene: Scene, tree: _Tree, said: list[_Said]) -> Iterator[Fault]:
             LOOP,
             _menders(scene, tree, said, set(loop)),
             min(loop),
-            f'The frames go round in a loop: {steps}. No lookup with them ends.',
+            f'The frames go round in a loop: {steps}. Lookups with them fail.',
         )
 
 
@@ -324,11 +330,11 @@ def _apart(scene: Scene, tree: _Tree, said: list[_Said]) -> Iterator[Fault]:
 
 
 def _how_to_connect(roots: Mapping[str, str], one: str, two: str) -> str:
-    """Return what to do; a root that is nearly the name of another frame is that, misspelt."""
+    """Return what to do; '' unless a root is nearly the name of a frame of the other tree."""
     for root in (one, two):
         near = did_you_mean(root, [frame for frame, top in roots.items() if top != root])
         if near:
-            return f'{near} That is a frame, {root} is written as if it were another one.'
+            return f'{near} Nobody says where {root} is.'
     return ''
 
 

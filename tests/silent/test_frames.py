@@ -100,6 +100,8 @@ def test_two_parents() -> None:
     one, two = speaker('/a', often('odom', 'base')), speaker('/b', often('map', 'base'))
     (fault,) = faults(scene(one, two))
     assert (fault.kind.id, fault.nodes) == ('frames.two-parents', ('/a', '/b'))
+    # The nodes come in any order; the fault stays the same.
+    assert [str(same) for same in faults(scene(two, one))] == [str(fault)]
     # Wherever one looks: at the nodes, and at the topic.
     assert fault.names == ('/a', '/b', 'base', '/tf')
     # One after the other; and once a thing is picked up, the parent is another one.
@@ -149,6 +151,9 @@ def test_a_loop() -> None:
     (fault,) = faults(scene(hears={'a': 'b', 'b': 'c', 'c': 'a', 'd': 'a'}, count=2))
     assert (fault.kind.id, fault.nodes, fault.about) == ('frames.loop', ('/ear',), 'a')
     assert 'a is in b, b is in c, c is in a.' in str(fault)
+    heard = scene(hears={'a': 'b', 'b': 'a'}, count=2)
+    twice = replace(heard, listeners=(*heard.listeners, replace(heard.listeners[0], node='/b')))
+    assert told(twice) == ['frames.loop']
     # In itself, which tf2 ignores, but its publisher does not know.
     (fault,) = faults(scene(speaker('/robot', often('base', 'base'))))
     assert (fault.kind.id, fault.nodes) == ('frames.loop', ('/robot',))
