@@ -595,7 +595,7 @@ robot_of_map.take_scan(late)
 def test_the_page_gets_axes_and_where_the_odometry_is(kernel):
     kernel.run(TURNED)
     kernel.run("view = lab.arena(frames=['odom'], fixed_frame='base_link')" + SPY + "say('seen')")
-    kernel.run("lab.wait_until(lambda: any(c.get('bases', {}).get('') for c, _ in sent))")
+    kernel.run("lab.wait_until(lambda: any(c.get('axes') for c, _ in sent))")
     told = kernel.run("""
 bases = [c['bases'][''] for c, _ in sent if c.get('bases', {}).get('')]
 (name, origin, tips), = [c['axes'] for c, _ in sent if c.get('axes')][-1]

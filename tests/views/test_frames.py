@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from labkit.background.domains import claim_domain
 from labkit.transforms.cache import Sample
 from labkit.transforms.tree import Tree
 from labkit.views.frames_picture import FramesPicture, parts
@@ -291,3 +292,30 @@ def test_who_looks_is_hidden_from_the_graph(run) -> None:
     assert run('print(lab.graph(live=False))') == (
         'Nodes:\n  /driver\nTopics:\n  /tf [tf2_msgs/msg/TFMessage]\n    published by /driver'
     )
+
+
+# -- other processes ------------------------------------------------------------------------------
+
+
+@pytest.mark.slow('starts three kernels')
+def test_publishers_of_other_processes_are_told_apart_as_far_as_they_can_be(start_kernel) -> None:
+    claim = claim_domain()
+    env = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'ROS_DOMAIN_ID': str(claim.domain_id)}
+    here = start_kernel(LABKIT_HEADLESS='1', **env)
+    assert not here.run(STAGE + 'lab.spin(Says("driver", "odom", "base"))').error
+    first, second = start_kernel(**env), start_kernel(**env)
+    assert not first.run(STAGE + 'lab.spin(Says("first", "base", "eye", True))').error
+    assert not here.run("lab.wait_until(lambda: 'eye' in str(lab.frames()), timeout_sec=60)").error
+    assert 'eye: static, from /first\n' in here.run('print(lab.frames())').text
+    # Of two, each may have sent each: nothing is made up, and it is no fault.
+    assert not second.run(STAGE + 'lab.spin(Says("second", "base", "ear", True))').error
+    assert not here.run("lab.wait_until(lambda: 'ear' in str(lab.frames()), timeout_sec=60)").error
+    text = here.run('print(lab.frames())').text
+    assert 'eye: static, from /first or /second' in text
+    assert 'base: moving, from /driver\n' in text
+    assert '✗' not in text
+    # Another node says where base is, too.
+    assert not second.run('lab.spin(Says("third", "odom", "base"))').error
+    both = "lab.wait_until(lambda: '/driver and /third both publish' in str(lab.frames()))"
+    assert not here.run(both).error
+    claim.close()
