@@ -171,6 +171,7 @@ class Arena(LivePage):
             for robot in robots:
                 robot.forget_heard()
             if heard is not None:
+                heard.node = helper()
                 heard.forget()
 
         def enough() -> bool:

@@ -67,6 +67,7 @@ class Frames(LivePage):
         """Give published frames a moment to arrive."""
         if self._ended or self._node is not None:
             return
+        self._heard.node = helper()
         self._heard.forget()
         with subscribed(self._feeds, self._heard.is_complete):
             pass

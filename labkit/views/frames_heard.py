@@ -10,11 +10,12 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from labkit.asking.traffic import sent_by
-from labkit.background.nodes import existing_nodes, full_name
+from labkit.background.nodes import existing_nodes, full_name, node_exists
 from labkit.rosgraph.endpoints import publishers
 from labkit.rosgraph.whose import is_own
 from labkit.transforms.buffer_core import CACHE_TIME, BufferCore
@@ -67,6 +68,7 @@ class HeardFrames(BufferCore):
         node: A node that asks the graph, and whose clock the age of transforms is measured by.
 
     Attributes:
+        node: The same; another one after ROS was stopped.
         feeds: /tf and /tf_static, subscribed to as a listener of tf2 does.
 
     Raises:
@@ -79,11 +81,12 @@ class HeardFrames(BufferCore):
         from tf2_msgs.msg import TFMessage
 
         super().__init__()
-        self._node = node
+        self.node = node
         self._lock = threading.Lock()
         self._known: dict[_Key, _Known] = {}
         self._refused: dict[str, None] = {}
         self._new_at = time.monotonic()
+        self._found = FrameTree()
         # Publishers that were there at the last look, and what own ones had sent at the beginning.
         self._ends: set[bytes] = set()
         self._before: dict[tuple[str, _Key], int] = {}
@@ -103,7 +106,7 @@ class HeardFrames(BufferCore):
         self._take(message.transforms, is_static=True)
 
     def _take(self, transforms: Iterable[TransformStamped], *, is_static: bool) -> None:
-        now, clock = time.monotonic(), self._node.get_clock().now().nanoseconds
+        now, clock = time.monotonic(), self.node.get_clock().now().nanoseconds
         for one in transforms:
             self._set(one, AUTHORITY, is_static=is_static)
             key = _key(one.header.frame_id, one.child_frame_id)
@@ -134,7 +137,7 @@ class HeardFrames(BufferCore):
 
         A static transform of one that has gone would stay for ever otherwise.
         """
-        ends = {end.gid for topic in (MOVING, STATIC) for end in publishers(self._node, topic)}
+        ends = {end.gid for topic in (MOVING, STATIC) for end in publishers(self.node, topic)}
         gone = self._ends - ends
         self._ends = ends
         if gone:
@@ -160,7 +163,7 @@ class HeardFrames(BufferCore):
         self.tree = Tree(CACHE_TIME)
         self.begin()
         for feed in open_feeds:
-            feed.open(self._node)
+            feed.open(self.node)
 
     def is_complete(self) -> bool:
         """Return whether all that is published was heard.
@@ -168,9 +171,9 @@ class HeardFrames(BufferCore):
         That is known of what nodes of this process have sent. For the first message of those that
         have sent nothing yet, and for what others send, it waits until nothing new comes.
         """
-        ends = [end for topic in (MOVING, STATIC) for end in publishers(self._node, topic)]
-        foreign = any(not is_own(end.gid, self._node) for end in ends)
-        mute = any(not sent_by(end).count for _, end in self._publishers_here())
+        ends = [end for topic in (MOVING, STATIC) for end in publishers(self.node, topic)]
+        foreign = any(not is_own(end.gid, self.node) for end in ends)
+        mute = any(not sent_by(end).count for *_, end in self._publishers_here())
         with self._lock:
             known = {
                 (STATIC if one.is_static else MOVING, key) for key, one in self._known.items()
@@ -180,7 +183,15 @@ class HeardFrames(BufferCore):
         return bool(ends) and (quiet or (bool(known) and heard and not foreign and not mute))
 
     def found(self) -> FrameTree:
-        """Return the tree as it is."""
+        """Return the tree as it is, or as it was when ROS was stopped."""
+        from rclpy.exceptions import InvalidHandle
+
+        if node_exists(self.node):
+            with suppress(InvalidHandle):  # stopped meanwhile
+                self._found = self._look()
+        return self._found
+
+    def _look(self) -> FrameTree:
         said = self._said_here()
         foreign = {topic: self._foreign(topic) for topic in (MOVING, STATIC)}
         with self._lock:
@@ -260,32 +271,32 @@ class HeardFrames(BufferCore):
     def _said_here(self) -> dict[tuple[str, _Key], dict[str, int]]:
         """Return who of this process has published what how often, by topic and edge."""
         found: dict[tuple[str, _Key], dict[str, int]] = {}
-        for name, publisher in self._publishers_here():
+        for name, topic, publisher in self._publishers_here():
             for each in tuple(sent_by(publisher).parts.values()):
-                key = publisher.topic_name, _key(each.parent, each.child)
-                by_name = found.setdefault(key, {})
+                by_name = found.setdefault((topic, _key(each.parent, each.child)), {})
                 by_name[name] = by_name.get(name, 0) + each.count
         return found
 
-    def _publishers_here(self) -> Iterator[tuple[str, Any]]:
+    def _publishers_here(self) -> Iterator[tuple[str, str, Any]]:
+        """Yield the publishers of transforms in this process: node, topic, and the publisher."""
         from rclpy.exceptions import InvalidHandle
 
         for node in existing_nodes():
             try:
-                ends = [end for end in node.publishers if end.topic_name in (MOVING, STATIC)]
+                ends = [(full_name(node), end.topic_name, end) for end in node.publishers]
             except InvalidHandle:
                 continue  # destroyed meanwhile
-            yield from ((full_name(node), end) for end in ends)
+            yield from (end for end in ends if end[1] in (MOVING, STATIC))
 
     def _foreign(self, topic: str) -> list[str]:
         """Return the nodes whose messages are not noted here: those of other processes.
 
         Where nothing is noted, as in a script, it may be any.
         """
-        ends = publishers(self._node, topic)
-        others = {end.node for end in ends if not is_own(end.gid, self._node)}
+        ends = publishers(self.node, topic)
+        others = {end.node for end in ends if not is_own(end.gid, self.node)}
         if not others:
-            silent = {name for name, end in self._publishers_here() if not sent_by(end).count}
+            silent = {name for name, _, end in self._publishers_here() if not sent_by(end).count}
             others = {end.node for end in ends} & silent
         return sorted(others)
 

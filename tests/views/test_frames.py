@@ -286,6 +286,17 @@ def test_the_page_follows_what_comes_and_goes(run) -> None:
     assert 'Start a robot' in run('print(page.known["note"])')
 
 
+def test_when_ros_is_stopped_the_last_picture_stays(run) -> None:
+    run('lab.spin(Says("driver", "odom", "base"))\nview = lab.frames()\npage = Page(view)')
+    run('page.wait(lambda known: known["svg"])\nlab.stop()')
+    assert run('print(page.known["ended"])').startswith('ROS was stopped.')
+    assert run('print(view._stored_form()["text/plain"])') == (
+        'odom\n└─ base: moving, from /driver'
+    )
+    assert run('page.say(view="seen")\nprint("base in odom" in page.known["told"])') == 'True'
+    assert run('print(runtime.started)') == 'False'
+
+
 def test_who_looks_is_hidden_from_the_graph(run) -> None:
     run('lab.spin(Says("driver", "odom", "base"))\npage = Page(lab.frames())')
     run('page.wait(lambda known: known["svg"])')
