@@ -602,7 +602,7 @@ bases = [c['bases'][''] for c, _ in sent if c.get('bases', {}).get('')]
 print([round(n, 2) for n in bases[-1]], name, [round(n, 2) for n in origin], sorted(tips))
 print([c['fixed'] for c, _ in sent if 'fixed' in c][0])
 """).text
-    assert told == "[-0.33, 0.18, -0.95] odom [-0.33, 0.18] ['x', 'y']\nbase_link\n"
+    assert told == "[-0.33, 0.18, -0.96] odom [-0.33, 0.18] ['x', 'y']\nbase_link\n"
     # Without frames, nobody listens to them.
     kernel.run('view.close()')
     plain = 'view = lab.arena()' + SPY + "say('seen')"
