@@ -239,8 +239,11 @@ def replaced_class(kind: str, topic: str) -> str:
     from labkit.background.nodes import existing_nodes, made
 
     space, alive = vars(sys.modules['__main__']), {*map(type, existing_nodes())}
+    # What another cell, or another run of this one, has made is no part of this attempt.
+    cells = {_cell_of(each) for each in alive} - {''}
     for each in made.kinds() if settings.in_kernel() else ():
-        if space.get(each.__name__) is not each or each in alive:
+        here = space.get(each.__name__) is each and _cell_of(each) in cells
+        if not here or each in alive:
             continue
         written = definition(each)
         if written is not None and _makes(ast.unparse(written), kind, topic):
@@ -254,6 +257,13 @@ def _is_written(kind: type) -> bool:
     inside = list(ast.walk(written)) if written is not None else []
     open_ends = [node for node in inside if isinstance(node, ast.Constant) and node.value is ...]
     return bool(inside) and not open_ends
+
+
+def _cell_of(kind: type) -> str:
+    """Return the name of the file that holds the code of a class of the notebook, or `''`."""
+    functions = [thing for thing in vars(kind).values() if isinstance(thing, FunctionType)]
+    is_own = kind.__module__ == '__main__' and functions
+    return functions[0].__code__.co_filename if is_own else ''
 
 
 def definition(kind: type) -> ast.ClassDef | None:

@@ -60,7 +60,7 @@ def test_init_that_was_stopped_is_told_before_any_spin(kernel: Any) -> None:
     told = ' '.join(kernel.run('lesson.ones.check()').text.split())
     assert told.startswith('FAIL: ones'), told
     assert '__init__ had not returned when its cell was stopped (Cell In[' in told, told
-    assert 'line 9: raise KeyboardInterrupt' in told, told
+    assert 'line 10: raise KeyboardInterrupt' in told, told
 
 
 def test_what_is_logged_is_a_text(lab: ModuleType) -> None:

@@ -128,6 +128,8 @@ class Runs(GraphClause):
                 spinning.not_spun(
                     probe,
                     name,
-                    common_mistakes.NOT_SPUN if here else common_mistakes.PROGRAM_WAITS,
+                    (common_mistakes.NOT_SPUN if here else common_mistakes.PROGRAM_WAITS).of(
+                        spin=spinning.how_to_spin(probe, name)
+                    ),
                 ),
             )

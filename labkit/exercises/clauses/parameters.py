@@ -185,7 +185,7 @@ class Follows(GraphClause):
             expected = f'with {_show(values)}: {fail.expected}'
             if before is None or not self._is_as_before(evidence, before):
                 mistake = fail.mistake
-                if mistake is not None and mistake.id == common_mistakes.OTHER_RATE.id:
+                if mistake is not None and mistake.id == 'rate/other':
                     mistake = common_mistakes.PARAMETER_RATE
                 raise Fail(expected, fail.seen, mistake, todo=fail.todo) from None
             raise Fail(

@@ -98,7 +98,11 @@ def spun(probe: Probe, endpoint: Endpoint) -> None:
         raise Fail(
             f'{endpoint.node} takes its messages and calls its callbacks',
             f'{endpoint.node} is there, but it is not spun',
-            not_spun(probe, endpoint.node, common_mistakes.NOT_TAKEN),
+            not_spun(
+                probe,
+                endpoint.node,
+                common_mistakes.NOT_TAKEN.of(spin=how_to_spin(probe, endpoint.node)),
+            ),
         )
 
 
@@ -110,7 +114,7 @@ def not_spun(probe: Probe, name: str, usual: Mistake) -> Mistake:
     origin = made.origins.get(node) if node is not None else None
     run = last_cell.run_of(origin.cell.cell_id) if origin is not None else None
     if origin is None or run is None or run.number != origin.cell.number or not run.stopped_in:
-        return usual.of(spin=how_to_spin(probe, name))
+        return usual
     return common_mistakes.INIT_WAITS.of(line=run.stopped_in)
 
 

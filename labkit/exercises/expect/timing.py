@@ -13,7 +13,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from labkit.exercises import common_mistakes
-from labkit.exercises.expect.spinning import hanging, not_spun
+from labkit.exercises.expect.spinning import hanging, how_to_spin, not_spun
 from labkit.exercises.messages_heard import Sample, Watch
 from labkit.exercises.mistakes import Mistake
 from labkit.exercises.probe import Probe
@@ -162,7 +162,8 @@ def silence(probe: Probe, source: Endpoint, count: int, seconds: float) -> Mista
     if node is None:
         return common_mistakes.NEVER_PUBLISHED
     if node.executor is None:
-        return not_spun(probe, source.node, common_mistakes.NEVER_RUN)
+        usual = common_mistakes.NEVER_RUN.of(spin=how_to_spin(probe, source.node))
+        return not_spun(probe, source.node, usual)
     if node.get_clock().ros_time_is_active and not probe.node.count_publishers('/clock'):
         return common_mistakes.NO_CLOCK
     timers = [timer for timer in node.timers if not timer.is_canceled()]

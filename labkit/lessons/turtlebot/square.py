@@ -142,7 +142,7 @@ def _draw(outline: Outline) -> list[Trial]:
             goals=outline.corners[1:],
             from_start=True,
         )
-        for _ in range(random.randint(3, 4))
+        for _ in range(random.randint(2, 3))
     ]
 
 

@@ -43,7 +43,7 @@ ANSWERS = [
     ),
     wrong(
         'two seconds later',
-        'It was logged 2 s later.',
+        's later. A timer logs it',
         (
             "        self.get_logger().info(f'{who} says {text}')\n",
             '        self.lines.append((self.get_clock().now().nanoseconds, who, text))\n\n'
@@ -92,7 +92,7 @@ ANSWERS = [
     ),
     wrong(
         'the first word of a name',
-        'The name is missing, or the word says.',
+        'The name is cut:',
         ('{who} says', '{who.split()[0]} says'),
     ),
     right('functions and split'),

@@ -12,8 +12,22 @@ TO_2 = '<remap from="chatter" to="/robot2/chatter"/>'
 ANSWERS = [
     wrong(
         'to the own topic',
-        'so each robot has a chatter of its own',
+        'The remap leads to the topic of its own robot',
         (TO_2, '<remap from="chatter" to="/robot1/chatter"/>'),
+    ),
+    wrong(
+        'both talkers are remapped, too',
+        'Remap the listeners only.',
+        (
+            'namespace="robot1"/>\n    <node pkg="demo_nodes_py" exec="talker"/>',
+            'namespace="robot1"/>\n    <node pkg="demo_nodes_py" exec="talker">\n'
+            f'      {TO_2}\n    </node>',
+        ),
+        (
+            'namespace="robot2"/>\n    <node pkg="demo_nodes_py" exec="talker"/>',
+            'namespace="robot2"/>\n    <node pkg="demo_nodes_py" exec="talker">\n'
+            f'      {TO_1}\n    </node>',
+        ),
     ),
     wrong(
         'one namespace is gone',

@@ -77,15 +77,6 @@ ANSWERS = [
         ('(0.0, 1.5708)', '(0, 1.5708)'),
         outcome=ERROR,
     ),
-    wrong(
-        'two drives and no more',
-        'drives after 2 of them, and nothing after the next one',
-        (
-            '        self.plan = 4 * (side + turn)\n',
-            "        self.count = getattr(self, 'count', 0) + 1\n"
-            '        if self.count <= 2:\n            self.plan = 4 * (side + turn)\n',
-        ),
-    ),
     right('by odometry'),
     right(
         'without commands in its pauses',
