@@ -18,6 +18,7 @@ from labkit.exercises.clauses import (
 )
 from labkit.exercises.clauses.answering import WITHIN_SEC
 from labkit.exercises.draws import draw_texts
+from labkit.exercises.messages_heard import Lived
 from labkit.lessons.my_name_is.stages import (
     COMPLETES,
     INNER,
@@ -190,7 +191,8 @@ def _is_here(probe: Probe, end: Endpoint) -> None:
 
 def _names_differ(evidence: Evidence) -> str:
     """Compare what was made of the first text."""
-    samples = evidence.streams[OUTER, ''].samples
+    came = evidence.streams[OUTER, ''].samples
+    samples = [sample for sample in came if isinstance(sample, Lived)]
     # Later texts may begin with the same words.
     first = [each for each in samples if each.at - samples[0].at < WITHIN_SEC]
     values = [each.message.data for each in first]
