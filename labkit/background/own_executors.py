@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 __all__ = ['Call', 'calls_in', 'in_task', 'is_spun', 'waiting']
 
-# Nobody can tell whether a loop will spin again. One that has not for so long is told as a node
-# that nobody spins, and that is taken back when it does, s.
+# Nobody can tell whether a loop will spin again. A node that none has spun for so long is told as
+# one that nobody spins, and that is taken back when one does, s.
 _BETWEEN_SEC = 3.0
 
 

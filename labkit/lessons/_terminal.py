@@ -23,10 +23,13 @@ from labkit.exercises.what_is_asked import NODE, Role
 if TYPE_CHECKING:
     from labkit.exercises.probe import Probe
 
-__all__ = ['APPEAR_SEC', 'InATerminal', 'RunsFile']
+__all__ = ['APPEAR_SEC', 'AT_WORK_SEC', 'InATerminal', 'RunsFile']
 
 # How long a node may take to appear on a busy machine, s.
 APPEAR_SEC = 15.0
+# A program on its way to a node runs, or waits for a processor or a disk, but for moments: in this
+# time there are a hundred looks, s.
+AT_WORK_SEC = 1.0
 # In so many seconds a new client finds a node also on a busy machine.
 ANSWER_SEC = 4.0
 # What an editor makes, and may have made in the place of a file of Python.
@@ -168,6 +171,8 @@ class InATerminal:
 
     def _refuse(self, probe: Probe, mine: Sequence[Any]) -> NoReturn:
         """Say why the node is not there."""
+        from labkit.programs.children import is_at_work
+
         alive = list(filter(_is_alive, mine))
         if not alive:
             raise Fail(self.wanted, 'no such node', self._of(NOT_RUNNING))
@@ -179,6 +184,12 @@ class InATerminal:
         if others:
             mistake = REMAPPED if '__node:=' in self.command else NODE_NAME
             raise Fail(self.wanted, ', '.join(sorted(others)), self._of(mistake))
+        # On a busy machine a program may need longer until it makes its node.
+        if probe.wait(lambda: any(is_at_work(each.pid) for each in alive), AT_WORK_SEC):
+            raise NotAttempted(
+                f'Too early to tell: {self.command} was started, and its node is not there yet. '
+                'Run this cell again.'
+            )
         raise Fail(self.wanted, 'it runs, and no node has come', self._of(NOT_FOUND))
 
     def elsewhere(self, process: Any) -> str:
@@ -236,6 +247,10 @@ class RunsFile(GraphClause):
                 'one run with all of them',
                 ONE_FOR_ALL.of(commands=commands),
             )
+
+    def process(self, evidence: Evidence) -> Any:
+        """Return the process of its first node, as psutil has it. Raises what `find` does."""
+        return self._program(self.nodes[0]).find(evidence.probe)
 
     def judge(self, evidence: Evidence) -> str:
         """Say where they run."""

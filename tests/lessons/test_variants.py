@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from collections.abc import Iterator
+from contextlib import closing, suppress
 from pathlib import Path
 from types import ModuleType
 
+import psutil
 import pytest
 from proof import lessons
 
 import labkit
 from labkit import settings
+from labkit.background.domains import claim_domain
 from labkit.background.nodes import existing_nodes
 from labkit.background.runtime import runtime
 from labkit.exercises import Exercise, Outcome
@@ -32,9 +37,15 @@ CHOSEN = SEEDS[: int(os.environ.get('LABKIT_SEEDS', '3'))]
 @pytest.fixture
 def lab(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[ModuleType]:
     monkeypatch.setenv('LABKIT_HOME', str(tmp_path))
-    labkit.start()
-    yield labkit
-    labkit.stop()
+    monkeypatch.chdir(tmp_path)
+    # Programs in terminals find the nodes of this process, and nobody else's.
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    with closing(claim_domain()) as claim:
+        monkeypatch.setenv('ROS_DOMAIN_ID', str(claim.domain_id))
+        labkit.start(domain_id=claim.domain_id)
+        yield labkit
+        end_programs()
+        labkit.stop()
     settings.after_start.clear()
 
 
@@ -49,7 +60,24 @@ def run(lab: ModuleType, code: str) -> None:
     for node in list(existing_nodes()):
         if node is not runtime.helper and not isinstance(node, Turtlebot):
             lab.remove(node)
-    exec(compile(code, '<cell>', 'exec'), {'lab': lab})
+    end_programs()
+    if code.startswith('%%bash\n'):
+        path = f'{Path(sys.executable).parent}{os.pathsep}{os.environ["PATH"]}'
+        script = code.partition('\n')[2]
+        subprocess.run(['bash', '-c', script], env={**os.environ, 'PATH': path}, check=True)
+    else:
+        exec(compile(code, '<cell>', 'exec'), {'lab': lab})
+
+
+def end_programs() -> None:
+    """End the programs in terminals, which were started in this folder."""
+    mine = []
+    for each in psutil.process_iter():
+        with suppress(psutil.Error):
+            if each.pid != os.getpid() and Path(each.cwd()) == Path.cwd():
+                mine.append(each)
+                each.kill()
+    psutil.wait_procs(mine)
 
 
 def neighbour(variants: Variants, seed: str) -> Exercise:

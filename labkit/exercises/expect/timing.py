@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import statistics
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -121,12 +121,18 @@ def lasts(stream: Sequence[Sample], hz: float) -> bool:
     return sent >= min(MANY, round(MANY_SEC * hz))
 
 
-def ends_with_node(probe: Probe, source: Endpoint) -> Watch:
+def ends_with_node(probe: Probe, source: Endpoint, end: Callable[[], None] | None = None) -> Watch:
     """Stop the publisher's node, and expect that its publisher goes.
 
     The node is gone afterwards, so an exercise that uses this has `once=True`. The last message
     of a node in another process may be lost when its publisher goes at once: such a node stays
     for a moment.
+
+    Args:
+        probe: The probe of the check.
+        source: The publisher.
+        end: Ends its node. By default it is removed, or its process gets Ctrl-C if this notebook
+            has started it.
 
     Returns:
         The messages up to the end; the last one is what the node said as it ended.
@@ -135,7 +141,10 @@ def ends_with_node(probe: Probe, source: Endpoint) -> Watch:
         Fail: The topic still has that publisher, or messages.
     """
     watch = messages(probe, source, count=1)
-    probe.stop_node(source)
+    if end is None:
+        probe.stop_node(source)
+    else:
+        end()
 
     def gone() -> bool:
         return source.gid not in {endpoint.gid for endpoint in probe.publishers(source.topic)}

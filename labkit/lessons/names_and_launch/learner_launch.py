@@ -19,6 +19,7 @@ from labkit.exercises import Clause, Fail, NotAttempted, Probe, Stage, words_of
 from labkit.exercises.exercise import NOTHING_YET
 from labkit.exercises.figures import figure
 from labkit.exercises.machine_faults import refuse_machine_fault
+from labkit.lessons._terminal import AT_WORK_SEC
 from labkit.lessons.package.learner_workspace import workspace
 
 if TYPE_CHECKING:
@@ -30,9 +31,6 @@ WORDS = words_of(__file__)
 
 EMPTY = '<launch>\n  <!-- ... -->\n</launch>'
 _FORMS = ('xml', 'yaml', 'py')
-# A program on its way to a node runs, or waits for a processor or a disk, but for moments: in this
-# time there are a hundred looks, s.
-AT_WORK_SEC = 1.0
 # What timers start within so long a time belongs to the beginning, s.
 SOON_SEC = 3.0
 

@@ -1,4 +1,4 @@
-"""Exercise: stop the robot, whatever ends the node."""
+"""Exercise: a program in a file that stops the robot when Ctrl-C ends it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from labkit.exercises.clauses import (
     Asked,
     Evidence,
     Messages,
-    Named,
     Publishes,
     Stream,
     often,
@@ -21,6 +20,7 @@ from labkit.exercises.history import Note
 from labkit.exercises.messages_heard import Sample
 from labkit.exercises.observation import live
 from labkit.exercises.variants import varied
+from labkit.lessons._terminal import RunsFile
 from labkit.lessons.turtlebot.drive import SAME, TWIST, command_of
 
 __all__ = ['exercise']
@@ -28,7 +28,10 @@ __all__ = ['exercise']
 WORDS = words_of(__file__)
 
 NODE = '/cruiser'
+RUNS = RunsFile('nodes/cruiser.py', [NODE])
 SPEED, HZ = 0.1, 10.0
+# Those of the variants, besides, Hz.
+RATES = (4.0, 5.0, 8.0)
 # How long the last command of another process may be on its way, s.
 LATE_SEC = 0.3
 # How much time passes for another node, to see whether it goes on, s: it sends ten commands a
@@ -60,28 +63,22 @@ def _cruises(stream: Stream, wanted: float) -> None:
 def _says_stop(evidence: Evidence) -> str:
     probe = evidence.probe
     source = evidence.publisher('/cmd_vel', NODE)
-    is_script = not probe.in_this_process(source)
-    is_lottery = is_script and _ends_ros_first(source.gid)
-    watch = expect.ends_with_node(probe, source)
+    process = RUNS.process(evidence)
+    is_lottery = _ends_ros_first(process.pid)
+    watch = expect.ends_with_node(probe, source, partial(process.send_signal, signal.SIGINT))
     probe.wait(lambda: command_of(watch.samples[-1]).stops, LATE_SEC)
     last = command_of(watch.samples[-1])
     if is_lottery:
         raise Fail(
-            'a script whose last command always says stop',
+            'a program whose last command always says stop',
             f'the last command says {last}; and rclpy.init() has put a handler of its own in '
             'the place of that for Ctrl-C',
             HANDLERS,
         )
     _refuse_others(probe)
     if not last.stops:
-        mistake = NO_STOP
-        if is_script:
-            mistake = NO_STOP.then(
-                'In finally: publish an empty Twist(), then wait until it is there: '
-                'publisher.wait_for_all_acked()'
-            )
         expected = 'a last command with all numbers 0.0'
-        raise Fail(expected, f'the last command says {last}', mistake)
+        raise Fail(expected, f'the last command says {last}', NO_STOP)
     return 'The last command says stop.'
 
 
@@ -96,22 +93,17 @@ def _refuse_others(probe: Probe) -> None:
         raise Fail(f'no commands when {NODE} has ended', seen, ANOTHER.of(name=names[0]))
 
 
-def _ends_ros_first(gid: bytes) -> bool:
-    """Tell whether the process of an endpoint has the signal handlers of rclpy.
+def _ends_ros_first(pid: int) -> bool:
+    """Tell whether a process has the signal handlers of rclpy.
 
     rclpy has one for SIGTERM, too. Python by itself has none: so that one tells. Source: rclpy,
     src/rclpy/signal_handler.cpp; where there is no /proc, it is not known.
     """
-    import psutil  # type: ignore[import-untyped]
-
-    from labkit.rosgraph.whose import process_id
-
-    for child in psutil.Process().children(recursive=True):
-        status = Path(f'/proc/{child.pid}/status')
-        if child.pid & 0xFFFF == process_id(gid) and status.exists():
-            lines = dict(line.split(':', 1) for line in status.read_text().splitlines())
-            return bool(int(lines['SigCgt'], 16) & 1 << signal.SIGTERM - 1)
-    return False
+    status = Path(f'/proc/{pid}/status')
+    if not status.exists():
+        return False
+    lines = dict(line.split(':', 1) for line in status.read_text().splitlines())
+    return bool(int(lines['SigCgt'], 16) & 1 << signal.SIGTERM - 1)
 
 
 def _variant(*, speed: float = SPEED, hz: float = HZ) -> Exercise:
@@ -123,7 +115,7 @@ def _variant(*, speed: float = SPEED, hz: float = HZ) -> Exercise:
         reliable=['/cmd_vel'],
         once=True,
         clauses=(
-            Named(NODE),
+            RUNS,
             Publishes('/cmd_vel', hz, TWIST, by=NODE),
             Messages(
                 '/cmd_vel', words.clause('cruises'), partial(_cruises, wanted=speed), by=NODE
@@ -139,11 +131,13 @@ def _variant(*, speed: float = SPEED, hz: float = HZ) -> Exercise:
 
 def _guess(probe: Probe) -> dict[str, float] | None:
     expect.publisher(probe, '/cmd_vel', by=NODE)
-    samples = live(probe, {'/cmd_vel': TWIST}, 2.0, nodes=[NODE]).on('/cmd_vel')
-    if len(samples) < 3 or samples[2].at == samples[1].at:
+    # Times of another process are known to a step, so a long while tells the rate.
+    samples = live(probe, {'/cmd_vel': TWIST}, 10.0, nodes=[NODE]).on('/cmd_vel')
+    if len(samples) < 3 or samples[-1].at == samples[0].at:
         return None
-    hz = 1 / (samples[2].at - samples[1].at)
-    return {'speed': round(samples[-1].message.linear.x, 6), 'hz': round(hz, 3)}
+    seen = (len(samples) - 1) / (samples[-1].at - samples[0].at)
+    hz = min((HZ, *RATES), key=lambda each: abs(each - seen))
+    return {'speed': round(samples[-1].message.linear.x, 6), 'hz': hz}
 
 
 exercise = varied(
@@ -151,5 +145,5 @@ exercise = varied(
     _variant,
     _guess,
     speed=[centimetres / 100 for centimetres in (5, 6, 7, 8, 9, *range(11, 22))],
-    hz=(4.0, 5.0, 8.0),
+    hz=RATES,
 )

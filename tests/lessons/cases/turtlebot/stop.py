@@ -2,69 +2,77 @@
 
 from __future__ import annotations
 
-from cases import ERROR, right, wrong
+from cases import right, wrong
 
 __all__ = ['ANSWERS']
 
+RUN = 'env --default-signal=INT python3 nodes/cruiser.py > cruiser.log 2>&1 &\n'
+LAST = '        node.publisher.publish(Twist())\n'
+WAIT = '        node.publisher.wait_for_all_acked()\n'
+
 ANSWERS = [
+    wrong('in the notebook', 'A node of a notebook ends with the notebook.'),
+    wrong('not started', 'No program of that name runs on this machine', (RUN, '')),
     wrong(
-        'stops too late',
-        'destroy_node of /cruiser raised InvalidHandle',
-        (
-            '\n    def destroy_node(self):\n        self.publisher.publish(Twist())\n'
-            '        super().destroy_node()\n',
-            '\n    def destroy_node(self):\n        super().destroy_node()\n'
-            '        self.publisher.publish(Twist())\n',
-        ),
-        outcome=ERROR,
+        'without the line with export',
+        'it has none: domain 0',
+        (RUN, RUN.replace('env ', 'env -u ROS_DOMAIN_ID ')),
     ),
     wrong(
-        'an int in a float field', 'takes values of type float', ('= 0.1', '= 1'), outcome=ERROR
+        'changed while it runs',
+        'A program keeps the code with which it was started.',
+        (RUN, f'{RUN}touch -d "5 seconds" nodes/cruiser.py\n'),
     ),
+    wrong(
+        'does not spin',
+        'If it ends at once, read there why.',
+        ('        rclpy.spin(node)\n', '        pass\n'),
+    ),
+    wrong(
+        'a fault at the start',
+        'If it ends at once, read there why.',
+        ('from rclpy.node import Node\n', ''),
+    ),
+    wrong('another file', 'the file nodes/cruise.py', ('> nodes/cruiser.py', '> nodes/cruise.py')),
     wrong(
         'another name',
-        'Capital and small letters differ in names',
+        'The name of the node is what super().__init__() gets.',
         ("__init__('cruiser')", "__init__('Cruiser')"),
     ),
     wrong(
         'eight commands a second',
-        'a message every 0.125 s (8 Hz)',
+        '1.25 times too slow',
         ('create_timer(0.1,', 'create_timer(0.125,'),
     ),
     wrong(
-        'a script with the signal handlers of rclpy',
+        'the last lines of lesson 02',
         'With Ctrl-C this handler shuts ROS down',
-        ('rclpy.init(signal_handler_options=SignalHandlerOptions.NO)', 'rclpy.init()'),
-        ('from rclpy.signals import SignalHandlerOptions\n', ''),
-        ('    rclpy.shutdown()\n', '    rclpy.try_shutdown()\n'),
-        of='a script with finally',
-        run='process',
+        ('signal_handler_options=SignalHandlerOptions.NO', ''),
+        ('    finally:\n', ''),
+        (LAST, ''),
+        (WAIT, ''),
+        ('except KeyboardInterrupt', 'except (KeyboardInterrupt, ExternalShutdownException)'),
+        (
+            'import rclpy\n',
+            'import rclpy\nfrom rclpy.executors import ExternalShutdownException\n',
+        ),
     ),
     wrong(
         'publishes before the robot listens',
-        'nobody was there to hear it',
+        'publish() was called too early',
         (
             '        self.timer = self.create_timer(0.1, self.on_timer)\n',
             '        self.on_timer()\n',
         ),
     ),
     wrong(
-        'a script that publishes before the robot listens',
-        'publish() was called too early',
-        ('node.create_timer(0.1, drive)', 'drive()'),
-        of='a script with finally',
-        run='process',
-    ),
-    wrong(
-        'the speed ramps up',
+        'the speed ramps up each time',
         'each command says',
         ('        self.publisher =', '        self.speed = 0.0\n        self.publisher ='),
         (
             '        msg.linear.x = 0.1\n',
-            '        self.speed = min(0.1, self.speed + 0.02)\n'
-            '        msg.linear.x = self.speed\n',
+            '        self.speed = (self.speed + 0.02) % 0.12\n        msg.linear.x = self.speed\n',
         ),
-        ('Cruiser())\n', 'Cruiser())\nlab.wait_until(lambda: cruiser.speed >= 0.1)\n'),
     ),
     wrong(
         'best effort',
@@ -73,28 +81,37 @@ ANSWERS = [
         ("'cmd_vel', 10", "'cmd_vel', qos_profile_sensor_data"),
     ),
     wrong(
-        'a second one drives on',
-        'The robot does what the newest command says',
-        ('(self):\n        super', "(self, name='cruiser'):\n        super"),
-        ("__init__('cruiser')", '__init__(name)'),
-        ('Cruiser())\n', "Cruiser())\nhelper = lab.spin(Cruiser('helper'))\n"),
+        'another topic',
+        'names must be equal to the last letter',
+        ("'cmd_vel'", "'cmd_velo'"),
     ),
     wrong(
-        'a script without finally',
-        'The node ends without a word.',
-        ('    publisher.publish(Twist())\n', ''),
-        of='a script with finally',
-        run='process',
+        'a second one drives on',
+        'The robot does what the newest command says',
+        (RUN, f'{RUN}{RUN.replace("cruiser.py", "cruiser.py --ros-args -r __node:=helper")}'),
     ),
-    wrong('wrong type', 'Use the same type on both sides', outcome=ERROR),
+    wrong(
+        'Ctrl-C does not end it',
+        'a thread or a loop that does not end with it',
+        ('        pass\n', '        rclpy.spin(node)\n'),
+    ),
+    wrong(
+        'stops first, and drives once more',
+        'The program ends without a word.',
+        (LAST, f'{LAST}        node.on_timer()\n'),
+    ),
     right(
-        'says stop twice',
+        'in destroy_node',
         (
-            '        super().destroy_node()',
-            '        self.timer.cancel()\n        self.publisher.publish(Twist())\n'
-            '        super().destroy_node()',
+            '\n\ndef main',
+            '\n    def destroy_node(self):\n        self.publisher.publish(Twist())\n'
+            '        self.publisher.wait_for_all_acked()\n        super().destroy_node()\n'
+            '\n\ndef main',
         ),
+        (LAST, '        node.destroy_node()\n'),
+        (WAIT, ''),
     ),
+    right('says stop twice', (LAST, f'{LAST}{LAST}')),
     right(
         'each fifth call of a fast timer',
         ('create_timer(0.1,', 'create_timer(0.02,'),
@@ -106,27 +123,9 @@ ANSWERS = [
         ),
     ),
     right(
-        'a thread with a rate',
-        ('from geometry', '\nimport threading\n\nimport rclpy\nfrom geometry'),
-        (
-            '        self.timer = self.create_timer(0.1, self.on_timer)\n',
-            '        self.rate = self.create_rate(10)\n        self.driving = True\n'
-            '        self.thread = threading.Thread(target=self.drive, daemon=True)\n'
-            '        self.thread.start()\n\n    def drive(self):\n'
-            '        while self.driving and rclpy.ok():\n            self.on_timer()\n'
-            '            self.rate.sleep()\n',
-        ),
-        (
-            '    def destroy_node(self):\n',
-            '    def destroy_node(self):\n        self.driving = False\n'
-            '        self.rate.destroy()\n        self.thread.join(1.0)\n',
-        ),
+        'a loop',
+        ('        rclpy.spin(node)\n', '        while True:\n            rclpy.spin_once(node)\n'),
     ),
-    right('a script with finally', run='process'),
-    right(
-        'a script with a loop',
-        ('    rclpy.spin(node)\n', '    while True:\n        rclpy.spin_once(node)\n'),
-        of='a script with finally',
-        run='process',
-    ),
+    right('functions'),
+    right('in the folder', (RUN, f'cd nodes\n{RUN.replace("nodes/", "")}')),
 ]
