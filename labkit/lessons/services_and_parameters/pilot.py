@@ -1,4 +1,4 @@
-"""Exercise: a driver with two parameters, of which one is the limit of the other."""
+"""Exercise: a driver in a file, with two parameters, of which one is the limit of the other."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from labkit.exercises.clauses import (
     OFF,
     Follows,
     HasParameter,
-    Named,
     Refuses,
     Stream,
     in_words,
 )
 from labkit.exercises.clauses.parameter_client import Values
 from labkit.exercises.draws import draw_float, draw_size
+from labkit.lessons._terminal import RunsFile
 
 __all__ = ['exercise']
 
@@ -32,13 +32,12 @@ AT_THE_LIMIT = WORDS.mistake('pilot/at-the-limit')
 
 
 def _draw() -> Sequence[Values]:
-    """Return pairs: the second speed is above the first limit, some at an edge, one large."""
+    """Return pairs: the second speed is above the first limit, the last at the edge, one large."""
     low = draw_float(0.05, 0.1)
     high = draw_float(0.15, 0.2)
     return [
         {'speed': draw_float(0.01, low), 'limit': low},
         {'limit': draw_float(high, 0.22), 'speed': high},
-        {'speed': low, 'limit': low},
         {'speed': draw_size(0.5, 50.0), 'limit': draw_float(51.0, 900.0)},
         {'speed': 0.0, 'limit': 0.0},
     ]
@@ -93,7 +92,7 @@ exercise = Exercise(
     publishes={TOPIC: TWIST},
     reliable=[TOPIC],
     clauses=(
-        Named(NODE),
+        RunsFile('nodes/pilot.py', [NODE]),
         HasParameter(NODE, 'speed', float, WORDS.clause('has-parameter')),
         HasParameter(NODE, 'limit', float, WORDS.clause('has-parameter-2')),
         _FOLLOWS,

@@ -2,11 +2,31 @@
 
 from __future__ import annotations
 
-from cases import ERROR, right, wrong
+from cases import right, wrong
 
 __all__ = ['ANSWERS']
 
+RUN = 'python3 nodes/pilot.py > pilot.log 2>&1 &\n'
+
 ANSWERS = [
+    wrong('in the notebook', 'A node of a notebook ends with the notebook.'),
+    wrong('not started', 'No program of that name runs on this machine', (RUN, '')),
+    wrong(
+        'without the line with export',
+        'it has none: domain 0',
+        (RUN, f'env -u ROS_DOMAIN_ID {RUN}'),
+    ),
+    wrong(
+        'changed while it runs',
+        'A program keeps the code with which it was started.',
+        (RUN, f'{RUN}touch -d "5 seconds" nodes/pilot.py\n'),
+    ),
+    wrong(
+        'another node name',
+        'The name of the node is what super().__init__() gets.',
+        ("__init__('pilot'", "__init__('pilots'"),
+    ),
+    wrong('another file', 'the file nodes/pilots.py', ('> nodes/pilot.py', '> nodes/pilots.py')),
     wrong(
         'best effort',
         '/pilot offers best effort',
@@ -114,7 +134,7 @@ ANSWERS = [
     ),
     wrong(
         'five changes and no more',
-        'after it has refused other values',
+        'The parameter has changed, and what the node does has not',
         (
             '    def on_change(self, parameters):\n',
             '    def on_change(self, parameters):\n'
@@ -131,7 +151,7 @@ ANSWERS = [
     ),
     wrong(
         'keeps a value that it refuses',
-        'after it has refused',
+        'all else 0.0, in each message',
         (
             '        values.update(',
             '        self.speed = {p.name: p.value for p in '
@@ -151,21 +171,18 @@ ANSWERS = [
     ),
     wrong(
         'refuses by an error',
-        'ValueError',
+        'If it ends at once, read there why.',
         (
             "        return SetParametersResult(successful=False, reason='speed "
             "must be from 0.0 to limit')\n",
             "        raise ValueError('speed must be from 0.0 to limit')\n",
         ),
-        outcome=ERROR,
     ),
     wrong(
-        'no callback, in a process of its own',
-        'the node uses it',
-        ('        self.add_on_set_parameters_callback(self.on_set)\n', ''),
-        run='process',
+        'another topic',
+        'names must be equal to the last letter',
+        ("'cmd_vel'", "'cmd_velo'"),
     ),
-    wrong('wrong type', 'Use the same type on both sides', outcome=ERROR),
     right(
         'keeps the speed in an attribute',
         (
@@ -189,7 +206,7 @@ ANSWERS = [
             '        bad = math.isnan(speed) or math.isnan(limit)\n'
             '        if not (bad or speed < 0.0 or speed > limit):\n',
         ),
-        ('from geometry', 'import math\n\nfrom geometry'),
+        ('import rclpy\n', 'import math\n\nimport rclpy\n'),
     ),
     right(
         'a range for the lower end, besides',
@@ -208,6 +225,6 @@ ANSWERS = [
     ),
     right(
         'with values from its command line',
-        ('lab.spin(Pilot())', "lab.spin(Pilot(cli_args=['--ros-args', '-p', 'limit:=0.22']))"),
+        (RUN, RUN.replace('pilot.py', 'pilot.py --ros-args -p limit:=0.22')),
     ),
 ]
