@@ -1,4 +1,4 @@
-"""Exercise: an action server that rejects goals."""
+"""Exercise: an action server in a file, which rejects goals."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from dataclasses import replace
 from labkit.exercises import Exercise, Fail, words_of
 from labkit.exercises.clauses import Goal, Pursues, Pursuit, Serves
 from labkit.exercises.draws import MANY, draw_outside
+from labkit.lessons._terminal import RunsFile
 from labkit.lessons.interfaces_and_actions.goals import (
     ACTION,
     LONG,
@@ -73,6 +74,7 @@ def _accepts(pursuits: Sequence[Pursuit]) -> None:
 exercise = Exercise(
     words=WORDS,
     clauses=(
+        RunsFile('nodes/stairs.py', [NAME]),
         Serves(NAME, ACTION),
         Pursues(
             NAME,

@@ -2,11 +2,31 @@
 
 from __future__ import annotations
 
-from cases import ERROR, right, wrong
+from cases import right, wrong
 
 __all__ = ['ANSWERS']
 
+RUN = 'python3 nodes/stairs.py > stairs.log 2>&1 &\n'
+
 ANSWERS = [
+    wrong('in the notebook', 'A node of a notebook ends with the notebook.'),
+    wrong('not started', 'No program of that name runs on this machine', (RUN, '')),
+    wrong(
+        'without the line with export',
+        'it has none: domain 0',
+        (RUN, f'env -u ROS_DOMAIN_ID {RUN}'),
+    ),
+    wrong(
+        'changed while it runs',
+        'A program keeps the code with which it was started.',
+        (RUN, f'{RUN}touch -d "5 seconds" nodes/stairs.py\n'),
+    ),
+    wrong(
+        'another node name',
+        'The name of the node is what super().__init__() gets.',
+        ("__init__('stairs'", "__init__('stair'"),
+    ),
+    wrong('another file', 'the file nodes/stair.py', ('> nodes/stairs.py', '> nodes/stair.py')),
     wrong(
         'never the same twice',
         'goal_callback did not return GoalResponse.ACCEPT for it.',
@@ -17,7 +37,16 @@ ANSWERS = [
         ),
         ('"before"', "'before'"),
     ),
-    wrong('another topic', "Write the name as '/stairs'"),
+    wrong(
+        'in a namespace',
+        'The name of the node is what super().__init__() gets.',
+        ("__init__('stairs'", "__init__('stairs', namespace='my_own'"),
+    ),
+    wrong(
+        'another topic',
+        "Write the name as '/stairs'",
+        ("Fibonacci, 'stairs'", "Fibonacci, 'stair'"),
+    ),
     wrong(
         'no goal_callback',
         'No goal at all was rejected',
@@ -82,9 +111,8 @@ ANSWERS = [
     wrong('from 0 on', 'The numbers are not those of the task.', ('range(1, ', 'range(')),
     wrong(
         'a typing error in goal_callback',
-        'AttributeError',
+        'The server of /stairs has ended meanwhile.',
         ('1 <= goal.order', '1 <= goal.ordr'),
-        outcome=ERROR,
     ),
     right(
         'lambda',
@@ -106,5 +134,6 @@ ANSWERS = [
             'goal_callback=self.on_goal\n        )\n',
         ),
     ),
-    right('own process, several threads', run='process'),
+    right('own process, several threads'),
+    right('in the folder', (RUN, f'cd nodes\n{RUN.replace("nodes/", "")}')),
 ]

@@ -1,6 +1,9 @@
+# In the editor, a new file nodes/stairs.py:
+mkdir -p nodes
+cat > nodes/stairs.py << END
 import rclpy
 from rclpy.action import ActionServer, GoalResponse
-from rclpy.executors import MultiThreadedExecutor
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from test_msgs.action import Fibonacci
 
@@ -23,9 +26,14 @@ class Stairs(Node):
 
 def main():
     rclpy.init()
-    executor = MultiThreadedExecutor()
-    executor.add_node(Stairs())
-    executor.spin()
+    try:
+        rclpy.spin(Stairs())
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
 
 
-main()
+if __name__ == '__main__':
+    main()
+END
+# In a terminal, after the line with export:
+python3 nodes/stairs.py > stairs.log 2>&1 &
