@@ -105,8 +105,9 @@ class Drawing {
     const wide = this.scale === null ? this.least * letters : 0;
     const whole = `${width / height} * var(--labkit-graph-high)`;
     this.svg.style.maxWidth = 'none';
+    const fits = `min(${letters}em, 100%, max(${least}em, ${whole}))`;
     this.svg.style.width = this.scale ? `${this.scale * letters}em`
-      : `max(${wide}em, min(${letters}em, 100%, max(${least}em, ${whole})))`;
+      : wide ? `max(${wide}em, ${fits})` : fits;
   }
 
   // Make it larger by a factor. A point of the page stays where it is.
