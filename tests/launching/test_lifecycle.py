@@ -108,12 +108,19 @@ def text(node: Path, *lines: str) -> str:
 
 
 def said(one) -> list[str]:
-    """Return what the nodes and the launch have shown, but not of starts and ends."""
-    return [
+    """Return what each node has shown, and then the launch, but not of starts and ends.
+
+    A node's lines come by a pipe, and its states by ROS: between the two is no order.
+    """
+    shown = [
         line
         for line in one.lines
         if line.startswith(('[managed-', '[INFO] [launch.user]', '[WARNING]', '[ERROR]'))
         or 'launch_ros' in line
+    ]
+    nodes = [line for line in shown if line.startswith('[managed-')]
+    return sorted(nodes, key=lambda line: line.partition(' ')[0]) + [
+        line for line in shown if line not in nodes
     ]
 
 
@@ -153,8 +160,8 @@ def test_each_transition_is_asked_for_when_the_state_is_there(launch, node):
     assert one.end() == 0
     assert said(one) == [
         '[managed-1] configure',
-        '[INFO] [launch.user]: it is configured',
         '[managed-1] activate',
+        '[INFO] [launch.user]: it is configured',
         '[INFO] [launch.user]: it is active',
     ]
 
