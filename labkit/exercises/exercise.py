@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import sys
 import time
@@ -10,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from labkit import settings
 from labkit.errors import LabError
 from labkit.exercises import common_mistakes
 from labkit.exercises.attempts import refuse_nameless, refuse_traces
@@ -36,6 +38,7 @@ from labkit.views.solution import SolutionCard
 if TYPE_CHECKING:
     from labkit.exercises.lesson import Lesson
     from labkit.exercises.variants import Variants
+    from labkit.views.verdict_form import VerdictForm
 
 __all__ = ['Exercise', 'Solution', 'read_answer']
 
@@ -44,6 +47,8 @@ _IMPORT_LAB = re.compile(r'^import labkit as lab\n\n?', re.MULTILINE)
 NOTHING_YET = (
     'Not attempted yet. Write your code in the cell above, run that cell, then run this one again.'
 )
+
+BUSY = 'A cell is running. Check again when it has ended.'
 
 STARTING = (
     'Nothing to see yet, but a process has been started here a moment ago. '
@@ -223,9 +228,29 @@ class Exercise:
         """
         last_cell.asked(self.name)
         if learner_task_runs():
-            return Pending(self.name, self._check)
+            return Pending(self.name, self._check, self._form)
         Pending.wait_for_all()
         return self._check()
+
+    def check_again(self, form: VerdictForm) -> str:
+        """Check for a form between two cells; return why that can't be, `''` if it can."""
+        if last_cell.is_running:
+            return BUSY
+        last_cell.checked(self.name)
+        if learner_task_runs():
+            Pending(self.name, self._check).show_in(form)
+        else:
+            Pending.wait_for_all()
+            form.update(self._check())
+        return ''
+
+    def _form(self) -> VerdictForm | None:
+        if settings.audience().live:
+            with contextlib.suppress(ImportError):  # no anywidget: show the card alone
+                from labkit.views.verdict_form import VerdictForm
+
+                return VerdictForm(self)
+        return None
 
     def _check(self) -> Verdict:
         from labkit.silent.watch import watch
@@ -244,6 +269,7 @@ class Exercise:
         )
         if verdict.passed and self.belongs_to is not None:
             verdict = replace(verdict, standing=self.belongs_to.standing(self))
+        verdict = replace(verdict, form=self._form)
         return verdict if not note else verdict.with_note(note)
 
     def hint(self, number: int | None = None) -> Card:
@@ -259,14 +285,27 @@ class Exercise:
         if number is None and self._hints_shown >= count:
             text = f'These were all {count} hints. lesson.{self.name}.solution() shows one way.'
             return Card('info', 'HINT', self.name, text=text)
-        shown = self._hints_shown + 1 if number is None else number
-        self._hints_shown = max(self._hints_shown, shown)
-        progress_store.note_hint(self.lesson, self.name, shown)
-        return Card('info', f'HINT {shown} of {count}', self.name, text=self.hints[shown - 1])
+        return self.told_hint(self._hints_shown + 1 if number is None else number)
+
+    def told_hint(self, number: int) -> Card:
+        """Return a hint by its number, from 1, and note that."""
+        self._hints_shown = max(self._hints_shown, number)
+        progress_store.note_hint(self.lesson, self.name, number)
+        word = f'HINT {number} of {len(self.hints)}'
+        return Card('info', word, self.name, text=self.hints[number - 1])
+
+    @property
+    def may_solve(self) -> bool:
+        """Whether all hints have been seen, so that a button offers the solution."""
+        return self._hints_shown >= len(self.hints)
 
     def solution(self) -> Card:
         """Show a solution with an explanation."""
         last_cell.asked()
+        return self.told_solution()
+
+    def told_solution(self) -> Card:
+        """Return the solution, and note that."""
         progress_store.note_solution(self.lesson, self.name)
         text = f'{self.answer.reason}\nYours may look different: what counts is what it does.'
         code = self.answer.code.strip()

@@ -51,6 +51,8 @@ class LastCell:
 
     def __init__(self) -> None:
         self.run: Run | None = None
+        # Whether a cell is running.
+        self.is_running = False
         self._runs: dict[str, Run] = {}
         self._checks: dict[str, int] = {}
         self._asked = False
@@ -62,6 +64,8 @@ class LastCell:
         shell = settings.shell()
         if shell is not None and shell is not self._shell:
             self._shell = shell
+            self.is_running = True  # it is a cell that follows
+            shell.events.register('pre_run_cell', self._begin)
             shell.events.register('post_run_cell', self._look)
 
     def asked(self, checks: str = '') -> None:
@@ -71,10 +75,15 @@ class LastCell:
             checks: Name of the exercise that it checks, if it does.
         """
         self._asked = True
-        if checks and self._shell is not None:
+        if checks:
+            self.checked(checks)
+
+    def checked(self, name: str) -> None:
+        """Note that an exercise is checked, by the running cell or by a button after the last."""
+        if self._shell is not None:
             from labkit.background.compat import running_number
 
-            self._checks[checks] = running_number()
+            self._checks[name] = running_number()
 
     def since_another_check(self, name: str) -> int:
         """Return from which execution on cells are about an exercise, and no other.
@@ -104,7 +113,11 @@ class LastCell:
         where = 'The cell that ran last' if run is self.run else 'The cell of this exercise'
         return LearnerError(where, run.error, short_traceback(run.error))
 
+    def _begin(self, _: Any) -> None:
+        self.is_running, self._asked = True, False
+
     def _look(self, result: Any) -> None:
+        self.is_running = False
         if not self._asked:
             error = result.error_before_exec or result.error_in_exec
             stopped_in = ''

@@ -49,12 +49,16 @@ class Pending:
     Args:
         name: Name of the exercise.
         check: Returns the verdict. It is called in a thread.
+        form: Returns a form that shows it, with buttons; None where there is none.
     """
 
     _last_begun: ClassVar[threading.Thread | None] = None
 
-    def __init__(self, name: str, check: Callable[[], Verdict]) -> None:
+    def __init__(
+        self, name: str, check: Callable[[], Verdict], form: Callable[[], Any] = lambda: None
+    ) -> None:
         self._name = name
+        self._form = form
         self._check = check
         self._verdict: Verdict | None = None
         self._handle: Any = None
@@ -98,7 +102,16 @@ class Pending:
     def _ipython_display_(self) -> None:
         from IPython.display import display
 
-        self._handle = display(self._card(), display_id=True)  # type: ignore[no-untyped-call]
+        self._handle = self._form()
+        if self._handle is None:
+            self._handle = display(self._card(), display_id=True)  # type: ignore[no-untyped-call]
+        else:
+            self._handle.show(self._card(), busy=True)
+        self._begin()
+
+    def show_in(self, form: Any) -> None:
+        """Check, and let a form show the verdict."""
+        self._handle = form
         self._begin()
 
     def __await__(self) -> Generator[Any, None, Verdict]:

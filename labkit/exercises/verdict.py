@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import dataclasses
 import enum
-from collections.abc import Generator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
 
 from labkit.exercises.mistakes import Mistake
 from labkit.views.card import Card
@@ -62,6 +63,7 @@ class Verdict:
         asked: What the task asks for, clause by clause, where all of it is fulfilled.
         standing: The lesson, and what comes next, where that is known.
         time_line: What came while the check let time pass; None if it let none pass.
+        form: Returns a form that shows it in a page, with buttons; None where there is none.
     """
 
     outcome: Outcome
@@ -78,6 +80,7 @@ class Verdict:
     asked: Sequence[str] = ()
     standing: tuple[Row, Sequence[tuple[str, str]]] | None = None
     time_line: TimeLine | None = None
+    form: Callable[[], Any] = field(default=lambda: None, compare=False)
 
     @property
     def passed(self) -> bool:
@@ -117,6 +120,12 @@ class Verdict:
 
     def __repr__(self) -> str:
         return repr(self._card())
+
+    def _ipython_display_(self) -> None:
+        form = None if self.passed else self.form()
+        if form is None:
+            raise NotImplementedError  # then IPython asks for the forms below
+        form.show(self)
 
     def _repr_html_(self) -> str:
         page = self._card()._repr_html_()

@@ -268,9 +268,8 @@ function render({ model, el }) {
   };
   const showNote = () => {
     const slow = waiting && performance.now() - askedAt > SLOW_MS;
-    setText(note, state.ended || [state.why, state.refused, slow
-      ? 'The kernel does not answer. A cell may be running, or the kernel was restarted: '
-        + 'then run this cell again.' : ''].filter(Boolean).join(' '));
+    const words = [state.why, state.refused, slow ? GONE : ''];
+    setText(note, state.ended || words.filter(Boolean).join(' '));
     note.hidden = !note.textContent;
   };
   // Whether the kernel has something to tell that belongs to the time of the slider.

@@ -32,6 +32,8 @@ _ROWS = 'display:grid;grid-template-columns:max-content 1fr;gap:0.2em 1em;margin
 _LABEL = 'font-weight:bold;float:none;width:auto;white-space:nowrap'
 # Keep spaces: one too many may be the mistake.
 _TEXT = 'margin:0;padding:0;overflow-wrap:anywhere;white-space:break-spaces'
+# What to do next is what a learner looks for.
+_NEXT = 'font-size:1.2em;font-weight:600;line-height:1.4'
 CODE_STYLE = (
     'margin:0.5em 0 0;padding:0.5em;overflow-x:auto;white-space:pre;'
     'border:1px solid var(--jp-border-color2, #9e9e9e)'
@@ -87,9 +89,11 @@ class Card:
         ]
         parts += [f'<div>{rich(line)}</div>' for line in self.text.splitlines() if line]
         rows = [
-            f'<dt style="{_LABEL}">{html.escape(label)}</dt><dd style="{_TEXT}">{rich(text)}</dd>'
+            f'<dt style="{_LABEL}{size}">{html.escape(label)}</dt>'
+            f'<dd style="{_TEXT}{size}">{rich(text)}</dd>'
             for label, text in self.rows
             if text
+            for size in [f';{_NEXT}' if label == 'Next' else '']
         ]
         if rows:
             parts.append(f'<dl style="{_ROWS}">{"".join(rows)}</dl>')

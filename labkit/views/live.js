@@ -3,7 +3,8 @@
 const ALIVE_MS = 2000; // see live_page.py
 const AGAIN_MS = 500;
 const QUIET_MS = 4000;
-const GONE = 'The kernel says nothing. It may have been restarted or stopped: run this cell again.';
+const GONE = 'The kernel is silent. If it was restarted or stopped, run the setup cell at the top, '
+  + 'then this one.';
 
 function element(tag, properties = {}, ...children) {
   const made = Object.assign(document.createElement(tag), properties);

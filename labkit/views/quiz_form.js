@@ -3,8 +3,6 @@
 
 const LETTERS = 'abcdefghijklmnopqrstuvwxyz';
 const PATIENCE_MS = 4000;
-const SILENT = 'The kernel says nothing. It may be busy; if it was restarted or stopped, '
-  + 'run this cell again.';
 const SIGNS = { good: '✔', bad: '✘', warn: '⚠' };
 const WORDS = { good: 'right', bad: 'not yet right', warn: 'open', '': 'open' };
 let forms = 0;
@@ -180,7 +178,7 @@ function render({ model, el }) {
     else {
       const giveUp = () => {
         stopWaiting();
-        cards[index].say(SILENT);
+        cards[index].say(GONE);
         mark();
       };
       waiting = setTimeout(giveUp, PATIENCE_MS);

@@ -20,11 +20,13 @@ from typing import TYPE_CHECKING
 from labkit.views.themed import as_source, picture
 
 if TYPE_CHECKING:
+    from ipywidgets import Widget
+
     from labkit.views.widget import PageWidget
 
 __all__ = ['Stored']
 
-TODO = 'Run this cell again.'
+TODO = 'Run the setup cell at the top, then this one.'
 DOCKED = 'The {} is in the panel on the right. Close the panel to have it here.'
 
 
@@ -34,10 +36,11 @@ class Stored:
     Args:
         widget: The view's widget.
         name: What the view is; by default as its widget is called.
+        shown: The widget to show, if that is a box around the view's.
     """
 
-    def __init__(self, widget: PageWidget, name: str = '') -> None:
-        self._widget = widget
+    def __init__(self, widget: PageWidget, name: str = '', shown: Widget | None = None) -> None:
+        self._widget = shown or widget
         self._name = name or type(widget).__name__.removesuffix('Page').lower()
         # The page puts it on the view, so that the style sheet can tell whether it exists.
         self._mark = widget.mark
@@ -48,7 +51,8 @@ class Stored:
         """Show both outputs under the current cell.
 
         Args:
-            still: Text, `text/plain`, and maybe a picture, `image/svg+xml` or `image/png`.
+            still: Text, `text/plain`, and maybe a picture, `image/svg+xml` or `image/png`, or a
+                card, `text/html`, which is as true without a kernel as with one.
         """
         from IPython.display import display
 
@@ -67,6 +71,10 @@ class Stored:
 
     def _bundle(self) -> dict[str, str]:
         assert self._shown is not None
+        style = f'<style class="labkit-style">{_style(self._mark)}</style>'
+        if 'text/html' in self._shown:
+            card = f'<div class="labkit-kept {self._mark}-stored">{self._shown["text/html"]}</div>'
+            return {**self._shown, 'text/html': style + card}
         text = self._shown['text/plain']
         # Reached by Tab: what is long scrolls.
         body = f'<pre tabindex="0">{html.escape(text)}</pre>'
@@ -78,8 +86,7 @@ class Stored:
         now = datetime.now()
         words = f'Stored on {now.day} {now:%B %Y} at {now:%H:%M:%S}. <span>{TODO}</span>'
         page = (
-            f'<style class="labkit-style">{_style(self._mark)}</style>'
-            f'<p class="{self._mark}-docked" hidden>{docked}</p>'
+            f'{style}<p class="{self._mark}-docked" hidden>{docked}</p>'
             f'<div class="labkit-stored {self._mark}-stored"><p>{words}</p>{body}</div>'
         )
         return {**self._shown, 'text/html': page}

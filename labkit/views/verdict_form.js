@@ -1,0 +1,66 @@
+// The buttons under a verdict. The cards above them are JupyterLab's to draw (see verdict_form.py).
+
+function render({ model, el }) {
+  el.classList.add('labkit-help');
+  const unmake = makeView(model, el);
+  const note = makeNote();
+  const told = element('span', { className: 'labkit-help-told' });
+  told.setAttribute('aria-live', 'polite');
+  let [waiting, isQuiet, isLost, heard] = [0, false, false, model.get('heard')];
+  const { send, disconnect } = connect(model, () => {
+    isLost = true;
+    show();
+  });
+  const make = (ask, text) => {
+    const made = element('button', { type: 'button' }, text);
+    made.addEventListener('click', () => {
+      if (made.getAttribute('aria-disabled') === 'true') return;
+      clearTimeout(waiting);
+      waiting = setTimeout(() => {
+        isQuiet = true;
+        show();
+      }, QUIET_MS);
+      send({ ask });
+    });
+    return made;
+  };
+  const hint = make('hint', '');
+  const again = make('check', 'Check again');
+  const solution = make('solution', 'Solution');
+  const row = element('div', { className: 'labkit-help-buttons' }, hint, again, solution, told);
+
+  function show() {
+    const [count, shown] = [model.get('count'), model.get('told')];
+    const had = row.contains(document.activeElement);
+    if (model.get('heard') !== heard) {
+      heard = model.get('heard');
+      clearTimeout(waiting);
+      isQuiet = false;
+    }
+    setText(hint, `Hint (${Math.min(shown + 1, count)} of ${count})`);
+    hint.hidden = shown >= count;
+    solution.hidden = !model.get('solves');
+    // One that is disabled would lose the keyboard.
+    again.setAttribute('aria-disabled', String(model.get('busy')));
+    row.setAttribute('aria-busy', String(model.get('busy')));
+    row.hidden = isLost || model.get('done');
+    setText(told, model.get('words'));
+    setText(note, isLost || isQuiet ? GONE : '');
+    note.hidden = !note.textContent;
+    if (had && row.hidden) el.closest('.jp-Cell')?.focus({ preventScroll: true });
+    else if (had && document.activeElement.hidden) again.focus({ preventScroll: true });
+  }
+
+  const news = 'change:told change:solves change:done change:busy change:words change:heard';
+  el.append(note, row);
+  show();
+  model.on(news, show);
+  return () => {
+    clearTimeout(waiting);
+    model.off(news, show);
+    disconnect();
+    unmake();
+  };
+}
+
+export default { render };
