@@ -183,7 +183,7 @@ class Trials:
         node = self._probe.node_object(self._source.node)
         if node is None:
             return True
-        sensors = ('/odom', '/scan', '/clock')
+        sensors = ('/odom', '/scan', '/clock', '/tf', '/tf_static')
         asked = [end for end in node.subscriptions if end.topic_name not in sensors]
         counts = [self._probe.callbacks.count(node, end) for end in (*asked, *node.services)]
         return any(count is None or count > 0 for count in counts)

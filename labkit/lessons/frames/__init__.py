@@ -1,0 +1,25 @@
+"""The exercises and the quizzes of `14_frames.ipynb`."""
+
+from __future__ import annotations
+
+from labkit.exercises import Lesson
+from labkit.lessons._robot import ROBOT_TOPICS
+from labkit.lessons.frames import mend, mount, nearest, reach
+from labkit.lessons.frames.quiz import BET, QUIZ, WARM_UP
+
+__all__ = ['LESSON']
+
+LESSON = Lesson(
+    'frames',
+    '14_frames.ipynb',
+    title='Frames',
+    minutes=90,
+    teaches=(
+        'where things are: frames, the tree of transforms, looking up now and in the past, what '
+        'tf2 says if it cannot'
+    ),
+    exercises=[mount, nearest, reach, mend],
+    quizzes=[WARM_UP, BET, QUIZ],
+    topics=[*ROBOT_TOPICS, '/tf', '/tf_static'],
+    given={'/turtlebot': '*', '/arm': 'arm', '/frames_listener': 'listener'},
+)

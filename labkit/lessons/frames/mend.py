@@ -1,0 +1,101 @@
+"""Exercise: find the frame of an arm that is sent wrongly, and send it rightly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, words_of
+from labkit.exercises.clauses import Evidence, GraphClause, Named
+from labkit.lessons.frames.arm import SHEET, Fault, fault, place_of
+from labkit.lessons.frames.mount import SAME_M, SAME_RAD, TOPIC, Static, static_messages
+from labkit.lessons.frames.places import Place, degrees, metres
+
+__all__ = ['exercise']
+
+WORDS = words_of(__file__)
+
+NODE = '/mender'
+
+NONE = WORDS.mistake('mend/none')
+ALL = WORDS.mistake('mend/all')
+ANOTHER = WORDS.mistake('mend/another')
+PARENT = WORDS.mistake('mend/parent')
+NUMBERS = WORDS.mistake('mend/numbers')
+INVERTED = WORDS.mistake('mend/inverted')
+LENGTH = WORDS.mistake('mend/length')
+
+
+@dataclass(frozen=True)
+class _Mends(GraphClause):
+    """The one frame is sent as the data sheet has it, and no other one."""
+
+    text = WORDS.clause('mends')
+    own_life = True
+
+    def find(self, evidence: Evidence) -> None:
+        """Look whether there is an arm."""
+        if fault() is None:
+            raise NotAttempted('There is no arm yet. Run the cell with build_arm() first.')
+
+    def judge(self, evidence: Evidence) -> str:
+        """Look at what was sent beside what the arm sends."""
+        drawn = fault()
+        assert drawn is not None
+        messages = static_messages(evidence, lambda found: any(_mended(m, drawn) for m in found))
+        mended = [found for message in messages for found in _mended(message, drawn)]
+        expected = f'a transform of the frame that is wrong, from its parent, on {TOPIC}'
+        if not mended:
+            raise Fail(expected, 'only what the arm sends', NONE)
+        frames = sorted({found.child_frame_id for found in mended})
+        if len(frames) > 1:
+            raise Fail('one frame', f'{len(frames)} of them: {", ".join(frames)}', ALL)
+        if frames != [drawn.frame]:
+            raise Fail(expected, f'{frames[0]}, which was right', ANOTHER.of(frame=frames[0]))
+        found = mended[-1]
+        parent = SHEET[drawn.frame][0]
+        if found.header.frame_id != parent:
+            seen = f'{drawn.frame} in {found.header.frame_id!r}'
+            raise Fail(f'{drawn.frame} in {parent}', seen, PARENT)
+        place, right = Place.of(found.transform), place_of(drawn.frame)
+        if place.away(right) > SAME_M or place.turned(right) > SAME_RAD or not place.is_rotation:
+            raise Fail(
+                f'{drawn.frame} at {metres(right.shift)}; {degrees(right.turn)}',
+                f'{metres(place.shift)}; {degrees(place.turn)}',
+                _why(place, right),
+            )
+        return f'{drawn.frame} was wrong ({_KINDS[drawn.kind]}), and you found it.'
+
+
+_KINDS = {
+    'parent': 'another parent',
+    'degrees': 'degrees for radians',
+    'inverted': 'the numbers of the way back',
+    'mirrored': 'turned to the other side',
+}
+
+
+def _why(place: Place, right: Place) -> Mistake:
+    if not place.is_rotation:
+        return LENGTH
+    back = right.back
+    return INVERTED if place.away(back) <= SAME_M else NUMBERS
+
+
+def _mended(message: Any, drawn: Fault) -> list[Any]:
+    """Return the transforms of the arm's frames in a message, unless that is the arm's own."""
+    found = [each for each in message.transforms if each.child_frame_id in SHEET]
+    for each in found:
+        place = Place.of(each.transform)
+        names = each.child_frame_id, each.header.frame_id
+        near = place.away(drawn.place) <= SAME_M and place.turned(drawn.place) <= SAME_RAD
+        if names == (drawn.frame, drawn.parent) and near and len(found) == len(SHEET):
+            return []
+    return found
+
+
+exercise = Exercise(
+    words=WORDS,
+    clauses=(Named(NODE), Static(WORDS.of(topic=TOPIC).clause('static'), NODE), _Mends()),
+    shared=(TOPIC,),
+)
