@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, words_of
+from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, expect, words_of
 from labkit.exercises.clauses import Evidence, GraphClause, Named
 from labkit.lessons.frames.arm import SHEET, Fault, fault, place_of
 from labkit.lessons.frames.mount import SAME_M, SAME_RAD, TOPIC, Static, static_messages
@@ -23,6 +23,7 @@ ANOTHER = WORDS.mistake('mend/another')
 PARENT = WORDS.mistake('mend/parent')
 NUMBERS = WORDS.mistake('mend/numbers')
 INVERTED = WORDS.mistake('mend/inverted')
+AS_IT_WAS = WORDS.mistake('mend/as-it-was')
 LENGTH = WORDS.mistake('mend/length')
 
 
@@ -46,23 +47,27 @@ class _Mends(GraphClause):
         mended = [found for message in messages for found in _mended(message, drawn)]
         expected = f'a transform of the frame that is wrong, from its parent, on {TOPIC}'
         if not mended:
+            evidence.refuse_old_errors()
+            expect.spun(evidence.probe, evidence.publisher(TOPIC, NODE))
             raise Fail(expected, 'only what the arm sends', NONE)
         frames = sorted({found.child_frame_id for found in mended})
         if len(frames) > 1:
             raise Fail('one frame', f'{len(frames)} of them: {", ".join(frames)}', ALL)
         if frames != [drawn.frame]:
             raise Fail(expected, f'{frames[0]}, which was right', ANOTHER.of(frame=frames[0]))
-        found = mended[-1]
+        found, sent = mended[-1], Place.of(mended[-1].transform)
+        if found.header.frame_id == drawn.parent and _same(sent, drawn.place):
+            raise Fail(expected, f'{drawn.frame} as the arm sends it', AS_IT_WAS)
         parent = SHEET[drawn.frame][0]
         if found.header.frame_id != parent:
             seen = f'{drawn.frame} in {found.header.frame_id!r}'
             raise Fail(f'{drawn.frame} in {parent}', seen, PARENT)
-        place, right = Place.of(found.transform), place_of(drawn.frame)
-        if place.away(right) > SAME_M or place.turned(right) > SAME_RAD or not place.is_rotation:
+        right = place_of(drawn.frame)
+        if not _same(sent, right) or not sent.is_rotation:
             raise Fail(
                 f'{drawn.frame} at {metres(right.shift)}; {degrees(right.turn)}',
-                f'{metres(place.shift)}; {degrees(place.turn)}',
-                _why(place, right),
+                f'{metres(sent.shift)}; {degrees(sent.turn)}',
+                _why(sent, right),
             )
         return f'{drawn.frame} was wrong ({_KINDS[drawn.kind]}), and you found it.'
 
@@ -75,11 +80,14 @@ _KINDS = {
 }
 
 
+def _same(one: Place, other: Place) -> bool:
+    return one.away(other) <= SAME_M and one.turned(other) <= SAME_RAD
+
+
 def _why(place: Place, right: Place) -> Mistake:
     if not place.is_rotation:
         return LENGTH
-    back = right.back
-    return INVERTED if place.away(back) <= SAME_M else NUMBERS
+    return INVERTED if _same(place, right.back) else NUMBERS
 
 
 def _mended(message: Any, drawn: Fault) -> list[Any]:
@@ -88,8 +96,8 @@ def _mended(message: Any, drawn: Fault) -> list[Any]:
     for each in found:
         place = Place.of(each.transform)
         names = each.child_frame_id, each.header.frame_id
-        near = place.away(drawn.place) <= SAME_M and place.turned(drawn.place) <= SAME_RAD
-        if names == (drawn.frame, drawn.parent) and near and len(found) == len(SHEET):
+        is_arm = names == (drawn.frame, drawn.parent) and len(found) == len(SHEET)
+        if is_arm and _same(place, drawn.place):
             return []
     return found
 
