@@ -14,6 +14,12 @@ _CALLBACK_AT = {'create_timer': 1, 'create_subscription': 2, 'create_service': 2
 _GROUPED = (*_CALLBACK_AT, 'create_client', 'ActionServer', 'ActionClient')
 # The makers of what has a name in the graph, and the place of that.
 _TOPIC_AT = {'create_publisher': 1, 'create_subscription': 1}
+# What is made of a node, and the place of that.
+_NODE_AT = {
+    **dict.fromkeys(('ActionServer', 'ActionClient'), 0),
+    **dict.fromkeys(('StaticTransformBroadcaster', 'TransformBroadcaster'), 0),
+    'TransformListener': 1,
+}
 
 _ENDLESS = """
 def endless(callback):
@@ -110,8 +116,8 @@ class _Composer(ast.NodeTransformer):
             topic.value = mine
             words = [] if self._arguments.elts else ['--ros-args']
             self._arguments.elts += map(ast.Constant, [*words, '-r', f'{mine}:={told}'])
-        if name in ('ActionServer', 'ActionClient'):
-            call.args[0] = _parsed('self.node')
+        if name in _NODE_AT and ast.unparse(call.args[_NODE_AT[name]]) == 'self':
+            call.args[_NODE_AT[name]] = _parsed('self.node')
         return self.generic_visit(call)
 
     def visit_Expr(self, line: ast.Expr) -> ast.AST:
