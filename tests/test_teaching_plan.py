@@ -17,7 +17,8 @@ PAGE = (ROOT / 'docs' / 'teaching.md').read_text()
 SESSION = 70
 WORDS_A_MINUTE = 150
 # An exercise takes so many minutes, and where it takes longer.
-EXERCISE, LONGER = 10, {'08': 15, '09': 15, '10': 15, '11': 15, '13': 15, '14': 15, '07': 20, '12': 20}
+EXERCISE = 10
+LONGER = {**dict.fromkeys(('08', '09', '10', '11', '13', '14'), 15), '07': 20, '12': 20}
 # The cells of a lesson run for so many minutes at most.
 RUNNING = 30
 

@@ -246,6 +246,7 @@ def live(
     stimuli: Sequence[Stimulus] = (),
     also: Mapping[str, str] = MappingProxyType({}),
     nodes: Collection[str],
+    still: Collection[str] = (),
     step: float = STEP_SEC,
     before: Callable[[VirtualTime], None] | None = None,
     until: Callable[[float, Mapping[str, Watch]], bool] | None = None,
@@ -260,6 +261,7 @@ def live(
         also: Topics that are written down too, whoever has an end there.
         nodes: Full names of the nodes for which time passes. It stands still for all others of
             this process that have an end on one of the topics.
+        still: Full names of nodes of the lesson for which it stands still, too.
         step: How often nodes of other processes are told the time, s. So exactly their times are
             known.
         before: Called when time stands still, before it begins to pass.
@@ -279,7 +281,7 @@ def live(
         senders = {
             stimulus.topic: probe.sender(stimulus.topic, stimulus.msg_type) for stimulus in stimuli
         }
-        moving, standing, foreign = _nodes(probe, topics, nodes)
+        moving, standing, foreign = _nodes(probe, topics, nodes, still)
         probe.lives_sec = seconds
         stack.enter_context(probe.uncounted())
         _wait_until_heard(probe, watches, foreign)
@@ -390,7 +392,7 @@ def _lived(
 
 
 def _nodes(
-    probe: Probe, topics: Mapping[str, str], wanted: Collection[str]
+    probe: Probe, topics: Mapping[str, str], wanted: Collection[str], still: Collection[str]
 ) -> tuple[list[Any], list[Any], list[str]]:
     """Return the nodes for which time passes, for which it stands, and those of elsewhere."""
     names = {
@@ -398,7 +400,7 @@ def _nodes(
         for topic in topics
         for end in (*probe.publishers(topic), *probe.subscriptions(topic))
     }
-    here = {name: probe.node_object(name) for name in sorted({*names, *wanted})}
+    here = {name: probe.node_object(name) for name in sorted({*names, *wanted, *still})}
     found = [(name, node) for name, node in here.items() if node is not None]
     moving = [node for name, node in found if name in wanted]
     standing = [node for name, node in found if name not in wanted]

@@ -91,11 +91,14 @@ class GraphClause(Clause['Evidence']):
         period: The shortest time between two messages that it is about, s; 0 if there is none.
         judges_parts: Whether it can judge a life that an error has ended early.
         own_life: Whether it lets time pass by itself. The other clauses of its task need none.
+        still: Full names of nodes of the lesson that stand still meanwhile, such as a robot on
+            whose topic the tests are sent.
     """
 
     period: float = 0.0
     judges_parts = False
     own_life = False
+    still: Collection[str] = ()
 
     def tests(self, evidence: Evidence) -> Sequence[Test]:
         """Return the test messages that are to be sent."""
@@ -299,6 +302,7 @@ class Evidence:
             stimuli=stimuli,
             also=also,
             nodes=names,
+            still={name for clause in clauses for name in clause.still},
             step=step,
             before=None if before is None else lambda passing: before(),
         )
