@@ -8,6 +8,7 @@ from typing import Any
 from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, expect, words_of
 from labkit.exercises.clauses import Evidence, GraphClause, Named
 from labkit.lessons.frames.arm import SHEET, Fault, fault, place_of
+from labkit.lessons.frames.mount import NODE as SONAR
 from labkit.lessons.frames.mount import SAME_M, SAME_RAD, TOPIC, Static, static_messages
 from labkit.lessons.frames.places import Place, degrees, metres
 
@@ -25,6 +26,19 @@ NUMBERS = WORDS.mistake('mend/numbers')
 INVERTED = WORDS.mistake('mend/inverted')
 AS_IT_WAS = WORDS.mistake('mend/as-it-was')
 LENGTH = WORDS.mistake('mend/length')
+
+
+@dataclass(frozen=True)
+class _Mender(Named):
+    """There is the node. That of the first exercise, which publishes there, too, is no attempt."""
+
+    def find(self, evidence: Evidence) -> None:
+        """Look for the node."""
+        probe = evidence.probe
+        others = {end.node for end in probe.publishers(TOPIC)} - {SONAR}
+        if self.node not in probe.node_names() and not others:
+            raise NotAttempted
+        super().find(evidence)
 
 
 @dataclass(frozen=True)
@@ -104,6 +118,6 @@ def _mended(message: Any, drawn: Fault) -> list[Any]:
 
 exercise = Exercise(
     words=WORDS,
-    clauses=(Named(NODE), Static(WORDS.of(topic=TOPIC).clause('static'), NODE), _Mends()),
+    clauses=(_Mender(NODE), Static(WORDS.of(topic=TOPIC).clause('static'), NODE), _Mends()),
     shared=(TOPIC,),
 )

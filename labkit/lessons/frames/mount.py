@@ -13,7 +13,7 @@ from labkit.exercises.what_is_asked import PUBLISHER, Role
 from labkit.lessons.frames.arm import SHEET
 from labkit.lessons.frames.places import TF, Place, degrees, metres, on_floor
 
-__all__ = ['SAME_M', 'SAME_RAD', 'TOPIC', 'Static', 'exercise', 'static_messages']
+__all__ = ['NODE', 'SAME_M', 'SAME_RAD', 'TOPIC', 'Static', 'exercise', 'static_messages']
 
 WORDS = words_of(__file__)
 

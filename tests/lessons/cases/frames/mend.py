@@ -10,6 +10,12 @@ SEND = '                self.broadcaster.sendTransform(wanted)\n'
 
 ANSWERS = [
     wrong(
+        'moving',
+        'On /tf go frames that move.',
+        ('Buffer, StaticTransformBroadcaster, T', 'Buffer, TransformBroadcaster, T'),
+        ('= StaticTransformBroadcaster', '= TransformBroadcaster'),
+    ),
+    wrong(
         'the yaw in degrees',
         'one frame',
         ('math.sin(math.radians(yaw) / 2)', 'math.sin(yaw / 2)'),
