@@ -30,7 +30,16 @@ ANSWERS = [
         'Its angles are degrees',
         ('1.5 * error', '1.5 * math.degrees(error)'),
     ),
-    wrong('away from it', 'Expected', ('1.5 * error', '-1.5 * error')),
+    wrong(
+        'away from it',
+        'It drives past the goal, or elsewhere.',
+        ('1.5 * error', '-1.5 * error'),
+    ),
+    wrong(
+        'to the left all the time',
+        'It drives past the goal, or elsewhere.',
+        ('1.5 * error', '0.8'),
+    ),
     wrong(
         'only frames of the body',
         'LookupException',
