@@ -7,6 +7,7 @@ from typing import Any
 
 from labkit.exercises import Exercise, Fail, Mistake, NotAttempted, expect, words_of
 from labkit.exercises.clauses import Evidence, GraphClause, Named
+from labkit.exercises.expect.spinning import runs
 from labkit.lessons.frames.arm import SHEET, Fault, fault, place_of
 from labkit.lessons.frames.mount import NODE as SONAR
 from labkit.lessons.frames.mount import SAME_M, SAME_RAD, TOPIC, Static, static_messages
@@ -35,8 +36,12 @@ class _Mender(Named):
     def find(self, evidence: Evidence) -> None:
         """Look for the node."""
         probe = evidence.probe
-        others = {end.node for end in probe.publishers(TOPIC)} - {SONAR}
-        if self.node not in probe.node_names() and not others:
+
+        def attempts() -> set[str]:
+            others = {end.node for end in probe.publishers(TOPIC)} - {SONAR}
+            return others | ({self.node} & {*probe.node_names()})
+
+        if not probe.wait_to_appear(attempts):
             raise NotAttempted
         super().find(evidence)
 
@@ -55,14 +60,26 @@ class _Mends(GraphClause):
 
     def judge(self, evidence: Evidence) -> str:
         """Look at what was sent beside what the arm sends."""
+        from labkit.asking.service_calls import wait_until_spun
+
         drawn = fault()
         assert drawn is not None
-        messages = static_messages(evidence, lambda found: any(_mended(m, drawn) for m in found))
+
+        def is_mended(found: list[Any]) -> bool:
+            return any(_mended(message, drawn) for message in found)
+
+        messages = static_messages(evidence, is_mended)
+        # It may be about to send more: it has when it answers.
+        probe = evidence.probe
+        if is_mended(messages) and runs(probe, NODE):
+            with probe.uncounted():
+                wait_until_spun(probe.spun_node, NODE)
+            messages += static_messages(evidence, is_mended)
         mended = [found for message in messages for found in _mended(message, drawn)]
         expected = f'a transform of the frame that is wrong, from its parent, on {TOPIC}'
         if not mended:
             evidence.refuse_old_errors()
-            expect.spun(evidence.probe, evidence.publisher(TOPIC, NODE))
+            expect.spun(probe, evidence.publisher(TOPIC, NODE))
             raise Fail(expected, 'only what the arm sends', NONE)
         frames = sorted({found.child_frame_id for found in mended})
         if len(frames) > 1:
