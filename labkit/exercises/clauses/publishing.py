@@ -166,11 +166,15 @@ class Publishes(GraphClause):
         if not found and not evidence.life.real:
             for samples in self._by_publisher(evidence.life):
                 trouble = self._trouble(samples, evidence.life)
-                # A timer of another process that is due twice in a step seems to be slow.
-                known = source.node not in evidence.life.remote or self._follows(
-                    source.node, samples, evidence.life
+                # A timer of another process that is due twice in a step seems to be slow: one
+                # message a step.
+                gaps, step = _gaps(samples), evidence.life.step
+                known = (
+                    source.node not in evidence.life.remote
+                    or self._follows(source.node, samples, evidence.life)
+                    or min(gaps, default=0.0) > 2 * step
                 )
-                if known and trouble and _is_even(_gaps(samples), evidence.life.step):
+                if known and trouble and _is_even(gaps, step):
                     self._refuse(trouble)
         alone = evidence.alone(self, (), self.by)
         own = self._refuse_two(alone.life)
