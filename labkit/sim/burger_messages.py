@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from sensor_msgs.msg import BatteryState, CameraInfo, Image, Imu, JointState, LaserScan
 
 from labkit.sim.camera import PI_CAMERA, picture
-from labkit.sim.kinematics import yaw_to_quaternion
+from labkit.sim.kinematics import Pose, Twist2, yaw_to_quaternion
 from labkit.sim.simulator import Simulator
 
 __all__ = [
@@ -29,6 +29,7 @@ __all__ = [
     'odometry_message',
     'scan_message',
     'time_message',
+    'truth_message',
 ]
 
 # Standard gravity, m/s². Source: BIPM, "The International System of Units" (3rd CGPM, 1901).
@@ -64,17 +65,32 @@ def time_message(seconds: float) -> Time:
 
 def odometry_message(robot: Simulator, stamp: Time, prefix: str = '') -> Odometry:
     """Return the estimated pose and velocity; `prefix` is that of the frames, e.g. `'robot1/'`."""
-    message = Odometry()
-    message.header.stamp = stamp
+    message = _motion_message(robot.odometry, robot.odometry_twist, stamp, prefix)
     message.header.frame_id = f'{prefix}odom'
-    message.child_frame_id = f'{prefix}base_footprint'
-    pose, twist = message.pose.pose, message.twist.twist
-    pose.position.x, pose.position.y, yaw = robot.odometry
-    turn = pose.orientation
-    turn.x, turn.y, turn.z, turn.w = yaw_to_quaternion(yaw)
-    twist.linear.x, twist.angular.z = robot.odometry_twist
     message.pose.covariance = POSE_COVARIANCE
     message.twist.covariance = TWIST_COVARIANCE
+    return message
+
+
+def truth_message(robot: Simulator, stamp: Time, prefix: str = '') -> Odometry:
+    """Return the true pose and velocity; `prefix` is that of the robot's frame.
+
+    The pose is in `map`, the frame that is fixed in the world (REP 105), and nothing is uncertain.
+    """
+    message = _motion_message(robot.pose, robot.twist, stamp, prefix)
+    message.header.frame_id = 'map'
+    return message
+
+
+def _motion_message(place: Pose, speed: Twist2, stamp: Time, prefix: str) -> Odometry:
+    message = Odometry()
+    message.header.stamp = stamp
+    message.child_frame_id = f'{prefix}base_footprint'
+    pose, twist = message.pose.pose, message.twist.twist
+    pose.position.x, pose.position.y, yaw = place
+    turn = pose.orientation
+    turn.x, turn.y, turn.z, turn.w = yaw_to_quaternion(yaw)
+    twist.linear.x, twist.angular.z = speed
     return message
 
 

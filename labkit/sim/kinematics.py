@@ -21,6 +21,7 @@ __all__ = [
     'Twist2',
     'believed',
     'ramp',
+    'twist_of_wheels',
     'wheel_speeds',
     'wrap_angle',
     'yaw_from_quaternion',
@@ -84,6 +85,12 @@ def wheel_speeds(twist: Twist2, robot: Robot) -> tuple[float, float]:
     (v, w), radius = twist, robot.wheel_radius
     half = w * robot.wheel_separation / 2
     return (v - half) / radius, (v + half) / radius
+
+
+def twist_of_wheels(left: float, right: float, robot: Robot) -> Twist2:
+    """Return the twist of wheels that turn at speeds, rad/s: the inverse of `wheel_speeds`."""
+    radius = robot.wheel_radius
+    return Twist2(radius * (left + right) / 2, radius * (right - left) / robot.wheel_separation)
 
 
 def believed(twist: Twist2, mismatch: float, robot: Robot) -> Twist2:

@@ -15,10 +15,12 @@ from labkit.sim.kinematics import (
     Twist2,
     believed,
     ramp,
+    twist_of_wheels,
     wheel_speeds,
     wrap_angle,
 )
 from labkit.sim.robots import BURGER, Robot
+from labkit.sim.slip import Slip
 from labkit.sim.world import Contact, Post, World, playground
 
 __all__ = ['Simulator']
@@ -35,7 +37,8 @@ SAME_SPEED = 1e-12
 class Simulator:
     """A robot in a world. Time passes only in `step`.
 
-    The result does not depend on the size of the steps.
+    The result does not depend on the size of the steps. With slip, odometry depends on it a
+    little: as on a real robot, it is summed up from what the encoders count in each step.
 
     Args:
         world: The surroundings; `playground()` if None. Robots in the same world see each other.
@@ -44,8 +47,10 @@ class Simulator:
         command_timeout: Time without a command after which it stops, s. With None it keeps its
             last velocity.
         drift: Odometry error: difference of the wheels' radii relative to their mean.
+        slip: Odometry error: by how much each wheel turns too far on average, relative to its
+            way; see `Slip`.
         noise: Standard deviation of a measured range, m.
-        seed: Seed of the noise.
+        seed: Seed of the slip and of the noise.
         scan_nothing: Value of a beam without a measurement, inf or 0.0; see `scan`.
         name: Its name in the world; a robot of the same name is replaced.
 
@@ -72,18 +77,22 @@ class Simulator:
         robot: Robot = BURGER,
         command_timeout: float | None = COMMAND_TIMEOUT,
         drift: float = 0.0,
+        slip: float = 0.0,
         noise: float = 0.0,
         seed: int = 0,
         scan_nothing: float = math.inf,
         name: str = 'turtlebot',
     ) -> None:
         _check('drift', drift, abs(drift) < 1, 'a share such as 0.01')
+        _check('slip', slip, 0 <= slip < 1, 'a share such as 0.01')
         _check('noise', noise, 0 <= noise < math.inf, 'a distance in metres, 0 or more')
+        _check('seed', seed, seed >= 0 and seed == int(seed), 'a whole number, 0 or more')
         _check('scan_nothing', scan_nothing, scan_nothing in (math.inf, 0.0), 'inf or 0.0')
         self.world = world if world is not None else playground()
         self.robot = robot
         self.command_timeout = as_limit(command_timeout)
         self.drift = drift
+        self.slip = slip
         self.noise = noise
         self.scan_nothing = scan_nothing
         self.name = name
@@ -130,6 +139,8 @@ class Simulator:
         # The command with which it pushes against a fixed thing, in vain.
         self._blocked_command: Twist2 | None = None
         self._random = np.random.default_rng(self._seed)
+        sources = np.random.SeedSequence(self._seed).spawn(2)
+        self._slips = [Slip(self.slip, source) for source in sources] if self.slip else []
         self._update_world()
 
     def enter(self, world: World) -> None:
@@ -196,12 +207,17 @@ class Simulator:
     @property
     def odometry_twist(self) -> Twist2:
         """Velocity estimated from the wheels."""
+        if self._slips:
+            return twist_of_wheels(*self.wheel_rates, self.robot)
         return believed(self.twist, self.drift, self.robot)
 
     @property
     def wheel_rates(self) -> tuple[float, float]:
         """Speeds of the left and the right wheel by their encoders, rad/s."""
-        return wheel_speeds(self.odometry_twist, self.robot)
+        left, right = wheel_speeds(believed(self.twist, self.drift, self.robot), self.robot)
+        if self._slips:
+            return left * self._slips[0].rate, right * self._slips[1].rate
+        return left, right
 
     def _advance(self, dt: float) -> float:
         """Move until something changes: a target speed, a contact, the end of the command."""
@@ -241,9 +257,20 @@ class Simulator:
         steady = acceleration == STANDING
         mean = motion.twist if steady else motion.twist_at(time / 2)
         left, right = wheel_speeds(believed(mean, self.drift, self.robot), self.robot)
-        self.wheels = (self.wheels[0] + left * time, self.wheels[1] + right * time)
+        left, right = left * time, right * time
+        if self._slips:
+            radius = self.robot.wheel_radius
+            left, right = (
+                slip.counted(turn * radius) / radius
+                for slip, turn in zip(self._slips, (left, right), strict=True)
+            )
+        self.wheels = (self.wheels[0] + left, self.wheels[1] + right)
         self.pose = motion.pose_at(time)
-        if self.drift:
+        if self._slips:
+            # The encoders tell how far each wheel came, and nothing of the way between: an arc.
+            arc = twist_of_wheels(left, right, self.robot)
+            self.odometry = Motion(self.odometry, arc).pose_at(1.0)
+        elif self.drift:
             # For the wheels it is the same kind of motion, with other numbers.
             seen = believed(self.twist, self.drift, self.robot)
             change = believed(acceleration, self.drift, self.robot)

@@ -44,21 +44,27 @@ from labkit.sim.burger_messages import (
     odometry_message,
     scan_message,
     time_message,
+    truth_message,
 )
 from labkit.sim.camera import PI_CAMERA
 from labkit.sim.command_timeout import COMMAND_TIMEOUT, TIMED_OUT_TOPIC, timed_out_words
 from labkit.sim.kinematics import Pose, Twist2
 from labkit.sim.pace import Beat, Stopwatch
 from labkit.sim.parts import moving_parts, static_parts
+from labkit.sim.radio import Radio
 from labkit.sim.simulator import Simulator
 from labkit.sim.world import Contact, Wall, World
 
-__all__ = ['ODOM_RATE', 'Turtlebot']
+__all__ = ['ODOM_RATE', 'TRUTH_TOPIC', 'Turtlebot']
 
 # Rate of /odom, /joint_states, /imu and /battery_state in simulated time, Hz. The real robot also
 # publishes them together, at 20 Hz.
 ODOM_RATE = 30.0
 QUEUE_DEPTH = 10
+# Where the robot is, as nobody but a simulator knows. Name and type are those of the simulator
+# Stage, and fake_localization subscribes to it. Source: ros-simulation/stage_ros,
+# src/stageros.cpp; docs.ros.org/en/api/fake_localization.
+TRUTH_TOPIC = 'base_pose_ground_truth'
 # Queue depth of images, as in the driver of the real camera (camera_ros): only the newest is of
 # use.
 PICTURES = 1
@@ -89,6 +95,11 @@ class Turtlebot(Node):
     parts are. The robot stops when commands stop coming, and when it touches a wall. The frame
     `odom` has the origin of the world, wherever the robot starts.
 
+    It is perfect unless it is told to be as imperfect as a real one, by `drift`, `slip`, `noise`,
+    `latency` and `loss`. Then it also publishes `base_pose_ground_truth` (nav_msgs/msg/Odometry)
+    at 30 Hz if odometry may be wrong or late: the true pose, in the frame `map`, whose origin is
+    that of the world, too.
+
     Time can pass in three ways. By default it is real time. With `speed` it runs faster or slower,
     and `/clock` publishes it for nodes with the parameter `use_sim_time`. With `lockstep` it
     stands still until a command comes, and then advances by that many seconds: the same commands
@@ -108,9 +119,20 @@ class Turtlebot(Node):
             last velocity until the next command, or a wall, as a real TurtleBot3 does on ROS 2
             (read in turtlebot3_node, branch jazzy, and the firmware, ROBOTIS-GIT/OpenCR, branch
             master). In lock-step there is none.
-        drift: Odometry error: difference of the wheels' radii relative to their mean.
-        noise: Standard deviation of a measured range, m. The real sensor has about 0.01.
-        seed: Seed of the noise.
+        drift: Odometry error: difference of the wheels' radii relative to their mean. It bends
+            the way that odometry tells, always to the same side.
+        slip: Odometry error: by how much each wheel turns too far on average, relative to its
+            way. How much it is at the moment is random, and another number for each wheel. After
+            s metres the standard deviation of the way of a wheel is slip * sqrt(0.1 s) m.
+        noise: Standard deviation of a measured range, m. ROBOTIS's model of the robot for Gazebo
+            has 0.01; the data sheet of the real sensor, the LDS-02, has an accuracy of 0.01 m
+            below 0.3 m, and of 3 % beyond.
+        latency: Delay of a message, s. Each takes between half and one and a half of it, in whole
+            rounds of 30 Hz, and keeps the stamp of the moment of measurement. In lock-step the
+            time of a message is that of a command.
+        loss: Probability that a message is lost. Neither `/clock`, `/tf_static` nor the true pose
+            are ever lost or late.
+        seed: Seed of slip, noise, latency and loss: the same seed gives the same numbers.
         stamped: Whether it takes `geometry_msgs/msg/TwistStamped` instead of `Twist`, as the
             TurtleBot3 packages of Jazzy do by default.
         scan_nothing: Value of a beam without a measurement: inf, as REP 117 has it (-inf if
@@ -140,7 +162,10 @@ class Turtlebot(Node):
         lockstep: float | None = None,
         command_timeout: float | None = COMMAND_TIMEOUT,
         drift: float = 0.0,
+        slip: float = 0.0,
         noise: float = 0.0,
+        latency: float = 0.0,
+        loss: float = 0.0,
         seed: int = 0,
         stamped: bool = False,
         scan_nothing: float = math.inf,
@@ -154,11 +179,13 @@ class Turtlebot(Node):
             # In lock-step a command is valid for its step, however long that is.
             command_timeout=command_timeout if lockstep is None else None,
             drift=drift,
+            slip=slip,
             noise=noise,
             seed=seed,
             scan_nothing=scan_nothing,
             name=f'{space}/{name}',
         )
+        self._radio = Radio(latency, loss, seed, early=(lockstep or 1 / ODOM_RATE) / 2)
         if not rclpy.utilities.ok():
             runtime.start()
         overrides = {
@@ -214,12 +241,22 @@ class Turtlebot(Node):
         self._frames: Any = None
         self._open_frames()
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)  # type: ignore[no-untyped-call]
+        self._truth: Any = None
+        self._open_truth()
         self._timed_out = self.create_publisher(Float64, TIMED_OUT_TOPIC, latched)
         self._said_timed_out: bool | None = None
         self._say_timed_out()
         self._commands = self.create_subscription(
             command_type, 'cmd_vel', self._on_command, QUEUE_DEPTH
         )
+
+    def _open_truth(self) -> None:
+        """Begin to tell the true pose, if odometry may not be that."""
+        if self.simulator.drift or self.simulator.slip or not self._radio.is_perfect:
+            on_join = self._on_join(self._publish_truth)
+            self._truth = self.create_publisher(
+                Odometry, TRUTH_TOPIC, QUEUE_DEPTH, event_callbacks=on_join
+            )
 
     def _on_join(self, publish: Callable[[], None]) -> PublisherEventCallbacks | None:
         # In lock-step nothing is published before the first command, yet a controller may need to
@@ -293,6 +330,7 @@ class Turtlebot(Node):
             for beat in (self._scan_beat, self._camera_beat):
                 beat.restart(self.simulator.time)
             self._due_rounds = 0.0
+            self._radio.restart()
             self._stopwatch.restart()
             if self._timer is not None:
                 # Not `reset`: that keeps the time of the last call, and if this is in the future,
@@ -419,21 +457,30 @@ class Turtlebot(Node):
         self._say_timed_out()
         # One stamp for all: what a sensor has seen can be looked up in the frames of that moment.
         stamp = self._stamp()
+        self._publish_truth(stamp)
         self._publish_odometry(stamp)
         self._publish_frames(stamp)
         # These rarely have subscribers; making them would be a waste.
         if self._joints.get_subscription_count():
-            self._joints.publish(joint_state_message(self.simulator, stamp, self._prefix))
+            self._send(self._joints, joint_state_message(self.simulator, stamp, self._prefix))
         if self._imu.get_subscription_count():
-            self._imu.publish(imu_message(self.simulator, stamp, self._prefix))
+            self._send(self._imu, imu_message(self.simulator, stamp, self._prefix))
         if self._battery.get_subscription_count():
-            self._battery.publish(battery_message(self.simulator, stamp))
+            self._send(self._battery, battery_message(self.simulator, stamp))
         if self._scan_beat.is_due(self.simulator.time):
             self._publish_scan(stamp)
             self._warn_of_other_commands()
             self._open_frames()
         if self._camera_beat.is_due(self.simulator.time):
             self._publish_picture()
+        self._radio.deliver(self.simulator.time)
+
+    def _send(self, publisher: Any, message: Any, *, at_once: bool = False) -> None:
+        if at_once:
+            # It is for one that has just joined, in lock-step: no time passes until it answers.
+            publisher.publish(message)
+        else:
+            self._radio.send(publisher, message, self.simulator.time)
 
     def _say_timed_out(self) -> None:
         if self.timed_out != self._said_timed_out:
@@ -442,11 +489,17 @@ class Turtlebot(Node):
             self._timed_out.publish(Float64(data=limit))
 
     def _publish_odometry(self, stamp: Time | None = None) -> None:
-        stamp = stamp or self._stamp()
-        self._odom.publish(odometry_message(self.simulator, stamp, self._prefix))
+        message = odometry_message(self.simulator, stamp or self._stamp(), self._prefix)
+        self._send(self._odom, message, at_once=stamp is None)
+
+    def _publish_truth(self, stamp: Time | None = None) -> None:
+        if self._truth is not None:
+            message = truth_message(self.simulator, stamp or self._stamp(), self._prefix)
+            self._truth.publish(message)
 
     def _publish_scan(self, stamp: Time | None = None) -> None:
-        self._scan.publish(scan_message(self.simulator, stamp or self._stamp(), self._prefix))
+        message = scan_message(self.simulator, stamp or self._stamp(), self._prefix)
+        self._send(self._scan, message, at_once=stamp is None)
 
     def _open_frames(self) -> None:
         """Begin to say where the parts are, if somebody wants that and the type is there."""
@@ -472,14 +525,15 @@ class Turtlebot(Node):
     def _publish_frames(self, stamp: Time | None = None) -> None:
         if self._frames is not None:
             parts = moving_parts(self.simulator, stamp or self._stamp(), self._prefix)
-            self._frames.publish(self._frames.msg_type(transforms=parts))
+            message = self._frames.msg_type(transforms=parts)
+            self._send(self._frames, message, at_once=stamp is None)
 
     def _publish_picture(self) -> None:
         stamp = self._stamp()
         if self._image.get_subscription_count():
-            self._image.publish(image_message(self.simulator, stamp, self._prefix))
+            self._send(self._image, image_message(self.simulator, stamp, self._prefix))
         if self._camera_info.get_subscription_count():
-            self._camera_info.publish(camera_info_message(stamp, self._prefix))
+            self._send(self._camera_info, camera_info_message(stamp, self._prefix))
 
     def _stamp(self) -> Any:
         if self._clock_publisher is None:

@@ -3,7 +3,8 @@
 Robots that run so stand in one world: each says where it is on a hidden topic, and is a post in
 the worlds of the others. The parameters `x`, `y` and `yaw` are its start, m and rad;
 `command_timeout` is the time without a command after which it stops, s, or 0 if it keeps its last
-velocity.
+velocity; `drift`, `slip`, `noise`, `latency`, `loss` and `seed` make it as imperfect as those of
+`lab.Turtlebot`.
 """
 
 from __future__ import annotations
@@ -18,8 +19,10 @@ from rclpy.event_handler import SubscriptionEventCallbacks
 
 from labkit.errors import LabError
 from labkit.programs.program import spin_until_interrupted
-from labkit.sim.command_timeout import COMMAND_TIMEOUT, as_limit
-from labkit.sim.turtlebot import QUEUE_DEPTH, Turtlebot
+from labkit.sim.command_timeout import COMMAND_TIMEOUT
+from labkit.sim.radio import Radio
+from labkit.sim.simulator import Simulator
+from labkit.sim.turtlebot import ODOM_RATE, QUEUE_DEPTH, Turtlebot
 from labkit.sim.world import Post
 
 __all__ = ['TurtlebotProgram', 'main']
@@ -36,12 +39,21 @@ class TurtlebotProgram(Turtlebot):
         super().__init__()
         self._name = self.get_fully_qualified_name()
         self.simulator.close()
-        self.simulator.name = self._name
-        # A parameter can't be None.
-        self.simulator.command_timeout = as_limit(
-            self._number('command_timeout', COMMAND_TIMEOUT) or None
+        # Parameters are known only now. None can't be one.
+        seed = int(self._number('seed'))
+        self.simulator = Simulator(
+            start=(self._number('x'), self._number('y'), self._number('yaw')),
+            command_timeout=self._number('command_timeout', COMMAND_TIMEOUT) or None,
+            drift=self._number('drift'),
+            slip=self._number('slip'),
+            noise=self._number('noise'),
+            seed=seed,
+            name=self._name,
         )
-        self.place(self._number('x'), self._number('y'), self._number('yaw'))
+        latency, loss = self._number('latency'), self._number('loss')
+        self._radio = Radio(latency, loss, seed, early=0.5 / ODOM_RATE)
+        self._open_truth()
+        self.restart()
         self._place = self.create_publisher(PointStamped, PLACES, QUEUE_DEPTH)
         self.create_subscription(
             PointStamped,
