@@ -65,6 +65,13 @@ function questionForm(question, place, buttons) {
     say,
     given: () => (ofText ? boxes[0].value : chosen().map((box) => box.value).join('')),
     focus: () => (chosen()[0] ?? boxes[0]).focus(),
+    // Nothing is chosen and nothing said; what was typed may be mended.
+    renew() {
+      for (const box of boxes) box.checked = false;
+      say();
+      boxes[0].focus();
+      if (ofText) boxes[0].select();
+    },
     show({ given, tone, word, rows }) {
       for (const box of boxes) {
         if (ofText) box.value = given;
@@ -98,11 +105,19 @@ function render({ model, el }) {
   let [at, waiting, shown] = [firstOpen(0), 0, {}];
 
   const main = all.map(() => element('button', { type: 'submit', className: 'labkit-quiz-main' }));
+  const renewed = new Set();
+  const again = all.map(() => element('button', { type: 'button' }, 'Try again'));
   const cards = questions.map((question, index) => {
     const back = button('Back', () => go(index - 1));
     back.disabled = index === 0;
     const skip = button('Skip', () => go(index + 1));
-    const card = questionForm(question, `${index + 1} of ${end}`, [main[index], back, skip]);
+    again[index].addEventListener('click', () => {
+      renewed.add(index);
+      cards[index].renew();
+      mark();
+    });
+    const buttons = [main[index], again[index], back, skip];
+    const card = questionForm(question, `${index + 1} of ${end}`, buttons);
     card.form.addEventListener('input', mark);
     card.form.addEventListener('submit', (event) => {
       event.preventDefault();
@@ -118,7 +133,7 @@ function render({ model, el }) {
   const isJudged = (index) => {
     const answer = answerTo(index);
     return Boolean(answer?.rows.length) && ['good', 'bad'].includes(answer.tone)
-      && answer.given === cards[index].given();
+      && answer.given === cards[index].given() && !renewed.has(index);
   };
 
   function mark() {
@@ -133,6 +148,7 @@ function render({ model, el }) {
       step.replaceChildren(`${index + 1}`, signOf(toneOf(index)));
       const on = firstOpen(index + 1) === end ? 'Results' : 'Next question';
       setText(main[index], isJudged(index) ? on : 'Check this answer');
+      again[index].hidden = !isJudged(index) || !isOpen(index);
     });
     if (waiting) setText(main[at], 'Checking ...');
   }
@@ -192,6 +208,7 @@ function render({ model, el }) {
       const answer = answerTo(index);
       if (answer && shown[index] !== answer.count) {
         shown[index] = answer.count;
+        renewed.delete(index);
         cards[index].show(answer);
         stopWaiting();
       }

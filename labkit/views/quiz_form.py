@@ -27,7 +27,7 @@ class QuizForm(PageWidget):
         questions: For each one its text, instructions, kind of input and labels.
         answers: Judged answers by question number: what was `given`, the `tone` and `word` of the
             verdict, its `rows`, and a `count` that is new each time.
-        fresh: Whether no page has shown it yet. The first one takes the keyboard.
+        fresh: Whether no page has shown it since its cell ran. The first one takes the keyboard.
     """
 
     _esm, _css = page_files('quiz_form')
@@ -76,6 +76,7 @@ class QuizForm(PageWidget):
 
     def show(self, text: str) -> None:
         """Show the form under the current cell; the text is for viewers without a kernel."""
+        self.fresh = True
         Stored(self).show({'text/plain': text})
 
 

@@ -74,6 +74,29 @@ def test_quiz_has_the_keyboard_when_its_cell_was_run_and_not_when_the_page_is_lo
     notebook.reload()
     expect(quiz_of(notebook).locator('form')).to_be_visible()
     expect(quiz_of(notebook).locator(':focus')).to_have_count(0)
+    # Whoever runs the cell once more answers next.
+    notebook.run_cell('quiz')
+    expect(quiz_of(notebook).locator('form input').first).to_be_focused()
+
+
+def test_a_wrong_answer_is_tried_again(open_quiz):
+    notebook = open_quiz('talker_listener')
+    quiz, keyboard = quiz_of(notebook), notebook.page.keyboard
+    told, again = quiz.locator('[aria-live]'), quiz.get_by_role('button', name='Try again')
+    expect(again).to_be_hidden()
+    wrong = quiz.get_by_label('It sends ten messages to /chatter.')
+    for _ in range(2):  # the same answer is judged once more
+        wrong.check()
+        keyboard.press('Enter')
+        expect(told).to_contain_text('NOT YET')
+        keyboard.press('Tab')
+        keyboard.press('Tab')
+        expect(again).to_be_focused()
+        keyboard.press('Enter')
+        expect(told).to_be_empty()
+        expect(quiz.locator(':checked, .labkit-quiz-why')).to_have_count(0)
+        expect(quiz.get_by_role('radio').first).to_be_focused()
+        expect(again).to_be_hidden()
 
 
 def test_esc_leaves_the_quiz(open_quiz):
@@ -120,4 +143,4 @@ def test_kernel_that_does_not_answer_is_said(open_quiz):
     )
     quiz.get_by_role('radio').first.check()
     notebook.page.keyboard.press('Enter')
-    expect(quiz).to_contain_text('The kernel says nothing.')
+    expect(quiz).to_contain_text('The kernel is silent.')
