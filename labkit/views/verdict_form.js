@@ -31,7 +31,9 @@ function render({ model, el }) {
 
   function show() {
     const [count, shown] = [model.get('count'), model.get('told')];
-    const had = row.contains(document.activeElement);
+    // What becomes hidden loses the keyboard, in some browsers at once.
+    const before = document.activeElement;
+    const had = row.contains(before);
     if (model.get('heard') !== heard) {
       heard = model.get('heard');
       clearTimeout(waiting);
@@ -48,7 +50,7 @@ function render({ model, el }) {
     setText(note, isLost || isQuiet ? GONE : '');
     note.hidden = !note.textContent;
     if (had && row.hidden) el.closest('.jp-Cell')?.focus({ preventScroll: true });
-    else if (had && document.activeElement.hidden) again.focus({ preventScroll: true });
+    else if (had && before.hidden) again.focus({ preventScroll: true });
   }
 
   const news = 'change:told change:solves change:done change:busy change:words change:heard';
