@@ -126,12 +126,13 @@ class Turtlebot(Node):
             s metres the standard deviation of the way of a wheel is slip * sqrt(0.1 s) m.
         noise: Standard deviation of a measured range, m. ROBOTIS's model of the robot for Gazebo
             has 0.01; the data sheet of the real sensor, the LDS-02, has an accuracy of 0.01 m
-            below 0.3 m, and of 3 % beyond.
+            below 0.3 m, and of 3 % up to 6 m.
         latency: Delay of a message, s. Each takes between half and one and a half of it, in whole
             rounds of 30 Hz, and keeps the stamp of the moment of measurement. In lock-step the
             time of a message is that of a command.
         loss: Probability that a message is lost. Neither `/clock`, `/tf_static` nor the true pose
-            are ever lost or late.
+            are ever lost or late. In lock-step, who sends a command for each `/odom` waits for
+            ever for one that is lost.
         seed: Seed of slip, noise, latency and loss: the same seed gives the same numbers.
         stamped: Whether it takes `geometry_msgs/msg/TwistStamped` instead of `Twist`, as the
             TurtleBot3 packages of Jazzy do by default.
