@@ -232,9 +232,13 @@ class Exercise:
         Pending.wait_for_all()
         return self._check()
 
+    def refusal(self) -> str:
+        """Return why a button can't have it checked now, `''` if it can."""
+        return BUSY if last_cell.is_running else ''
+
     def check_again(self, form: VerdictForm) -> str:
         """Check for a form between two cells; return why that can't be, `''` if it can."""
-        if last_cell.is_running:
+        if self.refusal():
             return BUSY
         last_cell.checked(self.name)
         if learner_task_runs():

@@ -33,6 +33,9 @@ class Helper(Protocol):
     def told_solution(self) -> Card:
         """Return the solution."""
 
+    def refusal(self) -> str:
+        """Return why nothing can be checked now, `''` if it can; asked in any thread."""
+
     def check_again(self, form: VerdictForm) -> str:
         """Check, and update the form, at once or later; return why not, `''` if so.
 
@@ -104,8 +107,11 @@ class VerdictForm(PageWidget):
             self._cards['solution'] = self._exercise.told_solution()
             self.words = 'The solution is above.'
         elif ask == 'check' and not (self.busy or self.done):
-            self.busy, self.words = True, 'Checking ...'
-            call_in_kernel(self._check)
+            refusal = self._exercise.refusal()
+            self.words = refusal or 'Checking ...'
+            if not refusal:
+                self.busy = True
+                call_in_kernel(self._check)
         self.solves = self._exercise.may_solve
         self._draw()
 

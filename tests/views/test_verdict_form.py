@@ -26,7 +26,7 @@ class Answers:
         self.hints: Sequence[str] = ('Look.', 'Look closely.')
         self.seen = 0
         self.verdicts = list(verdicts)
-        self.refusal = ''
+        self.words = ''
 
     @property
     def may_solve(self) -> bool:
@@ -40,9 +40,11 @@ class Answers:
         return Card('info', 'SOLUTION', 'ones', code='send(1)')
 
     def check_again(self, form: VerdictForm) -> str:
-        if not self.refusal:
-            form.update(self.verdicts.pop(0))
-        return self.refusal
+        form.update(self.verdicts.pop(0))
+        return ''
+
+    def refusal(self) -> str:
+        return self.words
 
 
 @pytest.fixture(autouse=True)
@@ -104,7 +106,7 @@ def test_a_new_verdict_takes_the_place_of_the_old_one() -> None:
 
 def test_a_check_that_can_not_be_is_refused_in_words() -> None:
     form, answers = started()
-    answers.refusal = 'A cell is running.'
+    answers.words = 'A cell is running.'
     press(form, 'check')
     assert (form.words, form.busy) == ('A cell is running.', False)
     assert shown(form)['text/plain'] == repr(FAIL)
