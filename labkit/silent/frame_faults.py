@@ -199,6 +199,9 @@ def _jumps(scene: Scene, said: list[_Said]) -> Iterator[Fault]:
             if not _at_once(one, two):
                 continue
             nodes = scene.mended_first(one.node, two.node)
+            # Of two static ones the last holds for who has heard both: it may be a correction.
+            fixed = one.is_static and two.is_static
+            what = 'the one that is heard last holds' if fixed else 'it jumps between the two'
             if one.sent.parent != two.sent.parent:
                 yield Fault(
                     TWO_PARENTS,
@@ -206,9 +209,10 @@ def _jumps(scene: Scene, said: list[_Said]) -> Iterator[Fault]:
                     child,
                     f'{one.node} says that {child} is in {one.sent.parent}, and '
                     f'{two.node if two.node != one.node else "also"} that it is in '
-                    f'{two.sent.parent}: a frame has one parent, so it jumps between the two.',
+                    f'{two.sent.parent}: a frame has one parent, so {what}.',
+                    aloud=not fixed,
                 )
-            elif not (one.is_static and two.is_static and one.sent.place == two.sent.place):
+            elif not (fixed and one.sent.place == two.sent.place):
                 who = f'{one.node} and {two.node} both say'
                 if one.node == two.node:
                     who = f'Two publishers of {one.node} say'
@@ -216,7 +220,8 @@ def _jumps(scene: Scene, said: list[_Said]) -> Iterator[Fault]:
                     TWO_SOURCES,
                     nodes,
                     child,
-                    f'{who} where {child} is in {one.sent.parent}: it jumps between the two.',
+                    f'{who} where {child} is in {one.sent.parent}: {what}.',
+                    aloud=not fixed,
                 )
             else:
                 continue
@@ -385,6 +390,8 @@ def _clocks(scene: Scene, own: set[str]) -> Iterator[Fault]:
         for edge in each.edges:
             ahead = (edge.latest - node.now) * 1e-9
             if not edge.latest or edge.child in own or scene.now - edge.heard > COUNTS_SEC:
+                continue
+            if edge.heard < scene.since:  # while a check had a time of its own
                 continue
             who = _who_publishes(scene)
             nodes = scene.mended_first(each.node, *who)

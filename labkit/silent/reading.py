@@ -120,6 +120,7 @@ class Reader:
             tuple(_held(nodes)),
             time.monotonic(),
             tuple(_listening()),
+            self._since,
         )
 
     def _node(self, node: Node, running: object, sent: Mapping[str, list[Sent]]) -> OwnNode:

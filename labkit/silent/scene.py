@@ -304,6 +304,7 @@ class Scene:
         held: The callbacks that hold up executors of the learner's own.
         now: `time.monotonic()`.
         listeners: The transform listeners of this process.
+        since: `time.monotonic()` of the end of the last check, which had a time of its own.
     """
 
     graph: Graph
@@ -314,6 +315,7 @@ class Scene:
     held: tuple[Held, ...] = ()
     now: float = 0.0
     listeners: tuple[Listening, ...] = ()
+    since: float = 0.0
 
     def own(self, name: str) -> OwnNode | None:
         """Return the node of this process of a full name, None if there is none."""

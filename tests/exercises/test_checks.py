@@ -302,17 +302,19 @@ def test_best_effort_publisher_is_heard_and_its_qos_seen(lab: ModuleType) -> Non
 
 
 def test_verdict_of_a_check_that_uses_up_what_it_checks_is_repeated(lab: ModuleType) -> None:
+    judged = []
+
     def judge(probe: Probe) -> str:
         source = expect.publisher(probe, '/odds')
-        return f'{expect.ends_with_node(probe, source)[-1].data}'
+        judged.append(expect.ends_with_node(probe, source)[-1].data)
+        return f'{judged[-1]}'
 
     asked = exercise(judge, once=True)
     lab.spin(Counter())
     first, second = asked.check(), asked.check()
-    assert first.passed and second is first
+    assert first.passed and str(second) == str(first) and len(judged) == 1
     lab.spin(Counter())
-    third = asked.check()
-    assert third.passed and third is not first
+    assert asked.check().passed and len(judged) == 2
 
 
 def test_what_was_said_before_the_check_is_recorded(lab: ModuleType) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 
 from labkit.exercises import Exercise, Fail, Mistake, expect, words_of
 from labkit.exercises.clauses import Evidence, GraphClause, Named
+from labkit.exercises.figures import figure
 from labkit.exercises.what_is_asked import PUBLISHER, Role
 from labkit.lessons.frames.arm import SHEET
 from labkit.lessons.frames.places import TF, Place, degrees, metres, on_floor
@@ -130,8 +131,9 @@ class _AsDrawn(GraphClause):
         right = f'{metres(MOUNT.shift)}; {degrees(MOUNT.turn)}'
         seen = f'{metres(place.shift)}; {degrees(place.turn)}'
         if not place.is_rotation:
-            seen = f'x = {place.turn[0]:.3g}, y = {place.turn[1]:.3g}, z = {place.turn[2]:.3g}, '
-            seen += f'w = {place.turn[3]:.3g}, of length {place.length:.3g}'
+            parts = zip('xyzw', place.turn, strict=True)
+            seen = ', '.join(f'{name} = {figure(part)}' for name, part in parts)
+            seen += f', of length {figure(place.length)}'
             raise Fail('a quaternion of length 1', seen, NO_LENGTH)
         if not _same(place, MOUNT):
             found = next((each for each, model in _MODELS if _same(place, model)), None)

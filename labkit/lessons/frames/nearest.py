@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from labkit.exercises import Exercise, Fail, Mistake, expect, words_of
 from labkit.exercises.clauses import WITHIN, Evidence, GraphClause
 from labkit.exercises.clauses.base import Test
+from labkit.exercises.figures import figure
 from labkit.exercises.messages_heard import Lived
 from labkit.exercises.what_is_asked import PUBLISHER, SUBSCRIPTION, Role
 from labkit.lessons.frames.places import TF, Place, metres, on_floor
@@ -243,7 +244,7 @@ class _Header(GraphClause):
             stamp = header.stamp.sec * SECOND + header.stamp.nanosec
             if stamp != shot.stamp:
                 late = (stamp - shot.stamp) / SECOND
-                raise Fail('the stamp of the scan', f'a stamp {late:.3g} s after it', STAMP)
+                raise Fail('the stamp of the scan', f'a stamp {figure(late)} s after it', STAMP)
         return ''
 
 

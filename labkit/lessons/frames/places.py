@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from labkit.exercises.figures import figure
 from labkit.transforms.rotations import (
     Quaternion,
     Vector,
@@ -102,12 +103,12 @@ def on_floor(x: float, y: float, yaw: float, z: float = 0.0) -> Place:
 
 def metres(point: Vector) -> str:
     """Return a point in words."""
-    return ', '.join(f'{name} = {part:.3g} m' for name, part in zip('xyz', point, strict=True))
+    return ', '.join(f'{name} = {figure(part)} m' for name, part in zip('xyz', point, strict=True))
 
 
 def degrees(turn: Quaternion) -> str:
     """Return a quaternion in words, with its yaw."""
     x, y, z, w = turn
     yaw = math.degrees(math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
-    parts = ', '.join(f'{name} = {part:.3g}' for name, part in zip('xyzw', turn, strict=True))
+    parts = ', '.join(f'{name} = {figure(part)}' for name, part in zip('xyzw', turn, strict=True))
     return f'{parts}, which is a yaw of {yaw:.0f}°'
