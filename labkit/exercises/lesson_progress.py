@@ -68,25 +68,31 @@ def next_steps(
     for item in exercises[position + 1 :] + exercises[:position]:
         if item.state != 'done':
             return row, [(f'Next: {item.name}', item.href)]
-    questions = [item for item in row.of_kind('question') if item.state != 'done']
-    # Not to the warm-up, which stands before the exercises.
-    quiz = [('Next: the quiz', item.href) for item in questions[-1:]]
+    quiz = [('Next: the quiz', item.href) for item in _open_questions(row, warm_up=False)[:1]]
     return row, quiz + _next_lesson(lesson, lessons)
 
 
 def onward(data: Data, lessons: list[Lesson]) -> list[tuple[str, str]]:
-    """Return where to continue: the first open exercise from the lesson of the last attempt on."""
+    """Return where to continue: what is open next, from the lesson of the last attempt on.
+
+    A lesson that was not begun is read from its first line on. In one that was, exercises come
+    before its quiz, and the warm-up is last: it looks back.
+    """
     times = [
         max((max(e['passed_at'], e['first_try']) for e in entries(lesson, data)), default='')
         for lesson in lessons
     ]
-    if not any(times):
-        return [(lesson.heading, lesson.notebook) for lesson in lessons[:1]]
-    last = times.index(max(times))
+    last = times.index(max(times)) if times else 0
     for lesson in lessons[last:] + lessons[:last]:
-        for item in row_of(lesson, data).of_kind('exercise'):
+        row = row_of(lesson, data)
+        if row.items and all(item.state == 'open' for item in row.items):
+            return [(lesson.heading, lesson.notebook)]
+        for item in row.of_kind('exercise'):
             if item.state != 'done':
                 return [(f'{lesson.heading}, {item.name}', item.href)]
+        for words, warm_up in (('quiz', False), ('warm-up', True)):
+            for item in _open_questions(row, warm_up=warm_up):
+                return [(f'{lesson.heading}, {words}', item.href)]
     return []
 
 
@@ -118,6 +124,15 @@ def _local_day(time: str) -> date | None:
         return datetime.fromisoformat(time).astimezone().date()
     except (ValueError, OverflowError, OSError):
         return None  # not a time: somebody has changed the file
+
+
+def _open_questions(row: Row, *, warm_up: bool) -> list[Item]:
+    """Return the open questions of the warm-up, or of all other quizzes."""
+    return [
+        item
+        for item in row.of_kind('question')
+        if item.state != 'done' and item.name.startswith('warm_up.') == warm_up
+    ]
 
 
 def _next_lesson(lesson: Lesson, lessons: list[Lesson]) -> list[tuple[str, str]]:

@@ -89,16 +89,19 @@ class Row:
 
 
 def percent(items: Sequence[Item]) -> int:
-    """Return the completed share in percent: 0 only if none is done, 100 only if all are."""
-    done = _done(items)
-    return max(100 * done // max(len(items), 1), min(done, 1))
+    """Return how much is done, in percent: 0 only if nothing is, 100 only if all is.
+
+    Exercises count, for they are the work. A lesson without any is done by its questions.
+    """
+    counted = [item for item in items if item.kind == 'exercise'] or items
+    done = _done(counted)
+    return max(100 * done // max(len(counted), 1), min(done, 1))
 
 
 def text_form(rows: Sequence[Row], note: str = '') -> str:
     """Return progress as lines of text."""
     everything = _everything(rows)
-    share = f', {percent(everything.items)} %' if everything.items else ''
-    lines = [f'Progress: {everything.counts() or "no exercises here"} done{share}']
+    lines = [f'Progress: {everything.counts() or "no exercises here"} done']
     width = max((len(row.title) for row in rows), default=0)
     for row in rows:
         lines.append(f'  {row.title:<{width}}  {row.counts()}')
@@ -128,8 +131,8 @@ def picture(
     share = percent(everything.items)
     parts = [
         f'<div style="{_FONT};max-width:80em">',
-        f'<p style="margin:0 0 0.6em">{_bar(share, 12)} <strong>{share} %</strong> '
-        f'{everything.counts() or "no exercises here"} done</p>',
+        f'<p style="margin:0 0 0.6em">{_bar(share, 12)} <strong>{share} %</strong> of the '
+        f'exercises: {everything.counts() or "none here"}</p>',
         above,
         *(f'<p style="margin:0 0 0.6em">Go on: {link(*place)}</p>' for place in onward),
         '<table style="border-collapse:collapse;font-size:inherit;margin:0">',

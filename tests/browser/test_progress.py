@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 from playwright.sync_api import expect
 
 from labkit.exercises.found_lessons import all_lessons
+from labkit.views.course_map import WIDTH
 from tests.browser.samples import SETUP, TALKER
 
 pytestmark = pytest.mark.slow('a page in the browser')
@@ -42,10 +45,35 @@ def test_pass_leads_to_the_next_exercise_and_progress_to_any_lesson(open_lesson)
     expect(next_task).to_be_in_viewport()
     expect(shown.get_by_role('rowheader')).to_have_count(len(all_lessons()))
     expect(shown.get_by_role('link', name='exercise first_node: open')).to_be_visible()
-    shown.get_by_role('link', name='05 My name is').click()
+    shown.get_by_role('rowheader').get_by_role('link', name='05 My name is').click()
     page.wait_for_function(f"({OPEN})() === '05_my_name_is.ipynb'")
     page.evaluate('() => window.jupyterapp.shell.currentWidget.close()')
     notebook.execute('docmanager:open', path='04_odds.ipynb')
+
+
+def test_home_has_a_road_that_mouse_and_keys_follow(open_cells):
+    notebook = open_cells(setup='pass')
+    page = notebook.page
+    notebook.execute('docmanager:open', path='Home.md', factory='Markdown Preview')
+    home = page.locator('.jp-MarkdownViewer')
+    stations = home.locator('a:has(img)')
+    expect(stations).to_have_count(len(all_lessons()))
+    # Its names can be read, and none lies over another one.
+    boxes = [stations.nth(number).locator('img').bounding_box() for number in range(3)]
+    assert boxes[0]['width'] >= WIDTH
+    assert boxes[0]['x'] + boxes[0]['width'] <= boxes[1]['x'] + 1
+    if folder := os.environ.get('LABKIT_SCREENSHOTS'):
+        page.screenshot(path=f'{folder}/home.png')
+    for number, name, opens in ((1, '01 What ROS is', 'click'), (5, '05 My name is', 'keys')):
+        notebook.execute('docmanager:open', path='Home.md', factory='Markdown Preview')
+        station = home.get_by_role('link', name=f'{name}: 0 %')
+        if opens == 'click':
+            station.click()
+        else:
+            station.focus()
+            page.keyboard.press('Enter')
+        page.wait_for_function(f"({OPEN})().startsWith('0{number}_')")
+        page.evaluate('() => window.jupyterapp.shell.currentWidget.close()')
 
 
 def test_solution_is_copied_without_a_kernel(open_cells, browser):

@@ -94,7 +94,16 @@ def test_go_on_is_where_the_last_attempt_was(course: list[Lesson]) -> None:
     progress_store.note_check('chat', 'teller', 'FAIL')
     assert progress().onward == [('06 Chat, teller', '06_chat.ipynb#cell-id=teller-task')]
     progress_store.note_check('chat', 'teller', 'PASS')
+    # A lesson that was not begun is read from its first line on.
+    assert progress().onward == [('04 Odd numbers', '04_odds.ipynb')]
+    progress_store.note_check('odds', 'one', 'FAIL')
     assert progress().onward == [('04 Odd numbers, one', '04_odds.ipynb#cell-id=one-task')]
+
+
+def test_go_on_leaves_no_quiz_out(course: list[Lesson]) -> None:
+    for exercise in course[0].exercises:
+        progress_store.note_check('odds', exercise.name, 'PASS')
+    assert progress().onward == [('04 Odd numbers, quiz', '04_odds.ipynb#cell-id=quiz')]
 
 
 def test_a_progress_file_with_values_of_other_types_is_shown() -> None:

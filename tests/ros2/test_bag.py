@@ -399,7 +399,8 @@ def publish():
     lab.wait_until(count.get_subscription_count, timeout_sec=30)
     # One, taken before the first time of the clock: a second one may wait until after it.
     count.publish(Int16(data=1))
-    print('taken', taken.wait(60))
+    # In one piece: the recorder writes its lines from another thread.
+    print(f'taken {taken.wait(60)}')
     lab.wait_until(lambda: clock.get_subscription_count(), timeout_sec=30)
     tick = Clock()
     tick.clock.sec = 50

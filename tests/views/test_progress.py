@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from labkit.views.course_map import course_map, earned, linked_map
+from labkit.views.course_map import course_map, earned, markdown_map
 from labkit.views.passed_card import PassedCard
 from labkit.views.progress_picture import Item, Row, percent, picture, text_form
 
@@ -51,7 +51,7 @@ def test_each_lesson_has_a_line_with_its_share() -> None:
     lines = list(page_of(picture(ROWS)).iter('tr'))[1:]
     cells = [[' '.join(''.join(c.itertext()).split()) for c in line] for line in lines]
     assert cells == [
-        ['01 a & b', '35 min', '50 %', '✔ <one>', '0 of 1'],
+        ['01 a & b', '35 min', '100 %', '✔ <one>', '0 of 1'],
         ['02 long', '', '0 %', '', '0 of 60'],
         ['03 empty', '', '0 %', '', ''],
     ]
@@ -70,7 +70,7 @@ def test_nothing_is_said_only_of_nothing_and_all_only_of_all(
 
 def test_text_form_counts() -> None:
     assert text_form(ROWS).splitlines() == [
-        'Progress: 1 of 1 exercise, 0 of 61 questions done, 1 %',
+        'Progress: 1 of 1 exercise, 0 of 61 questions done',
         '  01 a & b  1 of 1 exercise, 0 of 1 question',
         '    done   <one>',
         '  02 long   0 of 60 questions',
@@ -100,27 +100,37 @@ def test_card_of_a_solved_exercise() -> None:
 
 
 def test_map_has_a_station_for_each_lesson_and_the_robot_where_one_is() -> None:
-    done = Row('03 all', [Item('exercise', 'x', 'done')], '03_all.ipynb')
-    rows = [ROWS[0], ROWS[1], done, *ROWS, *ROWS]
-    page = page_of(course_map(rows, '03_all.ipynb'))
-    stations = [part for part in page if part.tag.endswith('}g')]
+    begun = Row('03 begun', [Item('exercise', x, s) for x, s in (('x', 'done'), ('y', 'open'))])
+    rows = [ROWS[0], ROWS[1], begun, Row('04 here', [], '04_here.ipynb'), ROWS[2]]
+    page = page_of(course_map(rows, '04_here.ipynb'))
+    svg = '{http://www.w3.org/2000/svg}'
+    stations = list(page.iter(f'{svg}svg'))
     assert len(stations) == len(rows)
-    with_robot = [s for s in stations if any(part.tag.endswith('}g') for part in s)]
-    assert with_robot == [stations[2]]
+    with_robot = [s for s in stations if len(list(s.iter(f'{svg}g'))) == 2]
+    assert with_robot == [stations[3]]
     # One ring is the way, the second one what is done of it.
-    rings = [len([c for c in s.iter() if c.tag.endswith('}circle')]) for s in stations]
-    assert rings == [2, 1, 2, 2, 1, 1, 2, 1, 1]
-    roads = [part.attrib['stroke'] for part in page if part.tag.endswith('}path')]
-    assert len(roads) == len(rows) - 1
-    assert [number for number, colour in enumerate(roads) if 'success' in colour] == [2]
+    rings = [len(list(s.iter(f'{svg}circle'))) for s in stations]
+    assert rings == [2, 1, 2, 1, 1]
+    # The road leaves a station whose exercises are solved in another colour, up to the next one.
+    roads = [['success' in p.attrib['stroke'] for p in s.findall(f'{svg}path')] for s in stations]
+    assert roads == [[True], [True, False], [False, False], [False, False], [False]]
 
 
-def test_map_opens_a_lesson_by_a_click_and_leaves_the_keyboard_to_the_table() -> None:
-    page = page_of(linked_map(ROWS))
-    link = page.find('a')
-    assert link is not None and len(page.findall('a')) == 1
-    assert link.attrib['href'] == '01_a.ipynb' and link.attrib['tabindex'] == '-1'
-    assert link.attrib['title'] == '01 a & b: 50 %, 35 min'
+def test_each_station_is_a_link_with_words() -> None:
+    page = page_of(course_map(ROWS))
+    links = page.findall('a')
+    assert [link.attrib['href'] for link in links] == ['01_a.ipynb']
+    assert links[0].attrib['aria-label'] == '01 a & b: 100 %, 35 min'
+    assert [part.attrib['aria-label'] for part in page.findall('span')] == [
+        '02 long: 0 %',
+        '03 empty: 0 %',
+    ]
+
+
+def test_road_in_markdown_is_links_with_pictures() -> None:
+    text = markdown_map([Row('01 a [b]', [], '01_a.ipynb'), Row('02 c', [])])
+    assert text.startswith('[![01 a (b): 0 %](data:image/svg+xml;base64,')
+    assert ')](01_a.ipynb)![02 c: 0 %](data:' in text and '\n' not in text
 
 
 def test_certificate_says_what_was_done_and_when() -> None:

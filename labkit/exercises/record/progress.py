@@ -16,7 +16,7 @@ from labkit.background.runtime import runtime
 from labkit.exercises.found_lessons import all_lessons
 from labkit.exercises.lesson_progress import days, days_in_a_row, entries, onward, row_of
 from labkit.exercises.record.progress_store import progress_store
-from labkit.views.course_map import earned, linked_map
+from labkit.views.course_map import course_map, earned
 from labkit.views.progress_picture import Row, picture, text_form
 
 if TYPE_CHECKING:
@@ -51,11 +51,12 @@ class ProgressView:
 
     def _repr_html_(self) -> str:
         here = self.onward[0][1].partition('#')[0] if self.onward else ''
-        above = linked_map(self.rows, here)
+        above = course_map(self.rows, here)
         count = days_in_a_row(self.days, date.today())
         if count > 1:
             above += f'\n<p style="margin:0 0 0.6em">{count} days in a row.</p>'
-        if self.days and not self.onward:
+        exercises = [item for row in self.rows for item in row.of_kind('exercise')]
+        if self.days and all(item.state == 'done' for item in exercises):
             above += f'\n{earned(self.rows, self.days[0], self.days[-1])}'
         return picture(self.rows, self.note, self.onward, above=above)
 

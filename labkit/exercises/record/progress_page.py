@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
-from base64 import b64encode
 from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path
@@ -18,7 +17,7 @@ from labkit.exercises.found_lessons import all_lessons
 from labkit.exercises.lesson_progress import onward, row_of
 from labkit.exercises.record.progress_store import progress_store
 from labkit.files import read_limited, write_atomically
-from labkit.views.course_map import course_map
+from labkit.views.course_map import markdown_map
 from labkit.views.progress_picture import Item, Row, percent, sign
 
 __all__ = ['follow_progress', 'main', 'page', 'write_home']
@@ -30,9 +29,9 @@ MARK = '<!-- labkit writes this page: what you change here is lost. -->\n'
 _PAGE = """{mark}
 # Learn ROS 2
 
-![]({map})
+{map}
 
-**{share} %** done: {counts}.
+**{share} %** of the exercises: {counts}.
 
 {go_on}
 
@@ -74,10 +73,9 @@ def page(rows: Sequence[Row], places: Sequence[tuple[str, str]], now: datetime) 
     everything = Row('', [item for row in rows for item in row.items])
     links = [f'Go on: **[{text}]({href})**' for text, href in places]
     here = places[0][1].partition('#')[0] if places else ''
-    drawn = b64encode(course_map(rows, here, titles=False).encode()).decode()
     return _PAGE.format(
         mark=MARK,
-        map=f'data:image/svg+xml;base64,{drawn}',
+        map=markdown_map(rows, here),
         share=percent(everything.items),
         counts=everything.counts(),
         go_on=''.join(links) or 'You have solved all of it.',

@@ -50,7 +50,7 @@ def test_picture_and_text_say_what_is_done_and_tried(lesson: Lesson) -> None:
     assert '04 odds  1 of 2 exercises, 0 of 1 question' in repr(shown)
     assert '    done   one' in repr(shown) and '    tried  two' in repr(shown)
     html = shown._repr_html_()
-    assert '<strong>33 %</strong> 1 of 2 exercises, 0 of 1 question done' in html
+    assert '<strong>50 %</strong> of the exercises: 1 of 2 exercises, 0 of 1 question' in html
     assert 'exercise one: done' in html and '0 of 1</td>' in html
 
 
@@ -71,7 +71,7 @@ def test_csv_has_a_line_for_everything(lesson: Lesson, capsys: pytest.CaptureFix
 def test_command_shows_text(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([]) == 0
     assert capsys.readouterr().out.startswith(
-        'Progress: 0 of 2 exercises, 0 of 1 question done, 0 %'
+        'Progress: 0 of 2 exercises, 0 of 1 question done'
     )
 
 

@@ -43,12 +43,12 @@ def test_page_names_each_lesson_what_it_teaches_and_what_is_done() -> None:
     text = page(rows, [('04 Odd numbers, evens', '04_odds.ipynb#cell-id=evens-task')], NOW)
     lines = [line.replace('&nbsp;', ' ').replace(' &ensp;', ', ') for line in text.splitlines()]
     assert lines[0] == MARK.strip()
-    assert '**33 %** done: 1 of 2 exercises, 0 of 1 question.' in lines
+    assert '**50 %** of the exercises: 1 of 2 exercises, 0 of 1 question.' in lines
     assert 'Go on: **[04 Odd numbers, evens](04_odds.ipynb#cell-id=evens-task)**' in lines
     assert (
         '| [04 Odd numbers](04_odds.ipynb) | types; queues | '
         '✔ [ones](04_odds.ipynb#cell-id=ones-task), '
-        '… [evens](04_odds.ipynb#cell-id=evens-task) | 0 of 1 | 33 % |'
+        '… [evens](04_odds.ipynb#cell-id=evens-task) | 0 of 1 | 50 % |'
     ) in lines
     assert '23 November 2026 at 14:05' in text
 
@@ -57,6 +57,10 @@ def test_page_has_all_lessons(path: Path) -> None:
     assert main([str(path)]) == 0
     links = re.findall(r'^\| \[.*?\]\((.*?)\) \|', path.read_text(), re.MULTILINE)
     assert links == [lesson.notebook for lesson in all_lessons()]
+    # On the road as well.
+    stations = re.findall(r'\[!\[(.*?)\]\(data:.*?\)\]\((.*?)\)', path.read_text())
+    assert [href for _, href in stations] == links
+    assert stations[1][0].startswith('01 What ROS is: 0 %')
 
 
 def test_page_follows_what_is_noted(path: Path) -> None:
