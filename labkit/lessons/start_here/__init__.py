@@ -14,7 +14,7 @@ LESSON = Lesson(
     '00_start_here.ipynb',
     title='Start here',
     minutes=20,
-    teaches='how a lesson works; your first message; a robot to drive',
+    teaches='a robot to drive; your first message; how a lesson works',
     exercises=[first_node],
     quizzes=[QUIZ],
     topics=['/greetings', *ROBOT_TOPICS],

@@ -70,9 +70,7 @@ def test_csv_has_a_line_for_everything(lesson: Lesson, capsys: pytest.CaptureFix
 
 def test_command_shows_text(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([]) == 0
-    assert capsys.readouterr().out.startswith(
-        'Progress: 0 of 2 exercises, 0 of 1 question done'
-    )
+    assert capsys.readouterr().out.startswith('Progress: 0 of 2 exercises, 0 of 1 question done')
 
 
 def test_damaged_file_is_said_from_then_on(home: Path) -> None:
