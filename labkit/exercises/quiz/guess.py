@@ -52,7 +52,9 @@ class Guess:
         self.shown_by = shown_by
         self.lesson = ''
         self._form: Any = None
-        # Whether the cell has shown the answer since the notebook was opened.
+        # What was guessed since it was asked last.
+        self._given: int | None = None
+        # Whether the cell has shown the answer since it was asked last.
         self._is_told = False
 
     def choose(self, letter: str) -> Card:
@@ -71,7 +73,8 @@ class Guess:
         return self._take(known.index(given))
 
     def _take(self, index: int) -> Card:
-        note = progress_store.note_guess(self.lesson, self.name, index, self._is_told)
+        self._given = index
+        note = progress_store.note_guess(self.lesson, self.name, index)
         if self._form is not None:
             self._form.told(index, self._words(index))
         else:
@@ -87,13 +90,22 @@ class Guess:
             return NOT_SHOWN if index is None else 'Now run the cell that comes next.'
         return f'What came: {self.options[self.came]}. {self.why}'
 
+    def _guessed(self) -> int | None:
+        """Return what was guessed last; of earlier sessions, before the answer was known."""
+        if self._given is not None:
+            return self._given
+        found = progress_store.guess(self.lesson, self.name)
+        # The file may have been changed by hand.
+        return found if type(found) is int and 0 <= found < len(self.options) else None
+
     def _look(self) -> None:
         """Show the guess under the cell that has just answered it."""
         run = last_cell.run
         if run is None or run.error is not None or run.cell_id != self.shown_by or self._is_told:
             return
         self._is_told = True
-        index = progress_store.guess(self.lesson, self.name)
+        progress_store.note_told(self.lesson, self.name)
+        index = self._guessed()
         if self._form is not None:
             self._form.told(index, self._words(index))
         if index is not None and settings.audience().live:
@@ -117,8 +129,8 @@ class Guess:
             if settings.audience().live:
                 from labkit.views.guess_form import GuessForm
 
-                index = progress_store.guess(self.lesson, self.name)
-                self._is_told = False
+                self._given, self._is_told = None, False
+                index = self._guessed()
                 self._form = GuessForm(self.ask, self.options, self._take)
                 self._form.told(index, self._words(index))
                 last_cell.after_each(self._look)

@@ -81,20 +81,23 @@ class ProgressStore:
 
         return self._change(lesson, 'questions', f'{quiz}.{number}', change)
 
-    def note_guess(self, lesson: str, name: str, index: int, told: bool) -> str:
+    def note_guess(self, lesson: str, name: str, index: int) -> str:
         """Record a guess: which option, from 0, and whether the answer was known by then."""
 
         def change(entry: dict[str, Any]) -> None:
             _note_try(entry, right=False)
-            entry['after' if told else 'before'] = index
+            entry['after' if entry.get('told') is True else 'before'] = index
 
         return self._change(lesson, 'guesses', name, change)
 
-    def guess(self, lesson: str, name: str) -> int | None:
-        """Return what was guessed last before the answer was known, None if nothing was."""
+    def note_told(self, lesson: str, name: str) -> str:
+        """Record that the answer to a guess was shown: from now on it is known."""
+        return self._change(lesson, 'guesses', name, lambda entry: entry.update(told=True))
+
+    def guess(self, lesson: str, name: str) -> object:
+        """Return what was guessed last before the answer was known, as the file has it."""
         data, _ = self.store.read()
-        found = data['lessons'].get(lesson, {}).get('guesses', {}).get(name, {}).get('before')
-        return found if isinstance(found, int) else None
+        return data['lessons'].get(lesson, {}).get('guesses', {}).get(name, {}).get('before')
 
     def answers(self, lesson: str, quiz: str) -> dict[int, tuple[str, bool]]:
         """Return the last answer to each question of a quiz, and whether it was right."""

@@ -112,11 +112,43 @@ def test_guesses_before_and_after_the_answer_are_kept_apart(
     late.choose('b')
     entry = store.store.read()[0]['lessons']['odds']['guesses']['late']
     assert (entry['before'], entry['after']) == (0, 1) and 'passed_at' not in entry
-    # The next day it is shown as it was guessed.
+    # The next day it is shown as it was guessed, and a guess comes after the answer.
     again = Guess('late', late.ask, late.options, came='five', why=late.why, shown_by=CELL)
     again.lesson = 'odds'
     again._ipython_display_()
     assert again._form.guessed == 0
+    again.choose('c')
+    entry = store.store.read()[0]['lessons']['odds']['guesses']['late']
+    assert (entry['before'], entry['after']) == (0, 2)
+    # What stands under the cell is the guess of this day.
+    live.clear()
+    run(CELL)
+    (card,) = live
+    assert 'YOU GUESSED: ten' in repr(card)
+
+
+def test_who_was_told_before_any_guess_guesses_after_it(
+    late: Guess, live: list[object], store: ProgressStore
+) -> None:
+    late._ipython_display_()
+    run(CELL)
+    late.choose('b')
+    entry = store.store.read()[0]['lessons']['odds']['guesses']['late']
+    assert (entry['after'], entry.get('before')) == (1, None)
+
+
+@pytest.mark.parametrize('index', [3, -1, True, '1', 1.0, [1], None])
+def test_a_guess_changed_by_hand_to_what_is_no_option_is_ignored(
+    late: Guess, live: list[object], store: ProgressStore, index: object
+) -> None:
+    store.store.update(
+        lambda data: data['lessons'].update(odds={'guesses': {'late': {'before': index}}})
+    )
+    late._ipython_display_()
+    assert late._form.guessed == -1
+    live.clear()
+    run(CELL)
+    assert not live and late._form.words == 'What came: five. So deep.'
 
 
 @pytest.mark.parametrize('letter', ['d', '', 'ab', 2, None])

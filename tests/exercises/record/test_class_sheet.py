@@ -81,8 +81,9 @@ def test_all_of_the_course_fits(store: ProgressStore) -> None:
             store.note_hint(lesson, name, 3)
             store.note_solution(lesson, name)
         elif kind == 'guess':
-            store.note_guess(lesson, name, 1, told=False)
-            store.note_guess(lesson, name, 2, told=True)
+            store.note_guess(lesson, name, 1)
+            store.note_told(lesson, name)
+            store.note_guess(lesson, name, 2)
         else:
             quiz, _, number = name.rpartition('.')
             store.note_answer(lesson, quiz, int(number), True, given='x' * 1000)
