@@ -1,26 +1,18 @@
 // A guess: a question, and a button for each answer. The kernel says what comes of it.
 
-const LETTERS = 'abcd';
 const KEYS = 'A letter guesses, too. Esc leaves the guess.';
 
 function render({ model, el }) {
-  el.classList.add('labkit-guess');
-  const unmake = makeView(model, el);
-  const note = makeNote();
-  const { send, disconnect } = connect(model, () => {
-    setText(note, GONE);
-    note.hidden = false;
-  });
-  const told = element('p', { className: 'labkit-guess-told' });
-  told.setAttribute('aria-live', 'polite');
+  const { send, end } = makeForm(model, el, 'labkit-guess');
+  el.classList.add('labkit-form-framed');
+  const told = toldPlace('p');
   const buttons = model.get('options').map((option, index) => {
-    const letter = element('span', { className: 'labkit-guess-letter' }, LETTERS[index]);
-    const made = element('button', { type: 'button' }, letter, ' ', ...rich(option));
-    made.addEventListener('click', () => send({ guess: index }));
+    const made = button(option, () => send({ guess: index }));
+    made.prepend(element('span', { className: 'labkit-guess-letter' }, LETTERS[index]), ' ');
     return made;
   });
-  const row = element('div', { className: 'labkit-guess-options' }, ...buttons);
-  const ask = element('p', { className: 'labkit-guess-ask' }, ...rich(model.get('ask')));
+  const row = element('div', { className: 'labkit-form-row labkit-guess-options' }, ...buttons);
+  const ask = element('p', { className: 'labkit-form-ask' }, ...rich(model.get('ask')));
   row.setAttribute('role', 'group');
   row.setAttribute('aria-label', model.get('ask'));
   el.addEventListener('keydown', (event) => {
@@ -35,7 +27,7 @@ function render({ model, el }) {
     const words = model.get('words');
     if (told.textContent !== words.replaceAll('`', '')) told.replaceChildren(...rich(words));
   };
-  el.append(note, ask, row, told, element('p', { className: 'labkit-guess-keys' }, KEYS));
+  el.append(ask, row, told, toldKeys(KEYS));
   show();
   model.on('change:guessed change:words', show);
   const leave = takeKeyboard(model, el, () => {
@@ -44,8 +36,7 @@ function render({ model, el }) {
   return () => {
     leave();
     model.off('change:guessed change:words', show);
-    disconnect();
-    unmake();
+    end();
   };
 }
 

@@ -29,20 +29,6 @@ function rich(text) {
   return parts.map((part, index) => (index % 2 ? element('code', {}, part) : part));
 }
 
-// Who has run the cell of a form answers next, unless they are typing elsewhere by then.
-function takeKeyboard(model, el, focus) {
-  const watch = new ResizeObserver(() => {
-    if (!el.isConnected) return;
-    watch.disconnect();
-    const typing = document.activeElement?.closest('input, textarea, [contenteditable="true"]');
-    if (model.get('fresh') && !typing) focus();
-    model.set('fresh', false);
-    model.save_changes();
-  });
-  watch.observe(el);
-  return () => watch.disconnect();
-}
-
 // What every view is. Its stored form hides while it is there (see stored_form.py). JupyterLab's own keys
 // (a, b, x, arrows) stay out of it, but for those that run its cell; Escape leaves it.
 function makeView(model, el) {

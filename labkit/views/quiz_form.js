@@ -1,8 +1,6 @@
 // One question at a time, as a form: the browser's own fieldset, inputs and buttons. The kernel
 // judges. Enter answers; once an answer has been judged, Enter goes on.
 
-const LETTERS = 'abcdefghijklmnopqrstuvwxyz';
-const PATIENCE_MS = 4000;
 const SIGNS = { good: '✔', bad: '✘', warn: '⚠' };
 const WORDS = { good: 'right', bad: 'not yet right', warn: 'open', '': 'open' };
 let forms = 0;
@@ -11,12 +9,6 @@ function signOf(tone) {
   const sign = element('span', { className: 'labkit-quiz-sign' }, SIGNS[tone] ?? '○');
   sign.setAttribute('aria-hidden', 'true');
   return sign;
-}
-
-function button(text, act, className = '') {
-  const made = element('button', { type: 'button', className }, ...rich(text));
-  made.addEventListener('click', act);
-  return made;
 }
 
 function inputs(question, name) {
@@ -35,14 +27,12 @@ function inputs(question, name) {
 // The form of one question: what is chosen in it, and how an answer to it is shown.
 function questionForm(question, place, buttons) {
   const ofText = question.kind === 'text';
-  const legend = element('legend', {},
+  const legend = element('legend', { className: 'labkit-form-ask' },
     element('span', { className: 'labkit-quiz-place' }, place), ' ', ...rich(question.text),
     element('span', { className: 'labkit-quiz-how' }, ` (${question.how})`));
   const options = inputs(question, `labkit-quiz-${(forms += 1)}`);
-  // There before it is filled, so that a screen reader speaks what comes into it.
-  const told = element('div', { className: 'labkit-quiz-told' });
-  told.setAttribute('aria-live', 'polite');
-  const row = element('div', { className: 'labkit-quiz-buttons' }, ...buttons);
+  const told = toldPlace('div');
+  const row = element('div', { className: 'labkit-form-row labkit-quiz-buttons' }, ...buttons);
   const form = element('form', {}, element('fieldset', {}, legend, ...options, told), row);
   const boxes = [...form.querySelectorAll('input')];
   const chosen = () => boxes.filter((box) => box.checked);
@@ -86,15 +76,11 @@ function questionForm(question, place, buttons) {
 }
 
 function render({ model, el }) {
-  el.classList.add('labkit-quiz');
-  const unmake = makeView(model, el);
-  const note = makeNote();
-  const { send, disconnect } = connect(model, () => {
-    setText(note, GONE);
-    note.hidden = false;
+  const { send, end: leaveKernel } = makeForm(model, el, 'labkit-quiz', () => {
     stopWaiting();
     mark();
   });
+  el.classList.add('labkit-form-framed');
   const questions = model.get('questions');
   const end = questions.length;
   const answerTo = (index) => model.get('answers')[String(index + 1)];
@@ -197,7 +183,7 @@ function render({ model, el }) {
         cards[index].say(GONE);
         mark();
       };
-      waiting = setTimeout(giveUp, PATIENCE_MS);
+      waiting = setTimeout(giveUp, QUIET_MS);
       mark();
       send({ number: index + 1, answer });
     }
@@ -217,11 +203,11 @@ function render({ model, el }) {
     else mark();
   }
 
-  const bar = element('div', { className: 'labkit-quiz-steps' }, ...steps, ending);
+  const bar = element('div', { className: 'labkit-form-row labkit-quiz-steps' }, ...steps, ending);
   bar.setAttribute('role', 'group');
   bar.setAttribute('aria-label', 'Questions of the quiz');
   const keys = 'Enter answers, and goes on. Esc leaves the quiz.';
-  el.append(note, bar, stage, element('p', { className: 'labkit-quiz-keys' }, keys));
+  el.append(bar, stage, toldKeys(keys));
   show();
   take();
   model.on('change:answers', take);
@@ -232,8 +218,7 @@ function render({ model, el }) {
     leave();
     stopWaiting();
     model.off('change:answers', take);
-    disconnect();
-    unmake();
+    leaveKernel();
   };
 }
 

@@ -1,19 +1,14 @@
 // The buttons under a verdict. The cards above them are JupyterLab's to draw (see verdict_form.py).
 
 function render({ model, el }) {
-  el.classList.add('labkit-help');
-  const unmake = makeView(model, el);
-  const note = makeNote();
-  const told = element('span', { className: 'labkit-help-told' });
-  told.setAttribute('aria-live', 'polite');
+  const told = toldPlace('span');
   let [waiting, isQuiet, isLost, heard] = [0, false, false, model.get('heard')];
-  const { send, disconnect } = connect(model, () => {
+  const { sayGone, send, end } = makeForm(model, el, 'labkit-help', () => {
     isLost = true;
     show();
   });
   const make = (ask, text) => {
-    const made = element('button', { type: 'button' }, text);
-    made.addEventListener('click', () => {
+    const made = button(text, () => {
       if (made.getAttribute('aria-disabled') === 'true') return;
       clearTimeout(waiting);
       waiting = setTimeout(() => {
@@ -27,7 +22,7 @@ function render({ model, el }) {
   const hint = make('hint', '');
   const again = make('check', 'Check again');
   const solution = make('solution', 'Solution');
-  const row = element('div', { className: 'labkit-help-buttons' }, hint, again, solution, told);
+  const row = element('div', { className: 'labkit-form-row' }, hint, again, solution, told);
 
   function show() {
     const [count, shown] = [model.get('count'), model.get('told')];
@@ -47,21 +42,19 @@ function render({ model, el }) {
     row.setAttribute('aria-busy', String(model.get('busy')));
     row.hidden = isLost || model.get('done');
     setText(told, model.get('words'));
-    setText(note, isLost || isQuiet ? GONE : '');
-    note.hidden = !note.textContent;
+    sayGone(isLost || isQuiet);
     if (had && row.hidden) el.closest('.jp-Cell')?.focus({ preventScroll: true });
     else if (had && before.hidden) again.focus({ preventScroll: true });
   }
 
   const news = 'change:told change:solves change:done change:busy change:words change:heard';
-  el.append(note, row);
+  el.append(row);
   show();
   model.on(news, show);
   return () => {
     clearTimeout(waiting);
     model.off(news, show);
-    disconnect();
-    unmake();
+    end();
   };
 }
 

@@ -19,7 +19,10 @@ _SHARED = {
     'bag': ('map', 'chart'),
     'frames': ('drawing',),
     'graph': ('drawing',),
+    'guess_form': ('form',),
     'plot': ('chart',),
+    'quiz_form': ('form',),
+    'verdict_form': ('form',),
 }
 
 

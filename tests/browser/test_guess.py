@@ -9,24 +9,32 @@ from tests.browser.page import Notebook
 
 pytestmark = pytest.mark.slow('a page in the browser')
 
-SETUP = "import labkit as lab\nlesson = lab.lesson('bags')"
-
 
 @pytest.fixture
-def notebook(open_cells) -> Notebook:
-    """A notebook with a guess, and with the cell that answers it."""
-    notebook = open_cells(setup=SETUP, guess="lesson.guess('pace')", pace="print('0.22 m')")
-    for cell_id in ('setup', 'guess'):
-        notebook.run_cell(cell_id)
-        assert notebook.error_of(cell_id) == ''
-    return notebook
+def open_guess(open_cells):
+    """Give a function that opens a guess of a lesson, with the cell that answers it.
+
+    What was guessed and told is kept from test to test, so each has a guess of its own.
+    """
+
+    def open_(lesson: str, name: str, shown_by: str) -> Notebook:
+        setup = f'import labkit as lab\nlesson = lab.lesson({lesson!r})'
+        cells = {shown_by: "print('so it is')"}
+        notebook = open_cells(setup=setup, guess=f'lesson.guess({name!r})', **cells)
+        for cell_id in ('setup', 'guess'):
+            notebook.run_cell(cell_id)
+            assert notebook.error_of(cell_id) == ''
+        return notebook
+
+    return open_
 
 
 def form_of(notebook: Notebook) -> Locator:
     return notebook.output('guess').locator('.labkit-guess')
 
 
-def test_a_guess_by_keys_stands_beside_what_came(notebook: Notebook) -> None:
+def test_a_guess_by_keys_stands_beside_what_came(open_guess) -> None:
+    notebook = open_guess('bags', 'pace', 'pace')
     count, keyboard = len(notebook.cells()), notebook.page.keyboard
     form = form_of(notebook)
     group = form.get_by_role('group', name='How far does the robot drive')
@@ -51,13 +59,14 @@ def test_a_guess_by_keys_stands_beside_what_came(notebook: Notebook) -> None:
     assert len(notebook.cells()) == count
 
 
-def test_a_guess_by_mouse_comes_back_the_next_day(notebook: Notebook) -> None:
-    form_of(notebook).get_by_role('button', name='twice as far').click()
-    notebook.run_cell('pace')
-    expect(notebook.output('pace')).to_contain_text('YOU GUESSED: twice as far')
-    expect(notebook.output('pace')).to_contain_text('What came: half as far.')
+def test_a_guess_by_mouse_comes_back_the_next_day(open_guess) -> None:
+    notebook = open_guess('turtlebot', 'no_timeout', 'no-timeout')
+    form_of(notebook).get_by_role('button', name='after 0.2 m').click()
+    notebook.run_cell('no-timeout')
+    expect(notebook.output('no-timeout')).to_contain_text('YOU GUESSED: after 0.2 m')
+    expect(notebook.output('no-timeout')).to_contain_text('What came: at the wall.')
     notebook.restart_kernel()
     for cell_id in ('setup', 'guess'):
         notebook.run_cell(cell_id)
-    guessed = form_of(notebook).get_by_role('button', name='twice as far')
+    guessed = form_of(notebook).get_by_role('button', name='after 0.2 m')
     expect(guessed).to_have_attribute('aria-pressed', 'true')

@@ -80,11 +80,11 @@ def test_quiz_has_the_keyboard_when_its_cell_was_run_and_not_when_the_page_is_lo
 
 
 def test_a_wrong_answer_is_tried_again(open_quiz):
-    notebook = open_quiz('talker_listener')
+    notebook = open_quiz('bags')
     quiz, keyboard = quiz_of(notebook), notebook.page.keyboard
     told, again = quiz.locator('[aria-live]'), quiz.get_by_role('button', name='Try again')
     expect(again).to_be_hidden()
-    wrong = quiz.get_by_label('It sends ten messages to /chatter.')
+    wrong = quiz.get_by_label('The nodes, with their code.')
     for _ in range(2):  # the same answer is judged once more
         wrong.check()
         keyboard.press('Enter')
