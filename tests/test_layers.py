@@ -30,6 +30,7 @@ FLOORS = {
     'labkit.background': 2,
     'labkit.asking': 2.1,
     'labkit.transforms': 2.1,
+    'labkit.descriptions': 2.15,
     'labkit.programs': 2.2,
     'labkit.sharing': 2.3,
     'labkit.silent': 2.4,
