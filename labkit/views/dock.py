@@ -29,7 +29,8 @@ def dock(*views: LivePage | GraphView, title: str = TITLE) -> None:
 
     They stay there while the notebook scrolls, and while another notebook is looked at. Where
     JupyterLab's panel is missing, as in another editor, they are under the cell as usual; when the
-    panel is closed, they are there again.
+    panel is closed, they are there again. In a page of less than 1,200 pixels the list of files is
+    folded for it, and in one of less than 900 it lies under the notebook.
 
     Args:
         views: What `lab.arena()`, `lab.teleop()`, `lab.image()`, `lab.monitor()`, `lab.plot()`,

@@ -3,6 +3,10 @@
 const ALIVE_MS = 2000; // see live_page.py
 const AGAIN_MS = 500;
 const QUIET_MS = 4000;
+// A page that is narrower than this has no room for the list of files, a notebook and a panel side by
+// side; one that is narrower than the second has none for a notebook and a panel.
+const ROOM_FOR_FILES = 1200;
+const ROOM_BESIDE = 900;
 const GONE = 'The kernel is silent. If it was restarted or stopped, run the setup cell at the top, '
   + 'then this one.';
 
@@ -96,6 +100,28 @@ async function closePanel(model) {
   }
 }
 
+// Leave room for the notebook beside the panel of `lab.dock()`: in a narrow page the list of files is
+// folded, as Ctrl B does, and in a very narrow one the panel lies under the notebook. Once for each
+// panel: where somebody moves it, there it stays. Without labkit's settings of JupyterLab the page
+// does not give its app away, and all stays where it is.
+function makeRoom(el) {
+  const watch = new ResizeObserver(() => {
+    const panel = el.closest('.jupyterlab-sidecar');
+    if (!el.isConnected) return;
+    watch.disconnect();
+    const { shell, commands } = window.jupyterapp ?? {};
+    if (!panel || !shell || panel.dataset.labkitRoom) return;
+    panel.dataset.labkitRoom = 'made';
+    const files = document.querySelector('#jp-left-stack:not(.lm-mod-hidden)');
+    if (window.innerWidth < ROOM_FOR_FILES && files) commands.execute('application:toggle-left-area');
+    if (window.innerWidth >= ROOM_BESIDE) return;
+    const widget = [...shell.widgets('right')].find((one) => one.node === panel);
+    if (widget) shell.add(widget, 'main', { mode: 'split-bottom', activate: false });
+  });
+  watch.observe(el);
+  return () => watch.disconnect();
+}
+
 // The place where a view says what is wrong.
 function makeNote() {
   const note = element('p', { className: 'labkit-live-note', hidden: true });
@@ -108,6 +134,7 @@ function makeNote() {
 // it all. A kernel that is gone ends the view as one that says so does.
 function follow(model, el, take) {
   const unmake = makeView(model, el);
+  const leave = makeRoom(el);
   const note = makeNote();
   let [heardAt, toldAt, complete, ended, why] = [performance.now(), 0, false, '', ''];
   // All there is to know is asked for until it comes: while a page is loaded, messages get lost.
@@ -163,6 +190,7 @@ function follow(model, el, take) {
     model.off('msg:custom', onMessage);
     disconnect();
     unmake();
+    leave();
     clearInterval(watch);
   };
   return { note, say, send, end };

@@ -130,7 +130,7 @@ def picture(
     everything = _everything(rows)
     share = percent(everything.items)
     parts = [
-        f'<div style="{_FONT};max-width:80em">',
+        f'<div style="{_FONT};max-width:60em">',
         f'<p style="margin:0 0 0.6em">{_bar(share, 12)} <strong>{share} %</strong> of the '
         f'exercises: {everything.counts() or "none here"}</p>',
         above,

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = ['Stored']
 
 TODO = 'Run the setup cell at the top, then this one.'
-DOCKED = 'The {} is in the panel on the right. Close the panel to have it here.'
+DOCKED = 'The {} is in its panel. Close the panel to have it here.'
 
 
 class Stored:

@@ -70,8 +70,7 @@ class JupyterLab:
             PYTHONPATH=os.pathsep.join([str(ROOT), *filter(None, [variables.get('PYTHONPATH')])]),
             **(env or {}),
         )
-        # The app is put into the page, so that tests can ask it which cell is which.
-        options = ['--no-browser', '--LabApp.expose_app_in_browser=True', f'--port={free_port()}']
+        options = ['--no-browser', f'--port={free_port()}']
         self._process = subprocess.Popen(
             [sys.executable, '-c', _START, str(self.work), *options],
             env=variables,

@@ -33,7 +33,7 @@ print(heard[-1].header.frame_id, place.x > 0.5, place.y > 0.5, 0.3 < turn.z < 0.
     **{f'text{number}': '# text\n' * 60 for number in range(3)},
 }
 TABS = '.jp-SideBar.jp-mod-right .lm-TabBar-tab'
-DOCKED = 'is in the panel on the right'
+DOCKED = 'is in its panel'
 
 
 class Panel:
@@ -120,3 +120,28 @@ def test_a_goal_is_published_where_one_clicks_and_looks_to_where_one_drags(panel
     expect(panel.page.get_by_role('button', name='key g').last).to_have_attribute(
         'aria-pressed', 'false'
     )
+
+
+@pytest.mark.parametrize(('width', 'folds', 'under'), [(1280, 0, 0), (1000, 1, 0), (720, 1, 1)])
+def test_a_narrow_page_leaves_room_for_the_notebook(open_cells, width, folds, under):
+    notebook = open_cells(**CELLS)
+    page = notebook.page
+    notebook.run_cell('setup')
+    before = page.viewport_size
+    page.set_viewport_size({'width': width, 'height': 450 if under else 800})
+    notebook.run_cell('dock')
+    panel = page.locator('.jupyterlab-sidecar')
+    expect(panel.locator('.labkit-view')).to_have_count(2)
+    expect(page.locator('#jp-main-dock-panel .jupyterlab-sidecar')).to_have_count(under)
+    expect(page.locator('#jp-left-stack').locator('visible=true')).to_have_count(1 - folds)
+    # Code has room, and what the panel shows can be reached.
+    assert page.locator('.jp-Notebook').bounding_box()['width'] > 480
+    canvas = panel.locator('canvas').first
+    canvas.scroll_into_view_if_needed()
+    expect(canvas).to_be_in_viewport()
+    # Where somebody opens the list of files again, it stays.
+    if folds:
+        notebook.execute('application:toggle-left-area')
+        notebook.run_cell('arena')
+        expect(page.locator('#jp-left-stack').locator('visible=true')).to_have_count(1)
+    page.set_viewport_size(before)

@@ -116,7 +116,7 @@ def test_what_is_too_wide_to_be_read_scrolls(notebook: Notebook) -> None:
 
 def test_it_is_docked_under_its_name(notebook: Notebook) -> None:
     notebook.run_cell('robot')
-    assert 'The tree of frames is in the panel on the right' in notebook.run_cell('dock')
+    assert 'The tree of frames is in its panel' in notebook.run_cell('dock')
     panel = notebook.page.locator('.jupyterlab-sidecar .labkit-frames')
     expect(part(panel, 'Frame base_scan')).to_have_count(1)
 

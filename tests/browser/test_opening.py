@@ -144,11 +144,18 @@ def _look_at_first_lesson(notebook: Notebook) -> None:
     changed = 'async panel => (await panel.sessionContext.session.kernel.info, panel.model.dirty)'
     assert not page.evaluate(f'({changed})(window.jupyterapp.shell.currentWidget)')
     code = [cell['id'] for cell in notebook.cells() if cell['cell_type'] == 'code']
-    for cell_id in code[:2]:
+    first = code[: code.index('first-node') + 1]
+    # The second cell has a robot, and drives it.
+    assert first[:2] == ['setup', 'robot']
+    for cell_id in first:
         notebook.run_cell(cell_id)
         assert notebook.error_of(cell_id) == ''
-    # The lesson opens with a picture that lives: messages pass, and are counted.
-    output = notebook.output(code[1])
+        if cell_id == 'robot':
+            expect(page.locator('.jupyterlab-sidecar .labkit-teleop')).to_be_visible()
+            drawn = page.locator('.jupyterlab-sidecar .labkit-arena canvas')
+            expect(drawn).not_to_have_attribute('data-pose', re.compile(r'^0(\.0+)?( |,|$)'))
+    # Then there is a picture that lives: messages pass, and are counted.
+    output = notebook.output('first-node')
     for name in ('/first_node publishes', '/listener subscribes'):
         arrow = output.locator(f'[data-part][aria-label^="{name}"]')
         expect(arrow).to_have_attribute('data-passed', re.compile(r'^[2-9]$|^\d\d'))

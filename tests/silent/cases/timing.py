@@ -76,7 +76,7 @@ CASES = {
     'time.rate': ("node('slow').create_timer(30, heard)", "node('slow').create_timer(3, heard)"),
     'time.long-callback': (
         _LONG.format(seconds=1.1, more='m.create_timer(0.5, heard)'),
-        _LONG.format(seconds=0.01, more='m.create_timer(0.5, heard)'),
+        _LONG.format(seconds=0.001, more='m.create_timer(0.5, heard)'),
     ),
     'time.overrun': (
         _OVERRUN.format(period=1 / 30, seconds=0.05),

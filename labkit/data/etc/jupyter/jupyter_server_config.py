@@ -1,6 +1,7 @@
-"""Each saved notebook is copied out of the learner's folder: see labkit/course/copies.py.
+"""What labkit wants of JupyterLab: its app for views, and a copy of each saved notebook.
 
-JupyterLab's process reads this, which imports nothing of labkit (see labkit/course/server.py).
+The copies lie outside of the learner's folder: see labkit/course/copies.py. JupyterLab's process
+reads this, which imports nothing of labkit (see labkit/course/server.py).
 """
 
 from __future__ import annotations
@@ -59,8 +60,10 @@ def _make_room(copies: Path) -> None:
         kept.pop(0).unlink()
 
 
+c = get_config()  # type: ignore[name-defined] # noqa: F821 (Jupyter brings it)
+# For the commands of JupyterLab that views run: see labkit/views/live.js.
+c.LabApp.expose_app_in_browser = True
 if os.environ.get('LABKIT_COPIES'):
-    c = get_config()  # type: ignore[name-defined] # noqa: F821 (Jupyter brings it)
     c.ContentsManager.post_save_hook = _keep
     # Extensions change the configuration later, and then Jupyter sets the same hook once more.
     warnings.filterwarnings('ignore', r'Overriding existing post_save_hook \(_keep\)')
