@@ -28,6 +28,8 @@ from labkit.background.console import Cell
 from labkit.errors import LabError, quoted
 
 if TYPE_CHECKING:
+    from types import FrameType
+
     from labkit.background.foreground import Spin
 
 __all__ = [
@@ -44,6 +46,7 @@ __all__ = [
     'has_begun',
     'helper_node',
     'made',
+    'made_by',
     'node_exists',
     'state_of',
 ]
@@ -216,14 +219,17 @@ half_made: WeakKeyDictionary[Node, Cell] = WeakKeyDictionary()
 
 def find_half_made(error: BaseException) -> list[Node]:
     """Return the nodes whose `__init__` is in the traceback of an error."""
-    found: list[Node] = []
-    for frame, _ in traceback.walk_tb(error.__traceback__):
-        code = frame.f_code
-        if code.co_name == '__init__' and code.co_argcount:
-            made_here: Any = frame.f_locals.get(code.co_varnames[0])
-            if issubclass(type(made_here), Node):
-                found.append(made_here)
-    return found
+    found = (made_by(frame) for frame, _ in traceback.walk_tb(error.__traceback__))
+    return [node for node in found if node is not None]
+
+
+def made_by(frame: FrameType) -> Node | None:
+    """Return the node whose `__init__` a frame is, None if it is another function."""
+    code = frame.f_code
+    if code.co_name != '__init__' or not code.co_argcount:
+        return None
+    made_here: Any = frame.f_locals.get(code.co_varnames[0])
+    return made_here if issubclass(type(made_here), Node) else None
 
 
 def check_node(node: object, function: str = 'lab.spin') -> None:

@@ -20,6 +20,7 @@ from labkit.silent.spinning_faults import (
     look_at_calls,
     look_at_ends,
     look_at_executors,
+    look_at_making,
     look_at_spinning,
 )
 from labkit.silent.timing_faults import look_at_callbacks, look_at_clocks, look_at_timers
@@ -36,7 +37,7 @@ AT_GRAPH: tuple[Look, ...] = (
 AT_NODES: tuple[Look, ...] = (
     *(look_at_history, look_at_parameters, look_at_files, look_at_rules, look_at_clocks),
     *(look_at_timers, look_at_callbacks, look_at_spinning, look_at_calls, look_at_ends),
-    *(look_at_executors, look_at_readers, look_at_messages, look_at_frames),
+    *(look_at_executors, look_at_making, look_at_readers, look_at_messages, look_at_frames),
 )
 """What is looked at each time: it is about this process alone."""
 

@@ -6,6 +6,8 @@ It subscribes to nothing, and asks no node of the learner for anything but its a
 from __future__ import annotations
 
 import math
+import sys
+import threading
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -22,8 +24,17 @@ from rclpy.node import Node
 from labkit.asking.silence import offers_service
 from labkit.asking.traffic import Sent, sent_by
 from labkit.background import compat, own_executors
-from labkit.background.nodes import callback_name, existing_nodes, full_name, half_made, made
+from labkit.background.nodes import (
+    callback_name,
+    existing_nodes,
+    full_name,
+    half_made,
+    made,
+    made_by,
+)
 from labkit.background.runtime import runtime
+from labkit.background.tracebacks import is_learners
+from labkit.errors import cell_name
 from labkit.rosgraph.interfaces import type_name
 from labkit.rosgraph.names import EVERY_NODE_OFFERS, is_hidden
 from labkit.rosgraph.parameter_files import flat, sections_in
@@ -36,6 +47,7 @@ from labkit.silent.scene import (
     Held,
     Listening,
     LongCall,
+    Making,
     OwnNode,
     ParameterFile,
     Publisher,
@@ -81,6 +93,8 @@ class Reader:
         self._heard: WeakKeyDictionary[Any, _Heard] = WeakKeyDictionary()
         self._clocks: WeakKeyDictionary[Any, tuple[int, float]] = WeakKeyDictionary()
         self._since = time.monotonic()
+        # The node that is being made, and when that was seen first.
+        self._begun: tuple[Any, float] = (None, 0.0)
 
     def forget(self) -> None:
         """Begin anew: what has happened up to now counts for nothing."""
@@ -118,6 +132,7 @@ class Reader:
             tuple(_sleepers(nodes)),
             _running(),
             tuple(_held(nodes)),
+            self._making(running),
             time.monotonic(),
             tuple(_listening()),
             self._since,
@@ -163,6 +178,30 @@ class Reader:
             tuple(_timer(timer) for timer in node.timers),
             tuple(_long_calls(entry)),
         )
+
+    def _making(self, cell: Any) -> Making | None:
+        """Return the node in whose `__init__` the running cell is."""
+        frame = sys._current_frames().get(threading.main_thread().ident or 0)
+        inner = None
+        while frame is not None and cell is not None:
+            if inner is None and is_learners(frame.f_code.co_filename):
+                inner = frame
+            node = made_by(frame)
+            if node is not None and is_learners(frame.f_code.co_filename):
+                break
+            frame = frame.f_back
+        else:
+            node = None
+        if node is None or inner is None:
+            self._begun = (None, 0.0)
+            return None
+        if self._begun[0] is not node:
+            self._begun = (node, time.monotonic())
+        kind, place = type(node).__name__, cell_name(inner.f_code.co_filename)
+        where = f'line {inner.f_lineno}' + f' of {place}' * bool(place)
+        words = f'{kind}.__init__, which is in {where},'
+        seconds = time.monotonic() - self._begun[1]
+        return Making(full_name(node) or kind, words, seconds, cell)
 
     def _names(self, node: Node, name: str) -> tuple[str, ...]:
         """Return the full names of the services and actions of a node."""

@@ -17,6 +17,7 @@ __all__ = [
     'Held',
     'Listening',
     'LongCall',
+    'Making',
     'OwnNode',
     'ParameterFile',
     'Publisher',
@@ -183,6 +184,23 @@ class Running:
 
 
 @dataclass(frozen=True)
+class Making:
+    """A node that the running cell is making.
+
+    Attributes:
+        node: Its full name, or that of its class.
+        words: Its `__init__`, in words, with the line where it is.
+        seconds: For how long it has been seen there.
+        cell: The cell.
+    """
+
+    node: str
+    words: str
+    seconds: float
+    cell: Any = None
+
+
+@dataclass(frozen=True)
 class Held:
     """A callback that holds up an executor of the learner's own.
 
@@ -302,6 +320,7 @@ class Scene:
         sleepers: What threads wait for though nobody spins the node.
         running: The callback that is running in the background, None if none is.
         held: The callbacks that hold up executors of the learner's own.
+        making: The node whose `__init__` runs, None if none does.
         now: `time.monotonic()`.
         listeners: The transform listeners of this process.
         since: `time.monotonic()` of the end of the last check, which had a time of its own.
@@ -313,6 +332,7 @@ class Scene:
     sleepers: tuple[Sleeper, ...] = ()
     running: Running | None = None
     held: tuple[Held, ...] = ()
+    making: Making | None = None
     now: float = 0.0
     listeners: tuple[Listening, ...] = ()
     since: float = 0.0

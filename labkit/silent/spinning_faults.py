@@ -9,7 +9,13 @@ from labkit.settings import LONG_SEC
 from labkit.silent.kinds import Fault, kind
 from labkit.silent.scene import Scene
 
-__all__ = ['look_at_calls', 'look_at_ends', 'look_at_executors', 'look_at_spinning']
+__all__ = [
+    'look_at_calls',
+    'look_at_ends',
+    'look_at_executors',
+    'look_at_making',
+    'look_at_spinning',
+]
 
 SLEEPER = kind(
     'life.rate-unspun',
@@ -38,6 +44,14 @@ HELD = kind(
     'what waits for another callback needs another callback group: '
     'callback_group=ReentrantCallbackGroup() for the client.',
     'the callback is alone in its callback group, or that is reentrant',
+)
+ENDLESS = kind(
+    'life.endless-init',
+    'The cell stays at [*]: __init__ of a node does not return',
+    'The stop button ends it. In __init__ a node makes its timers and subscriptions, and returns: '
+    'a timer calls again and again, without a loop. What waits there for another node needs that '
+    'one first.',
+    '__init__ returns within seconds',
 )
 NO_SERVER = kind(
     'life.no-server',
@@ -94,6 +108,19 @@ def look_at_spinning(scene: Scene) -> Iterator[Fault]:
                     f'{node.name} has called {client.service}, but nobody spins it: the answer '
                     'is never taken.',
                 )
+
+
+def look_at_making(scene: Scene) -> Iterator[Fault]:
+    """Find a node that the cell never gets to the end of making."""
+    one = scene.making
+    if one is not None and one.seconds >= 2 * LONG_SEC:
+        yield Fault(
+            ENDLESS,
+            (one.node,),
+            '__init__',
+            f'This cell waits for {one.words} to return: for {one.seconds:.0f} s now.',
+            cell=one.cell,
+        )
 
 
 def look_at_executors(scene: Scene) -> Iterator[Fault]:

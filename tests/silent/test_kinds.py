@@ -13,8 +13,9 @@ from tests.conftest import Kernel
 
 FOLDER = Path(__file__).parent / 'cases'
 GROUPS = ('names', 'ends', 'parameters', 'timing', 'life', 'messages', 'frames')
-# Told by other means than a cell in one process, see `test_pure.py`.
-PURE = {'types.package', 'types.version', 'types.action', 'life.unspun'}
+# Told by other means than a cell in one process, or while that runs: see `test_pure.py` and
+# `test_told.py`.
+PURE = {'types.package', 'types.version', 'types.action', 'life.unspun', 'life.endless-init'}
 
 
 def cases(group: str) -> dict[str, tuple[str, str]]:

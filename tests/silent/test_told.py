@@ -115,6 +115,29 @@ def test_a_rate_that_nobody_spins_is_told_while_it_hangs(notebook: Kernel) -> No
     notebook.wait_until_gone(cell, said)
 
 
+@pytest.mark.slow('waits in real time')
+@pytest.mark.parametrize(
+    'body', ['while True:\n            time.sleep(0.1)', 'while True:\n            pass']
+)
+def test_what_a_cell_waits_for_is_told_while_a_node_is_made_without_end(
+    notebook: Kernel, body: str
+) -> None:
+    lines = (
+        'class Endless(Node):',
+        '    def __init__(self):',
+        "        super().__init__('endless')",
+        f'        {body}',
+        'lab.spin(Endless())',
+    )
+    cell = notebook.start('\n'.join(lines))
+    said = 'This cell waits for Endless.__init__, which is in line '
+    shown = notebook.wait_for_output(cell, said)
+    assert ' of Cell In[' in shown and 'The stop button ends it.' in shown
+    notebook.interrupt()
+    notebook.finish(cell)
+    notebook.wait_until_gone(cell, said)
+
+
 STUCK = """
 import threading
 free = threading.Event()
