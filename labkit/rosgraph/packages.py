@@ -29,11 +29,13 @@ _OWN: dict[str, dict[str, tuple[str, ...]]] = {
     'demo_nodes_py': {
         name: ('labkit.programs.demo_nodes', name) for name in ('talker', 'listener')
     },
+    'robot_state_publisher': {'robot_state_publisher': ('labkit.programs.robot_state_publisher',)},
     'labkit': {'turtlebot': ('labkit.sim.turtlebot_program',)},
     'tf2_ros': {
         name: (f'labkit.programs.{name}',)
         for name in ('static_transform_publisher', 'tf2_echo', 'tf2_monitor')
     },
+    'xacro': {'xacro': ('labkit.programs.xacro_program',)},
     'tf2_tools': {'view_frames': ('labkit.programs.view_frames',)},
 }
 # Packages of the tutorials that no wheel has, and what to use here.
