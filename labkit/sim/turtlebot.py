@@ -6,7 +6,8 @@ include/turtlebot3_node/sensors/sensors.hpp (KeepLast(10), reliable); ROBOTIS-GI
 hls_lfcd_lds_driver, src/hlds_laser_publisher.cpp (SensorDataQoS).
 
 Missing are `/magnetic_field`, and `/sensor_state`, whose type is ROBOTIS's own. `/tf` and
-`/tf_static` are there once somebody wants them: no wheel has their type, so it is built first.
+`/tf_static` are there once somebody wants them: no wheel has their type, so it is built first. So
+is `/robot_description`, which on the real one is robot_state_publisher's.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from rclpy.timer import Timer
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import BatteryState, CameraInfo, Image, Imu, JointState, LaserScan
-from std_msgs.msg import Float64
+from std_msgs.msg import Float64, String
 
 from labkit.background.runtime import runtime
 from labkit.errors import LabError
@@ -50,7 +51,7 @@ from labkit.sim.camera import PI_CAMERA
 from labkit.sim.command_timeout import COMMAND_TIMEOUT, TIMED_OUT_TOPIC, timed_out_words
 from labkit.sim.kinematics import Pose, Twist2
 from labkit.sim.pace import Beat, Stopwatch
-from labkit.sim.parts import moving_parts, static_parts
+from labkit.sim.parts import moving_parts, static_parts, urdf
 from labkit.sim.radio import Radio
 from labkit.sim.simulator import Simulator
 from labkit.sim.world import Contact, Wall, World
@@ -92,8 +93,9 @@ class Turtlebot(Node):
     (sensor_msgs/msg/CameraInfo) at 10 Hz, if anyone subscribes. As soon as this process has
     imported the type tf2_msgs/msg/TFMessage, or anybody subscribes to them, `/tf` says at 30 Hz
     where odometry has the robot and how its wheels are turned, and `/tf_static` where its other
-    parts are. The robot stops when commands stop coming, and when it touches a wall. The frame
-    `odom` has the origin of the world, wherever the robot starts.
+    parts are. What it looks like, in URDF, is on `robot_description` (std_msgs/msg/String) as soon
+    as anybody subscribes. The robot stops when commands stop coming, and when it touches a wall.
+    The frame `odom` has the origin of the world, wherever the robot starts.
 
     It is perfect unless it is told to be as imperfect as a real one, by `drift`, `slip`, `noise`,
     `latency` and `loss`. Then it also publishes `base_pose_ground_truth` (nav_msgs/msg/Odometry)
@@ -241,7 +243,9 @@ class Turtlebot(Node):
         self._camera_info = self.create_publisher(CameraInfo, 'camera/camera_info', PICTURES)
         self._frames: Any = None
         self._open_frames()
-        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)  # type: ignore[no-untyped-call]
+        self._description: Any = None
+        self._open_description()
+        latched = _latched()
         self._truth: Any = None
         self._open_truth()
         self._timed_out = self.create_publisher(Float64, TIMED_OUT_TOPIC, latched)
@@ -472,6 +476,7 @@ class Turtlebot(Node):
             self._publish_scan(stamp)
             self._warn_of_other_commands()
             self._open_frames()
+            self._open_description()
         if self._camera_beat.is_due(self.simulator.time):
             self._publish_picture()
         self._radio.deliver(self.simulator.time)
@@ -517,11 +522,16 @@ class Turtlebot(Node):
             return
         from tf2_msgs.msg import TFMessage
 
-        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)  # type: ignore[no-untyped-call]
-        static = self.create_publisher(TFMessage, '/tf_static', latched)
+        static = self.create_publisher(TFMessage, '/tf_static', _latched())
         static.publish(TFMessage(transforms=static_parts(self._stamp(), self._prefix)))
         on_join = self._on_join(self._publish_frames)
         self._frames = self.create_publisher(TFMessage, '/tf', TF_DEPTH, event_callbacks=on_join)
+
+    def _open_description(self) -> None:
+        """Say what the robot looks like, once, if somebody wants that."""
+        if self._description is None and self.count_subscribers('robot_description'):
+            self._description = self.create_publisher(String, 'robot_description', _latched())
+            self._description.publish(String(data=urdf(self._prefix)))
 
     def _publish_frames(self, stamp: Time | None = None) -> None:
         if self._frames is not None:
@@ -540,6 +550,10 @@ class Turtlebot(Node):
         if self._clock_publisher is None:
             return self.get_clock().now().to_msg()
         return time_message(self.simulator.time)
+
+
+def _latched() -> QoSProfile:
+    return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)  # type: ignore[no-untyped-call]
 
 
 def _check_time(speed: float, lockstep: float | None, use_sim_time: bool) -> None:

@@ -9,14 +9,18 @@ import pytest
 from builtin_interfaces.msg import Time as Stamp
 from geometry_msgs.msg import PointStamped
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.time import Time
+from std_msgs.msg import String
 
+from labkit.descriptions.forward_kinematics import link_transforms
+from labkit.descriptions.links_and_joints import Cylinder, Sphere
+from labkit.descriptions.urdf import examine, read
 from labkit.packages import built_types
 from labkit.sim import turtlebot
 from labkit.sim.camera import PI_CAMERA
 from labkit.sim.kinematics import Pose
-from labkit.sim.parts import moving_parts, static_parts
+from labkit.sim.parts import description, moving_parts, static_parts, urdf
 from labkit.sim.robots import BURGER
 from labkit.sim.simulator import Simulator
 from labkit.sim.world import open_field
@@ -135,3 +139,40 @@ def test_without_the_type_it_says_so_once_to_who_listens(
         'builds it, once: from tf2_msgs.msg import TFMessage'
     ]
     assert robot.count_publishers('/tf') == 0
+
+
+def test_it_says_what_it_looks_like_when_somebody_asks(stage: Stage) -> None:
+    robot = stage.robot(namespace='robot1')
+    ear = stage.add(Node('ear'))
+    stage.until(lambda: robot.simulator.time > 0.5)
+    assert ear.count_publishers('/robot1/robot_description') == 0
+    heard: list[String] = []
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    ear.create_subscription(String, '/robot1/robot_description', heard.append, latched)
+    stage.until(lambda: heard)
+    found = read(heard[0].data)
+    assert found.root == 'robot1/base_footprint' and len(found.links) == 10
+    # Its frames are those of the description, and its joints those of /joint_states.
+    driver = stage.driver('robot1')
+    stage.until(lambda: driver.joints)
+    assert {j.name for j in found.free_joints} == set(driver.joints[0].name)
+    frames = {one.child_frame_id for one in static_parts(Stamp(), 'robot1/')}
+    moving = {one.child_frame_id for one in moving_parts(robot.simulator, Stamp(), 'robot1/')}
+    assert frames | moving == found.links.keys()
+
+
+def test_the_description_is_in_order() -> None:
+    reading = examine(urdf())
+    assert reading.problems == () and reading.description == description()
+    left, right = (description().links[f'wheel_{side}_link'] for side in ('left', 'right'))
+    (shape,) = {part.geometry for part in (*left.collisions, *right.collisions)}
+    assert isinstance(shape, Cylinder) and shape.radius == BURGER.wheel_radius
+    places = link_transforms(description())
+    left_y = places['wheel_left_link'].translation[1]
+    right_y = places['wheel_right_link'].translation[1]
+    assert left_y - right_y == pytest.approx(BURGER.wheel_separation)
+    # Wheels and caster touch the floor.
+    assert places['wheel_left_link'].translation[2] == pytest.approx(BURGER.wheel_radius)
+    caster = description().links['caster_back_link'].collisions[0].geometry
+    assert isinstance(caster, Sphere)
+    assert places['caster_back_link'].translation[2] == pytest.approx(caster.radius)
