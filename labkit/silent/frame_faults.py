@@ -6,16 +6,20 @@ Without one, frames are known only if all who publish them are of this process.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from operator import attrgetter
+from typing import TYPE_CHECKING
 
 from labkit.errors import did_you_mean, first_few
 from labkit.silent.broadcasts import COUNTS_SEC, MOVING, STATIC
 from labkit.silent.kinds import Fault, kind
 from labkit.silent.scene import Broadcast, Listening, OwnNode, Publisher, Scene
 from labkit.silent.timing_faults import FUTURE, OFF_SEC
+
+if TYPE_CHECKING:
+    from labkit.transforms.tree import Edge
 
 __all__ = ['look_at_frames']
 
@@ -177,13 +181,17 @@ def _counts(scene: Scene, pub: Publisher, sent: Broadcast) -> bool:
 def _trees(scene: Scene) -> Iterator[_Tree]:
     for each in scene.listeners:
         yield _Tree({e.child: e.parent for e in each.edges}, each.names, each)
-    own = list(_publishers(scene))
-    there = sum(scene.publishers.get(topic, 0) for topic in (MOVING, STATIC))
-    if own and not scene.listeners and len(own) == there:
-        sent = [sent for _, pub in own for sent in pub.broadcasts]
+    if not scene.listeners and _knows_all(scene):
+        sent = [sent for _, pub in _publishers(scene) for sent in pub.broadcasts]
         parents = {each.child: each.parent for each in sent}
         if parents:
             yield _Tree(parents, frozenset((*parents, *parents.values())))
+
+
+def _knows_all(scene: Scene) -> bool:
+    """Return whether all who publish frames are of this process, if there are any."""
+    own = len(list(_publishers(scene)))
+    return bool(own) and own == sum(scene.publishers.get(topic, 0) for topic in (MOVING, STATIC))
 
 
 # -- two say where a frame is -----------------------------------------------------------------
@@ -284,15 +292,31 @@ def _loops(scene: Scene, tree: _Tree, said: list[_Said]) -> Iterator[Fault]:
             continue
         loop = way[way.index(frame) :]
         steps = ', '.join(f'{each} is in {tree.parents[each]}' for each in loop[:5])
+        is_kept = tree.listener is not None and any(
+            edge.child in loop and _is_old(scene, edge, said) for edge in tree.listener.edges
+        )
         yield Fault(
             LOOP,
-            _menders(scene, tree, said, set(loop)),
+            _menders(scene, tree, () if is_kept else said, set(loop)),
             min(loop),
             f'The frames go round in a loop: {steps}. Lookups with them fail.',
+            # It may be mended meanwhile, and a buffer keeps what it has heard.
+            'Nobody says all of that any more. clear() empties the Buffer.' if is_kept else '',
+            aloud=not is_kept,
         )
 
 
-def _menders(scene: Scene, tree: _Tree, said: list[_Said], children: set[str]) -> tuple[str, ...]:
+def _is_old(scene: Scene, edge: Edge, said: Sequence[_Said]) -> bool:
+    """Return whether a listener has heard it once, and nobody says so any more."""
+    if edge.latest and scene.now - edge.heard > COUNTS_SEC:
+        return True
+    says_so = {(each.sent.child, each.sent.parent) for each in said}
+    return _knows_all(scene) and (edge.child, edge.parent) not in says_so
+
+
+def _menders(
+    scene: Scene, tree: _Tree, said: Sequence[_Said], children: set[str]
+) -> tuple[str, ...]:
     """Return the nodes that publish frames, or else the one that hears them."""
     nodes = [each.node for each in said if each.sent.child in children]
     listener = [tree.listener.node] if tree.listener is not None else []

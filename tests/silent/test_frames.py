@@ -151,9 +151,16 @@ def test_a_loop() -> None:
     (fault,) = faults(scene(hears={'a': 'b', 'b': 'c', 'c': 'a', 'd': 'a'}, count=2))
     assert (fault.kind.id, fault.nodes, fault.about) == ('frames.loop', ('/ear',), 'a')
     assert 'a is in b, b is in c, c is in a.' in str(fault)
-    heard = scene(hears={'a': 'b', 'b': 'a'}, count=2)
-    twice = replace(heard, listeners=(*heard.listeners, replace(heard.listeners[0], node='/b')))
+    loop = scene(hears={'a': 'b', 'b': 'a'}, count=2)
+    twice = replace(loop, listeners=(*loop.listeners, replace(loop.listeners[0], node='/b')))
     assert told(twice) == ['frames.loop']
+    # Mended, and still in the buffer: not under the cell of who has mended it.
+    right = speaker('/robot', often('a', 'b'))
+    for heard, count in ((NOW - 10.0, 2), (NOW, 1)):
+        mended = scene(right, hears={'a': 'b', 'b': 'a'}, heard=heard, count=count)
+        (fault,) = faults(mended)
+        assert (fault.kind.id, fault.nodes, fault.aloud) == ('frames.loop', ('/ear',), False)
+        assert fault.todo.startswith('Nobody says all of that any more.')
     # In itself, which tf2 ignores, but its publisher does not know.
     (fault,) = faults(scene(speaker('/robot', often('base', 'base'))))
     assert (fault.kind.id, fault.nodes) == ('frames.loop', ('/robot',))
