@@ -20,7 +20,7 @@ from labkit.descriptions.urdf import read
 from labkit.sim.kinematics import yaw_to_quaternion
 from labkit.sim.simulator import Simulator
 
-__all__ = ['description', 'moving_parts', 'static_parts', 'urdf']
+__all__ = ['description', 'footprint', 'static_parts', 'urdf', 'wheel_parts']
 
 WHEELS = ('wheel_left_joint', 'wheel_right_joint')
 
@@ -46,11 +46,16 @@ def static_parts(stamp: Time, prefix: str = '') -> list[TransformStamped]:
     ]
 
 
-def moving_parts(robot: Simulator, stamp: Time, prefix: str = '') -> list[TransformStamped]:
-    """Return where its odometry says that the robot is, and how its wheels are turned."""
+def footprint(robot: Simulator, stamp: Time, prefix: str = '') -> TransformStamped:
+    """Return where its odometry says that the robot is."""
     x, y, yaw = robot.odometry
     base = Transform((x, y, 0.0), yaw_to_quaternion(yaw))
-    found = [_transform(stamp, f'{prefix}odom', f'{prefix}base_footprint', base)]
+    return _transform(stamp, f'{prefix}odom', f'{prefix}base_footprint', base)
+
+
+def wheel_parts(robot: Simulator, stamp: Time, prefix: str = '') -> list[TransformStamped]:
+    """Return where its wheels are, and how they are turned."""
+    found = []
     for name, angle in zip(WHEELS, robot.wheels, strict=True):
         joint = description().joints[name]
         step = joint_transform(joint, angle)

@@ -51,7 +51,7 @@ from labkit.sim.camera import PI_CAMERA
 from labkit.sim.command_timeout import COMMAND_TIMEOUT, TIMED_OUT_TOPIC, timed_out_words
 from labkit.sim.kinematics import Pose, Twist2
 from labkit.sim.pace import Beat, Stopwatch
-from labkit.sim.parts import moving_parts, static_parts, urdf
+from labkit.sim.parts import footprint, static_parts, urdf, wheel_parts
 from labkit.sim.radio import Radio
 from labkit.sim.simulator import Simulator
 from labkit.sim.world import Contact, Wall, World
@@ -138,6 +138,8 @@ class Turtlebot(Node):
         seed: Seed of slip, noise, latency and loss: the same seed gives the same numbers.
         stamped: Whether it takes `geometry_msgs/msg/TwistStamped` instead of `Twist`, as the
             TurtleBot3 packages of Jazzy do by default.
+        odometry: Whether it says where it is: on `/odom`, and `base_footprint` in `odom` on `/tf`.
+            If not, its wheels alone tell: so it is before the driver of a robot is written.
         scan_nothing: Value of a beam without a measurement: inf, as REP 117 has it (-inf if
             something is too near), or 0.0 in both cases, as on a real TurtleBot3.
         use_sim_time: Whether to follow the `/clock` of another node, such as a robot with `speed`.
@@ -171,6 +173,7 @@ class Turtlebot(Node):
         loss: float = 0.0,
         seed: int = 0,
         stamped: bool = False,
+        odometry: bool = True,
         scan_nothing: float = math.inf,
         use_sim_time: bool = False,
     ) -> None:
@@ -219,17 +222,20 @@ class Turtlebot(Node):
         self._clock_publisher = None
         if lockstep is not None or speed != 1.0:
             self._clock_publisher = self.create_publisher(Clock, '/clock', QUEUE_DEPTH)
-        self._open_topics(TwistStamped if stamped else Twist)
+        self._open_topics(TwistStamped if stamped else Twist, odometry)
         self._stopwatch = Stopwatch(cast(ROSClock, self.get_clock()))
         self._speed = speed
         self._timer: Timer | None = None
         if lockstep is None:
             self._start_timer()
 
-    def _open_topics(self, command_type: type[Twist | TwistStamped]) -> None:
-        self._odom = self.create_publisher(
-            Odometry, 'odom', QUEUE_DEPTH, event_callbacks=self._on_join(self._publish_odometry)
-        )
+    def _open_topics(self, command_type: type[Twist | TwistStamped], odometry: bool) -> None:
+        self._odom: Any = None
+        if odometry:
+            on_join = self._on_join(self._publish_odometry)
+            self._odom = self.create_publisher(
+                Odometry, 'odom', QUEUE_DEPTH, event_callbacks=on_join
+            )
         self._scan = self.create_publisher(
             LaserScan,
             'scan',
@@ -495,8 +501,9 @@ class Turtlebot(Node):
             self._timed_out.publish(Float64(data=limit))
 
     def _publish_odometry(self, stamp: Time | None = None) -> None:
-        message = odometry_message(self.simulator, stamp or self._stamp(), self._prefix)
-        self._send(self._odom, message, at_once=stamp is None)
+        if self._odom is not None:
+            message = odometry_message(self.simulator, stamp or self._stamp(), self._prefix)
+            self._send(self._odom, message, at_once=stamp is None)
 
     def _publish_truth(self, stamp: Time | None = None) -> None:
         if self._truth is not None:
@@ -535,7 +542,10 @@ class Turtlebot(Node):
 
     def _publish_frames(self, stamp: Time | None = None) -> None:
         if self._frames is not None:
-            parts = moving_parts(self.simulator, stamp or self._stamp(), self._prefix)
+            stamp = stamp or self._stamp()
+            parts = wheel_parts(self.simulator, stamp, self._prefix)
+            if self._odom is not None:
+                parts = [footprint(self.simulator, stamp, self._prefix), *parts]
             message = self._frames.msg_type(transforms=parts)
             self._send(self._frames, message, at_once=stamp is None)
 

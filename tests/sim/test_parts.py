@@ -20,7 +20,7 @@ from labkit.packages import built_types
 from labkit.sim import turtlebot
 from labkit.sim.camera import PI_CAMERA
 from labkit.sim.kinematics import Pose
-from labkit.sim.parts import description, moving_parts, static_parts, urdf
+from labkit.sim.parts import description, footprint, static_parts, urdf, wheel_parts
 from labkit.sim.robots import BURGER
 from labkit.sim.simulator import Simulator
 from labkit.sim.world import open_field
@@ -41,7 +41,8 @@ def where(
     buffer = BufferCore()
     for transform in static_parts(Stamp(sec=1), prefix):
         buffer.set_transform_static(transform, 'the test')
-    for transform in moving_parts(robot, Stamp(sec=1), prefix):
+    stamp = Stamp(sec=1)
+    for transform in (footprint(robot, stamp, prefix), *wheel_parts(robot, stamp, prefix)):
         buffer.set_transform(transform, 'the test')
     asked = PointStamped()
     asked.point.x, asked.point.y, asked.point.z = point
@@ -116,6 +117,16 @@ def test_who_listens_hears_where_all_parts_are(stage: Stage) -> None:
     stage.until(lambda: buffer.can_transform('odom', 'wheel_left_link', Time()))
 
 
+def test_without_odometry_its_wheels_alone_are_told(stage: Stage) -> None:
+    robot = stage.robot(odometry=False)
+    buffer = stage.add(Hearer()).buffer
+    stage.until(lambda: buffer.can_transform('base_footprint', 'wheel_left_link', Time()))
+    # It came with the wheels where a robot tells it.
+    assert 'odom' not in buffer.all_frames_as_yaml()
+    assert robot.count_publishers('/odom') == 0
+    assert robot.count_publishers('/joint_states') == 1
+
+
 def test_in_lock_step_it_is_told_before_the_first_command(stage: Stage) -> None:
     assert built_types.is_ready(turtlebot.TF_TYPE)
     assert built_types.is_loaded(turtlebot.TF_TYPE)
@@ -157,7 +168,9 @@ def test_it_says_what_it_looks_like_when_somebody_asks(stage: Stage) -> None:
     stage.until(lambda: driver.joints)
     assert {j.name for j in found.free_joints} == set(driver.joints[0].name)
     frames = {one.child_frame_id for one in static_parts(Stamp(), 'robot1/')}
-    moving = {one.child_frame_id for one in moving_parts(robot.simulator, Stamp(), 'robot1/')}
+    parts = wheel_parts(robot.simulator, Stamp(), 'robot1/')
+    parts.append(footprint(robot.simulator, Stamp(), 'robot1/'))
+    moving = {one.child_frame_id for one in parts}
     assert frames | moving == found.links.keys()
 
 
