@@ -402,9 +402,24 @@ class Answers(GraphClause):
             return said is None and all(mistake.answer(v) == r for _, _, v, r in answered)
 
         found = recognise(self.mistakes, fits)
-        if found is None and self.explain is not None:
-            return self.explain(value, came)
-        return found
+        if found is not None:
+            return found
+        if self._repeats_others(evidence, value, came):
+            return REPEATED.of(inner=self.inner, outer=self.outer)
+        return self.explain(value, came) if self.explain is not None else None
+
+    def _has_a_timer(self, evidence: Evidence) -> bool:
+        """Tell whether the node is one of this notebook, and has a timer."""
+        node = evidence.probe.node_object(evidence.subscription(self.inner, self.by).node)
+        return node is not None and any(node.timers)
+
+    def _repeats_others(self, evidence: Evidence, value: Any, came: Values) -> bool:
+        """Tell whether a timer has said what is right for other messages, and nothing else."""
+        if not came or self._remembers or not self._has_a_timer(evidence):
+            return False
+        heard, _ = self._in_turn(evidence.life)
+        others = {self.answer(each) for each in map(self._heard, heard) if each != value}
+        return {*came} <= others - {self.answer(value)}
 
     def _refuse_missing(
         self,
@@ -516,9 +531,11 @@ class Answers(GraphClause):
             named = [each for each in self.mistakes if each.model is not anything]
             found = recognise(named, lambda each: each.answer(silent[-1]) in came)
             mistake = found if found is not None else NOT_DUE.of(value=show(silent[-1:]))
+        elif self._has_a_timer(evidence) and _between(heard, left):
+            mistake = REPEATED
         elif _repeats(heard, left) >= MANY:
-            node = evidence.probe.node_object(evidence.subscription(self.inner, self.by).node)
-            mistake = REPEATED if node is None or any(node.timers) else SHARED
+            known = evidence.probe.node_object(evidence.subscription(self.inner, self.by).node)
+            mistake = SHARED if known is not None else REPEATED
         elif answered:
             mistake = TWICE
         elif value in lately:
@@ -570,6 +587,14 @@ def _repeats(heard: Sequence[tuple[float, Any, Any]], left: Sequence[tuple[float
     rights = Counter(right for _, _, right in heard)
     more = Counter(value for _, value in left if value in rights)
     return max((count // rights[value] for value, count in more.items()), default=0)
+
+
+def _between(heard: Sequence[tuple[float, Any, Any]], left: Sequence[tuple[float, Any]]) -> bool:
+    """Tell whether right answers come once more mostly between messages, as a timer says them."""
+    rights = {right for _, _, right in heard}
+    more = [t for t, value in left if value in rights]
+    at_once = sum(any(0 <= t - at < SAME_SEC for at, _, _ in heard) for t in more)
+    return len(more) >= MANY and at_once < len(more) / 2
 
 
 def _always_last(sure: Timed, unsure: Timed, came: Timed) -> bool:

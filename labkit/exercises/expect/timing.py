@@ -9,7 +9,7 @@ from __future__ import annotations
 import statistics
 import time
 from collections.abc import Callable, Sequence
-from itertools import pairwise
+from itertools import accumulate, combinations, pairwise
 from typing import TYPE_CHECKING
 
 from labkit.exercises import common_mistakes
@@ -27,9 +27,9 @@ __all__ = ['at_rate', 'ends_with_node', 'lasts', 'messages', 'silence']
 # How long a topic may be silent before that is a finding, s. A process that has to find the
 # subscription first, and whose first search is lost, asks again after 3 s.
 FOUND_SEC = 4.0
-# So many intervals tell a rate in real time, to this part of it: a sleep lasts longer than was
-# asked for, and never shorter, so the quicker quarter of them counts, too.
+# So many intervals tell a rate in real time, or those of so long a time, s, to this part of it.
 INTERVALS = 8
+RATE_SEC = 3.0
 TOLERANCE = 0.1
 # Who is silent for so many periods has ended.
 PAUSE_PERIODS = 4.0
@@ -94,7 +94,7 @@ def at_rate(
         The messages of each publisher with this rate, and all that came.
     """
     watch = probe.watch(source.topic, source.msg_type)
-    enough = max(1, min(INTERVALS, round(hz)))
+    enough = max(2, min(INTERVALS, round(RATE_SEC * hz)))
 
     def fitting() -> list[list[Sample]]:
         return [
@@ -199,7 +199,19 @@ def _intervals(stream: Sequence[Sample]) -> list[float]:
 
 
 def _fits(gaps: Sequence[float], period: float, at_least: bool) -> bool:
-    usual = (statistics.median(gaps), sorted(gaps)[len(gaps) // 4])
+    """Tell whether intervals are those of a timer or of a sleep with this period.
+
+    A timer that was late once is followed by a shorter interval: over all pairs of messages that
+    does little. A sleep lasts longer than was asked for, and never shorter: then the quickest
+    half, one interval after the other, counts as well.
+    """
+    times = [0.0, *accumulate(gaps)]
+    pairs = combinations(enumerate(times), 2)
+    seen = [statistics.median((later - sooner) / (j - i) for (i, sooner), (j, later) in pairs)]
+    if min(gaps) >= (1.0 - TOLERANCE) * period:
+        half = (len(gaps) + 1) // 2
+        starts = range(len(times) - half)
+        seen.append(min((times[i + half] - times[i]) / half for i in starts))
     if at_least:
-        return min(usual) <= (1.0 + TOLERANCE) * period
-    return any(abs(seen / period - 1.0) <= TOLERANCE for seen in usual)
+        return min(seen) <= (1.0 + TOLERANCE) * period
+    return any(abs(each / period - 1.0) <= TOLERANCE for each in seen)
