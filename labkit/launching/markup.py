@@ -42,6 +42,18 @@ _PARTS = {
     'param': ('param',),
     'reset': ('keep',),
 }
+# Attributes of ROS 1, and what ROS 2 writes.
+_OF_ROS_1 = {
+    'node': {
+        'ns': 'ROS 2 writes it as namespace="...".',
+        'type': 'ROS 2 writes the program as exec="..."',
+        'required': 'ROS 2 writes on_exit="shutdown".',
+    },
+    'group': {'ns': 'ROS 2 writes <push_ros_namespace namespace="..."/> in the group.'},
+    'include': {
+        'ns': 'ROS 2 writes <push_ros_namespace namespace="..."/> in a <group> around it.'
+    },
+}
 # Tags with actions in them.
 _WITH_ACTIONS = ('launch', 'group', 'ros_timer', 'timer')
 # Numbers that YAML has to write with a point.
@@ -299,6 +311,9 @@ def _action(entity: Entity) -> Action:
         if parents:
             todo = f'It belongs into {" or ".join(parents)}.'
         raise entity.wrong('is no action', todo=todo)
+    for name, todo in _OF_ROS_1.get(tag, {}).items():
+        if name in entity.values:
+            raise entity.wrong(f'has {name!r}, which is ROS 1', todo=todo)
     with entity.located():
         condition = _condition(entity)
         action = _BUILDERS[tag](entity)
@@ -405,10 +420,6 @@ def _executable(entity: Entity) -> Action:
 
 
 def _node(entity: Entity, make: Callable[..., Action] = ros_actions.Node) -> Action:
-    if 'type' in entity.values and 'exec' not in entity.values:
-        raise entity.wrong(
-            "has 'type', which is ROS 1", todo='ROS 2 writes the program as exec="..."'
-        )
     names = {'name': 'name', 'namespace': 'namespace', 'package': 'pkg', 'exec_name': 'exec_name'}
     options = _given(entity, **names) | _process(entity)
     for argument, name in (('arguments', 'args'), ('ros_arguments', 'ros_args')):
