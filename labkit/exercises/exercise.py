@@ -18,7 +18,7 @@ from labkit.exercises.attempts import refuse_nameless, refuse_traces
 from labkit.exercises.clauses.base import Graph
 from labkit.exercises.expect.endpoints import alone
 from labkit.exercises.history import history
-from labkit.exercises.judging import Clause, Stage, judge
+from labkit.exercises.judging import Clause, Stage, judge, naming
 from labkit.exercises.learner_errors import explain_error, last_cell
 from labkit.exercises.machine_faults import machine_fault
 from labkit.exercises.messages_heard import Watch
@@ -436,6 +436,9 @@ class Exercise:
                 refuse_nameless(probe, self._asked())
                 unexplained = isinstance(outcome, NotAttempted) and not str(outcome)
                 if unexplained and not probe.something_is_starting():
+                    for each in self.clauses:
+                        with naming(each):
+                            each.explain_nothing(probe)
                     refuse_traces(probe, self, self._asked())
                 raise
         except LearnerError as error:

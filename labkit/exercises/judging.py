@@ -62,6 +62,14 @@ class Clause(Generic[Seen]):
         """
         return
 
+    def explain_nothing(self, probe: Probe) -> None:
+        """Say why nothing of the learner's was found, though it was there.
+
+        Raises:
+            Fail: It has ended meanwhile.
+        """
+        return
+
     def judge(self, seen: Seen) -> str:
         """Judge what was seen.
 

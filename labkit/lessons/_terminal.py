@@ -7,7 +7,7 @@ finds any process: by its command line, and by the id of the process in the ids 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -46,6 +46,8 @@ OTHER_PROGRAM = WORDS.mistake('terminal/other-program')
 TWICE = WORDS.mistake('terminal/twice')
 OLD_RUN = WORDS.mistake('terminal/old-run')
 NOT_SPUN = WORDS.mistake('terminal/not-spun')
+BY_ANOTHER = WORDS.mistake('terminal/twice-by-another')
+IN_A_NAMESPACE = WORDS.mistake('terminal/in-a-namespace')
 NODE_NAME = WORDS.mistake('terminal/node-name')
 REMAPPED = WORDS.mistake('terminal/node-name-remapped')
 ONE_FOR_ALL = WORDS.mistake('terminal/one-for-all')
@@ -93,7 +95,9 @@ class InATerminal:
         if not places:
             self._refuse(probe, mine)
         if len(places) > 1:
-            raise Fail(self.wanted, f'{len(places)} nodes of the name {self.node}', TWICE)
+            other = _other_command({pid for pid, _ in places}, mine)
+            mistake = BY_ANOTHER.of(other=other) if other else TWICE
+            raise Fail(self.wanted, f'{len(places)} nodes of the name {self.node}', mistake)
         [(pid, place)] = places
         process = next((each for each in mine if each.pid & 0xFFFF == pid), None)
         if process is None:
@@ -109,6 +113,12 @@ class InATerminal:
             seen = f'{self.node} is on the graph, and does not answer'
             raise Fail(f'{self.node} answers', seen, self._of(NOT_SPUN))
         return process
+
+    def refuse_ended(self, probe: Probe) -> None:
+        """Raise Fail if its program does not run, as one that has ended meanwhile."""
+        mine = list(filter(self.is_mine, _processes()))
+        if not any(map(_is_alive, mine)):
+            self._refuse(probe, mine)
 
     @property
     def wanted(self) -> str:
@@ -182,7 +192,11 @@ class InATerminal:
             raise Fail(f'{self.wanted}, after {line}', seen, OTHER_DOMAIN.of(line=line))
         others = _nodes(probe, alive)
         if others:
+            name = self.node.rpartition('/')[2]
+            inside = next((each for each in others if each.rpartition('/')[2] == name), '')
             mistake = REMAPPED if '__node:=' in self.command else NODE_NAME
+            if inside:
+                mistake = IN_A_NAMESPACE.of(seen=inside)
             raise Fail(self.wanted, ', '.join(sorted(others)), self._of(mistake))
         # On a busy machine a program may need longer until it makes its node.
         if probe.wait(lambda: any(is_at_work(each.pid) for each in alive), AT_WORK_SEC):
@@ -248,6 +262,11 @@ class RunsFile(GraphClause):
                 ONE_FOR_ALL.of(commands=commands),
             )
 
+    def explain_nothing(self, probe: Probe) -> None:
+        """Say that a program has ended, which was there when it was looked for."""
+        for node in self.nodes if self._path.is_file() else ():
+            self._program(node).refuse_ended(probe)
+
     def process(self, evidence: Evidence) -> Any:
         """Return the process of its first node, as psutil has it. Raises what `find` does."""
         return self._program(self.nodes[0]).find(evidence.probe)
@@ -309,6 +328,25 @@ def _processes() -> list[Any]:
     import psutil
 
     return list(psutil.process_iter(['cmdline']))
+
+
+def _other_command(numbers: Collection[int], mine: Sequence[Any]) -> str:
+    """Return how a program was started that is none of these, and runs here; `''` if none does.
+
+    Args:
+        numbers: Ids of processes, their lower 16 bits.
+        mine: Processes that are left out.
+    """
+    left = {each.pid for each in mine}
+    for process in _processes():
+        if process.pid & 0xFFFF in numbers and process.pid not in left:
+            command: Sequence[str] = process.info['cmdline'] or ()
+            words = [os.path.basename(word) for word in command[1:]]
+            files = [word for word in words if word and not word.startswith('-')]
+            # An interpreter is followed by what it runs, and a kernel by its connection file.
+            if files and process.pid != os.getpid():
+                return files[0]
+    return ''
 
 
 def _files(process: Any) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import statistics
 import time
+from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -385,12 +386,29 @@ class Publishes(GraphClause):
         if rate < 1 - margin or (rate > 1 + margin and not self.at_least):
             seen, mistake = self._off(rate * self.hz)
             outlasts = spinning.outlasts(life.overrun) if rate < 1 else None
-            return seen, outlasts or mistake
+            besides = self._besides(samples, life) if rate > 1 else None
+            return besides or (seen, outlasts or mistake)
         if longest > (1 + GAP_TOLERANCE) * period + life.step + 1e-9 or (
             shortest < (1 - GAP_TOLERANCE) * period - life.step - 1e-9 and not self.at_least
         ):
             return bursts
         return None
+
+    def _besides(self, samples: Sequence[Lived], life: Life) -> Trouble | None:
+        """Return that a few messages differ from all others, which come as they should."""
+        texts = [repr(sample.message) for sample in samples]
+        usual, count = Counter(texts).most_common(1)[0]
+        others = len(texts) - count
+        # Without their numbers, by which the others would be counted, too.
+        alike = [
+            replace(sample, number=0)
+            for sample, text in zip(samples, texts, strict=True)
+            if text == usual
+        ]
+        if not 0 < others <= count / 2 or self._trouble(alike, life) is not None:
+            return None
+        seen = f'{many(len(texts), "message")}, {others} of them with another value'
+        return seen, common_mistakes.ANOTHER_SOURCE.of(topic=self.topic)
 
     def _off(self, rate: float) -> Trouble:
         period = 1 / rate

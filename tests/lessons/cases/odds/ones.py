@@ -49,6 +49,18 @@ ANSWERS = [
         'A rate in Hz and a period in seconds were mixed up',
         ('create_timer(0.1,', 'create_timer(10,'),
     ),
+    wrong(
+        'a thread says 2 now and then',
+        'Without those with another value the rate is right.',
+        (
+            'self.on_timer)\n\n',
+            'self.on_timer)\n'
+            '        threading.Thread(target=self.at_times, daemon=True).start()\n\n'
+            '    def at_times(self):\n        while rclpy.ok():\n            time.sleep(1.6)\n'
+            '            self.publisher.publish(Int16(data=2))\n\n',
+        ),
+        ('from rclpy.node', 'import threading\nimport time\n\nimport rclpy\nfrom rclpy.node'),
+    ),
     wrong('ten times too fast', 'times too fast', ('create_timer(0.1,', 'create_timer(0.01,')),
     wrong('a fifth too slow', '1.25 times too slow', ('create_timer(0.1,', 'create_timer(0.125,')),
     wrong(

@@ -55,6 +55,17 @@ ANSWERS = [
         (BUILD, ''),
         ('cd ros2_ws\n', f'cd ros2_ws\n{BUILD}'),
     ),
+    wrong(
+        'the hearer makes the teller',
+        'hearer makes a node of this name, too.',
+        (NAME, 's/hearer:mian/teller:main/'),
+        (LISTEN, f'{LISTEN}until [ $(ros2 node list | grep -c teller) = 2 ]; do :; done\n'),
+    ),
+    wrong(
+        'in a namespace',
+        'The name is right, and it lies in a namespace: /x/teller.',
+        (TALK, TALK.replace(' >', ' --ros-args -r __ns:=/x >')),
+    ),
     wrong('one terminal', '/hearer on the graph', (LISTEN, '')),
     right('the whole workspace', (BUILD, 'colcon build\n')),
     right('links instead of copies', (BUILD, BUILD.replace('\n', ' --symlink-install\n'))),
