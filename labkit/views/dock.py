@@ -32,6 +32,8 @@ def dock(*views: LivePage | GraphView, title: str = TITLE) -> None:
     panel is closed, they are there again. In a page of less than 1,200 pixels the list of files is
     folded for it, and in one of less than 900 it lies under the notebook.
 
+    The key F6 goes from a cell to the panel and back, and Esc goes back to the cell.
+
     Args:
         views: What `lab.arena()`, `lab.teleop()`, `lab.image()`, `lab.monitor()`, `lab.plot()`,
             `lab.graph()` or `lab.frames()` return. Without any: those that are live in this

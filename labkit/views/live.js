@@ -3,6 +3,7 @@
 const ALIVE_MS = 2000; // see live_page.py
 const AGAIN_MS = 500;
 const QUIET_MS = 4000;
+const FOCUSABLE = '[tabindex="0"], button, input, select';
 // A page that is narrower than this has no room for the list of files, a notebook and a panel side by
 // side; one that is narrower than the second has none for a notebook and a panel.
 const ROOM_FOR_FILES = 1200;
@@ -33,6 +34,39 @@ function rich(text) {
   return parts.map((part, index) => (index % 2 ? element('code', {}, part) : part));
 }
 
+// The panel of `lab.dock()` that a view is in, if that can be seen.
+function panelOf(el) {
+  const panel = el.closest('.jupyterlab-sidecar');
+  return panel?.offsetParent ? panel : null;
+}
+
+// From the panel back to a cell: the one where the keyboard was, or else the one that has docked
+// the view, or is in front.
+function leavePanel(model, el) {
+  const from = el.closest('.jupyterlab-sidecar')?.labkitFrom;
+  const docked = document.querySelector(`.jp-Cell .${CSS.escape(model.get('mark'))}`);
+  const cells = [from?.isConnected && from, docked?.closest('.jp-Cell'),
+    document.querySelector('.jp-Notebook:not(.lm-mod-hidden) .jp-Cell.jp-mod-active')];
+  const back = cells.find(Boolean);
+  if (back) back.focus();
+  else document.activeElement.blur();
+}
+
+// F6 goes from a cell to the panel, to the keys of a robot if there are any, and back.
+function changePlaces(event, model, el) {
+  const panel = event.key === 'F6' && panelOf(el);
+  if (!panel) return;
+  event.preventDefault();
+  // A notebook takes the focus back at each key that it hears; other views would go on.
+  event.stopImmediatePropagation();
+  if (panel.contains(document.activeElement)) {
+    leavePanel(model, el);
+    return;
+  }
+  panel.labkitFrom = document.activeElement.closest('.jp-Cell');
+  (panel.querySelector('.labkit-teleop') ?? panel.querySelector(FOCUSABLE))?.focus();
+}
+
 // What every view is. Its stored form hides while it is there (see stored_form.py). JupyterLab's own keys
 // (a, b, x, arrows) stay out of it, but for those that run its cell; Escape leaves it.
 function makeView(model, el) {
@@ -41,15 +75,16 @@ function makeView(model, el) {
   el.setAttribute(suppress, 'true');
   const runs = (event) => event.key === 'Enter' && (event.shiftKey || event.ctrlKey || event.altKey);
   el.addEventListener('keydown', (event) => {
-    // The cell gets the keys then, as with Escape in its code. In a panel there is none.
+    // The cell gets the keys then, as with Escape in its code.
     const cell = el.closest('.jp-Cell');
     if (event.key === 'Escape' && cell) cell.focus({ preventScroll: true });
-    else if (event.key === 'Escape') document.activeElement.blur();
+    else if (event.key === 'Escape') leavePanel(model, el);
     if (!runs(event)) event.stopPropagation();
   });
   // JupyterLab hears a key before the view does.
   const onWayDown = (event) => {
     if (el.contains(event.target)) el.toggleAttribute(suppress, !runs(event));
+    changePlaces(event, model, el);
   };
   window.addEventListener('keydown', onWayDown, true);
   return () => window.removeEventListener('keydown', onWayDown, true);

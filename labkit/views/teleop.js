@@ -14,6 +14,7 @@ const KEYS = {
 const HINT = 'Click here, then hold a key: w a d x or the arrows drive, s or space stops, ' +
   '+ and - change the speed.';
 const DRIVING = 'Your keys drive the robot. It stops when you click elsewhere.';
+const IN_PANEL = ' Esc goes back to the cell, and F6 comes here from one.';
 const SILENT = 'The kernel does not answer: it may be busy with a cell. The robot stops by itself.';
 
 class Driver {
@@ -238,7 +239,9 @@ function render({ model, el }) {
     driver.release(name);
   });
   el.addEventListener('pointerdown', () => el.focus({ preventScroll: true }));
-  el.addEventListener('focusin', () => setText(hint, ended ? '' : DRIVING));
+  el.addEventListener('focusin', () => {
+    setText(hint, ended ? '' : DRIVING + (panelOf(el) ? IN_PANEL : ''));
+  });
   el.addEventListener('focusout', (event) => {
     if (el.contains(event.relatedTarget)) return;
     driver.stop();

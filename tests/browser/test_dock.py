@@ -20,6 +20,7 @@ listener = lab.spin(Node('listener'))
 goals = listener.create_subscription(PoseStamped, 'goal_pose', heard.append, 10)
 """,
     'dock': 'lab.dock(lab.arena(), lab.teleop())',
+    'wait0': 'print(1)',
     'arena': 'lab.arena()',
     'wait': """
 lab.wait_until(lambda: robot.pose.x > 0.05 and robot.twist == (0, 0), timeout_sec=50)
@@ -85,6 +86,30 @@ def test_a_robot_is_driven_while_the_notebook_scrolls(panel):
     panel.map.click(position={'x': 4, 'y': 4})
     panel.page.keyboard.press('Escape')
     expect(panel.map).not_to_be_focused()
+
+
+def has_the_keys(panel: Panel, cell_id: str) -> bool:
+    return panel.notebook.cell(cell_id).evaluate(
+        'cell => document.activeElement === cell && cell.classList.contains("jp-mod-active")'
+    )
+
+
+def test_keys_go_from_a_cell_to_the_panel_and_back(panel):
+    keyboard = panel.page.keyboard
+    keys = panel.page.locator('.jupyterlab-sidecar .labkit-teleop')
+    # From the keys to the cell that has docked them, though it was another one that ran last.
+    panel.notebook.run_cell('wait0')
+    keys.click(position={'x': 4, 'y': 4})
+    keyboard.press('Escape')
+    expect(keys).not_to_be_focused()
+    assert has_the_keys(panel, 'dock')
+    # From a cell in which somebody types, and back to it.
+    panel.notebook.cell('wait0').locator('.cm-content').click()
+    keyboard.press('F6')
+    expect(keys).to_be_focused()
+    expect(keys).to_contain_text('Esc goes back to the cell, and F6 comes here from one.')
+    keyboard.press('F6')
+    assert has_the_keys(panel, 'wait0')
 
 
 def test_a_closed_panel_gives_its_views_back(panel):
