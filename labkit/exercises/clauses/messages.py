@@ -115,13 +115,14 @@ class HasText(GraphClause):
             values = stream.values(self.field, earlier=True)
             number = next((i for i, text in enumerate(values) if not text.strip()), None)
             if number is not None:
+                mistake = common_mistakes.EMPTY_LATER if number else common_mistakes.NOT_SET
+                if values[number]:
+                    mistake = common_mistakes.ONLY_SPACES
                 raise Fail(
                     f'a text in each message on {self.topic}',
                     f'{self.field} = {show(values[number:])}'
                     + (f', after {number} with a text' if number else ''),
-                    (
-                        common_mistakes.ONLY_SPACES if values[number] else common_mistakes.NOT_SET
-                    ).of(field=self.field),
+                    mistake.of(field=self.field),
                 )
         examples = [evidence.streams[self.topic, by].values(self.field)[0] for by in self.by]
         return f'It says {show(examples)}.'

@@ -106,7 +106,7 @@ class OnlyTopic(Clause[Found]):
         names = [topic.name for topic in found.bag.topics]
         others = {*names} - {self.topic}
         if self.topic not in names or others:
-            mistake = ALL_TOPICS if others & {*_OF_EVERY_NODE} else MORE_TOPICS
+            mistake = ALL_TOPICS if others >= {*_OF_EVERY_NODE} else MORE_TOPICS
             if self.topic not in names:
                 mistake = OTHER_TOPIC if names else NOTHING
             raise Fail(

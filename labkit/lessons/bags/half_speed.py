@@ -25,6 +25,8 @@ INNER, OUTER, TWIST = '/cmd_vel', '/slow/cmd_vel', 'geometry_msgs/msg/Twist'
 
 TOO_FEW = WORDS.mistake('half_speed/begins-in-the-middle')
 LAST_MISSING = WORDS.mistake('half_speed/last-missing')
+LEFT_OUT = WORDS.mistake('half_speed/left-out')
+MORE_AFTER = WORDS.mistake('half_speed/more-after')
 TOO_MANY = WORDS.mistake('half_speed/played-twice')
 OTHER = WORDS.mistake('half_speed/other', anything)
 # The models return linear.x and angular.z from those of the command.
@@ -52,20 +54,43 @@ def _numbers(messages: Sequence[BagMessage]) -> list[tuple[float, float]]:
 
 def _count(found: Found) -> None:
     count, wanted = len(found.messages), len(_commands())
-    right = [(x / 2, z / 2) for x, z in _commands()[:count]]
-    told = zip(right, _numbers(found.messages), strict=False)
-    if 0 < count < wanted and all(math.dist(*pair) < 1e-6 for pair in told):
-        raise Fail(
-            f'{wanted} messages on {OUTER}: as many as there are on {INNER} in {SOURCE}',
-            f'{count}',
-            LAST_MISSING.of(count=count),
-        )
     if count != wanted:
         raise Fail(
             f'{wanted} messages on {OUTER}: as many as there are on {INNER} in {SOURCE}',
             f'{count}',
-            TOO_FEW if count < wanted else TOO_MANY,
+            _miscounted([(x / 2, z / 2) for x, z in _commands()], _numbers(found.messages)),
         )
+
+
+def _miscounted(
+    rights: Sequence[tuple[float, float]], seen: Sequence[tuple[float, float]]
+) -> Mistake:
+    """Return why there are too many messages, or too few."""
+
+    def same(some: Sequence[tuple[float, float]], others: Sequence[tuple[float, float]]) -> bool:
+        return all(math.dist(*pair) < 1e-6 for pair in zip(some, others, strict=False))
+
+    more = len(seen) - len(rights)
+    if more > 0:
+        besides = same(rights, seen) and not same(seen[len(rights) :], rights)
+        return MORE_AFTER.of(count=more) if besides else TOO_MANY
+    if seen and same(seen, rights):
+        return LAST_MISSING.of(count=len(seen))
+    if seen and same(seen, rights[-more:]):
+        return TOO_FEW
+    number = _left_out(rights, seen)
+    return LEFT_OUT.of(number=number) if number else TOO_FEW
+
+
+def _left_out(rights: Sequence[tuple[float, float]], seen: Sequence[tuple[float, float]]) -> int:
+    """Return which right message, from 1, is the first one missing; 0 if others came, too."""
+    left, missing = list(seen), 0
+    for number, right in enumerate(rights, start=1):
+        if left and math.dist(right, left[0]) < 1e-6:
+            del left[0]
+        elif not missing:
+            missing = number
+    return 0 if left else missing
 
 
 def _values(found: Found) -> None:

@@ -42,8 +42,17 @@ ANSWERS = [
         ('msg.linear.x / 2', 'max(0.0, msg.linear.x / 2)'),
     ),
     wrong(
+        'a stop of its own at the end',
+        'All commands are there, and 1 more after them',
+        (
+            '    recording.wait_for(30)\n',
+            '    recording.wait_for(30)\n    half_speed.publisher.publish(Twist())\n'
+            '    recording.wait_for(31)\n',
+        ),
+    ),
+    wrong(
         'no command twice',
-        'was not there from the first message to the last',
+        'has no message, and later ones have.',
         (
             '    def on_command(self, msg):\n',
             '    def on_command(self, msg):\n'

@@ -67,7 +67,7 @@ ANSWERS = [
     ),
     wrong(
         'an empty text later on',
-        'is an empty text at first',
+        'is an empty text, though others had one',
         (
             "        super().__init__('slow_talker')\n",
             "        super().__init__('slow_talker')\n        self.calls = 0\n",
