@@ -179,6 +179,10 @@ class Proof:
             self.findings[exercise.name, state.name] = replace(found, told=told)
         reset.source = ''
         run.execute(check + 1)
+        # A buffer keeps what an answer has said of frames that do not move.
+        for index, cell in enumerate(cells[:starter]):
+            if 'TransformListener(memory' in cell.source and cell.cell_type == 'code':
+                run.execute(index)
         return check + 2
 
 
