@@ -75,6 +75,11 @@ def _run(words: list[str]) -> int:
             new_password=options.new_password,
             prepare=options.prepare,
         )
+    if options.command == 'physics':
+        from labkit.sim.physics.install_physics import install_physics
+
+        print(install_physics())
+        return 0
     if options.command == 'test':
         return run_tests(
             others, everything=options.all, fast=options.fast, coverage=options.coverage
@@ -208,6 +213,7 @@ def _parser() -> argparse.ArgumentParser:
     test.add_argument(
         '--coverage', action='store_true', help='show which lines and branches of labkit ran'
     )
+    add('physics', 'Install what simulated worlds with physics need')
     add('doctor', 'Say what is wrong with this machine or environment, and what to do')
     record = add('record', 'Run lessons and store their outputs in notebooks/')
     record.add_argument(

@@ -25,6 +25,7 @@ from labkit.setup.requirements import applicable
 
 ROOT = Path(__file__).resolve().parent.parent
 ENVIRONMENT, TESTS, SITE = 'environment.txt', 'tests/requirements.txt', 'docs/requirements.txt'
+PHYSICS = 'labkit/sim/physics/requirements.txt'
 HUB, HUB_LOCK = 'labkit/hub/requirements.txt', 'labkit/hub/requirements.lock'
 # Packages that need not be imported to be used, and what uses them.
 USED_BY_NAME = {
@@ -162,9 +163,9 @@ def third_party(folder: str) -> dict[str, str]:
 @pytest.mark.parametrize(
     ('folder', 'files'),
     [
-        ('labkit', [ENVIRONMENT, HUB]),
+        ('labkit', [ENVIRONMENT, HUB, PHYSICS]),
         ('notebooks', [ENVIRONMENT]),
-        ('tests', [ENVIRONMENT, HUB, TESTS]),
+        ('tests', [ENVIRONMENT, HUB, PHYSICS, TESTS]),
     ],
 )
 def test_what_is_imported_is_asked_for(folder: str, files: list[str]) -> None:
@@ -186,12 +187,13 @@ def test_what_is_asked_for_is_used() -> None:
         for module in third_party(folder)
         for name in packages_of(module)
     }
-    asked = {*asked_for(ENVIRONMENT), *asked_for(HUB), *asked_for(TESTS), *asked_for(SITE)}
+    files = (ENVIRONMENT, HUB, PHYSICS, TESTS, SITE)
+    asked = {name for file in files for name in asked_for(file)}
     assert asked - used - set(USED_BY_NAME) == set(), 'nothing uses these'
     assert set(USED_BY_NAME) - asked == set(), 'these are not asked for any more'
 
 
-@pytest.mark.parametrize('file', [ENVIRONMENT, HUB, TESTS, SITE])
+@pytest.mark.parametrize('file', [ENVIRONMENT, HUB, PHYSICS, TESTS, SITE])
 def test_each_package_that_is_asked_for_has_a_reason(file: str) -> None:
     first = (ROOT / file).read_text().partition('\n# What those need\n')[0]
     reasons: dict[str, str] = {}
@@ -206,7 +208,7 @@ def test_each_package_that_is_asked_for_has_a_reason(file: str) -> None:
 @pytest.mark.parametrize('version', VERSIONS)
 def test_no_package_is_in_two_files_in_two_versions(version: tuple[int, int]) -> None:
     found: list[dict[str, str]] = []
-    for file in (ENVIRONMENT, HUB, TESTS, SITE):
+    for file in (ENVIRONMENT, HUB, PHYSICS, TESTS, SITE):
         lines = applicable((ROOT / file).read_text().splitlines(), (*version, 9))
         found.append(
             {normal(re.split(r'[\[=]', line)[0]): pinned(line) for line in lines if line != '-e .'}

@@ -19,7 +19,7 @@ from labkit.setup.machine import VERSIONS, clean_environment, interpreters
 __all__ = ['run_tests']
 
 REQUIREMENTS = (
-    *('environment.txt', 'labkit/hub/requirements.txt'),
+    *('environment.txt', 'labkit/hub/requirements.txt', 'labkit/sim/physics/requirements.txt'),
     *('tests/requirements.txt', 'docs/requirements.txt'),
 )
 # Fast tests of the code as it stands; they come first and are not repeated later.

@@ -32,8 +32,6 @@ __all__ = [
     'truth_message',
 ]
 
-# Standard gravity, m/s². Source: BIPM, "The International System of Units" (3rd CGPM, 1901).
-GRAVITY = 9.80665
 # Time for which a full battery drives the robot, s. Source: ROBOTIS e-manual, TurtleBot3,
 # "Features > Specifications": 2 h 30 min.
 BATTERY_TIME = 2.5 * 3600
@@ -79,6 +77,10 @@ def truth_message(robot: Simulator, stamp: Time, prefix: str = '') -> Odometry:
     """
     message = _motion_message(robot.pose, robot.twist, stamp, prefix)
     message.header.frame_id = 'map'
+    pose = message.pose.pose
+    turn = pose.orientation
+    turn.x, turn.y, turn.z, turn.w = robot.orientation
+    pose.position.z = robot.height
     return message
 
 
@@ -116,10 +118,10 @@ def imu_message(robot: Simulator, stamp: Time, prefix: str = '') -> Imu:
     message.header.stamp = stamp
     message.header.frame_id = f'{prefix}imu_link'
     turn, rate = message.orientation, message.angular_velocity
-    turn.x, turn.y, turn.z, turn.w = yaw_to_quaternion(robot.pose.yaw)
-    rate.z = robot.twist.w
+    turn.x, turn.y, turn.z, turn.w = robot.orientation
+    rate.x, rate.y, rate.z = robot.angular_velocity
     linear = message.linear_acceleration
-    linear.x, linear.y, linear.z = robot.acceleration.v, robot.twist.v * robot.twist.w, GRAVITY
+    linear.x, linear.y, linear.z = robot.specific_force
     return message
 
 

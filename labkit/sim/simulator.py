@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from labkit.errors import LabError
 from labkit.sim.command_timeout import COMMAND_TIMEOUT, as_limit
@@ -18,13 +19,17 @@ from labkit.sim.kinematics import (
     twist_of_wheels,
     wheel_speeds,
     wrap_angle,
+    yaw_to_quaternion,
 )
 from labkit.sim.robots import BURGER, Robot
 from labkit.sim.slip import Slip
 from labkit.sim.world import Contact, Post, World, playground
+from labkit.transforms.rotations import Quaternion, Vector
 
-__all__ = ['Simulator']
+__all__ = ['GRAVITY', 'Simulator']
 
+# Standard gravity, m/s². Source: BIPM, "The International System of Units" (3rd CGPM, 1901).
+GRAVITY = 9.80665
 # A command beyond this is an error, m/s or rad/s. Degrees instead of radians are below it, and
 # clipped to the limits as on the real robot.
 MAX_SENSIBLE = 1000.0
@@ -194,7 +199,10 @@ class Simulator:
         """
         if not self.world.things(self.name):
             return [self.scan_nothing] * self.robot.scan_beams
-        ranges = self.world.ranges(self.pose, robot=self.robot, but=self.name)
+        return self._measured(self.world.ranges(self.pose, robot=self.robot, but=self.name))
+
+    def _measured(self, ranges: NDArray[np.float64]) -> list[float]:
+        """Return ranges as the scanner tells them: with noise, and within its limits."""
         if self.noise:
             ranges += self._random.normal(0.0, self.noise, len(ranges))
         ranges[ranges > self.robot.range_max] = math.inf
@@ -203,6 +211,34 @@ class Simulator:
             ranges[np.isinf(ranges)] = self.scan_nothing
         numbers: list[float] = ranges.tolist()
         return numbers
+
+    # What a world with physics adds; see `labkit.sim.physics`.
+    has_physics = False
+    tipped_over = False
+    real_time_factor = math.inf
+
+    def reset_world(self) -> None:
+        """Put the things in the world back to where they began; here all stand still."""
+
+    @property
+    def height(self) -> float:
+        """How far the middle of the axle's shadow, `base_footprint`, is above the floor, m."""
+        return 0.0
+
+    @property
+    def orientation(self) -> Quaternion:
+        """The true turn in the world: a quaternion (x, y, z, w)."""
+        return yaw_to_quaternion(self.pose.yaw)
+
+    @property
+    def angular_velocity(self) -> Vector:
+        """The true turning rates about the robot's own axes, rad/s."""
+        return 0.0, 0.0, self.twist.w
+
+    @property
+    def specific_force(self) -> Vector:
+        """What an accelerometer in the middle of the axle measures, m/s²: 1 g up at rest."""
+        return self.acceleration.v, self.twist.v * self.twist.w, GRAVITY
 
     @property
     def odometry_twist(self) -> Twist2:

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Callable
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import rclpy.utilities
 from builtin_interfaces.msg import Time
@@ -30,6 +30,7 @@ from rclpy.timer import Timer
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import BatteryState, CameraInfo, Image, Imu, JointState, LaserScan
 from std_msgs.msg import Float64, String
+from std_srvs.srv import Empty
 
 from labkit.background.runtime import runtime
 from labkit.errors import LabError
@@ -55,6 +56,9 @@ from labkit.sim.parts import footprint, static_parts, urdf, wheel_parts
 from labkit.sim.radio import Radio
 from labkit.sim.simulator import Simulator
 from labkit.sim.world import Contact, Wall, World
+
+if TYPE_CHECKING:
+    from labkit.sim.physics.mujoco_world import PhysicsWorld
 
 __all__ = ['ODOM_RATE', 'TRUTH_TOPIC', 'Turtlebot']
 
@@ -100,7 +104,9 @@ class Turtlebot(Node):
     It is perfect unless it is told to be as imperfect as a real one, by `drift`, `slip`, `noise`,
     `latency` and `loss`. Then it also publishes `base_pose_ground_truth` (nav_msgs/msg/Odometry)
     at 30 Hz if odometry may be wrong or late: the true pose, in the frame `map`, whose origin is
-    that of the world, too.
+    that of the world, too. So it does with `physics`, with height and tilt; and then the service
+    `reset_world` (std_srvs/srv/Empty) puts it, and the things in its world, back to where they
+    began.
 
     Time can pass in three ways. By default it is real time. With `speed` it runs faster or slower,
     and `/clock` publishes it for nodes with the parameter `use_sim_time`. With `lockstep` it
@@ -110,8 +116,10 @@ class Turtlebot(Node):
     Args:
         name: The node's name.
         namespace: One of several robots: `namespace='robot1'` gives `/robot1/cmd_vel` and so on.
-        world: The surroundings, `playground()` by default. Robots in the same world see each
-            other.
+        physics: Whether it has motors and a weight, in a world in which things are pushed, slip
+            and tip over. It needs MuJoCo: `python3 -m labkit physics` installs it.
+        world: The surroundings, `playground()` by default; with physics `yard()`, or a
+            `PhysicsWorld`. Robots in the same world see each other.
         x: Start position, m.
         y: Start position, m.
         yaw: Start heading, rad.
@@ -159,7 +167,8 @@ class Turtlebot(Node):
         *,
         name: str = 'turtlebot',
         namespace: str = '',
-        world: World | None = None,
+        physics: bool = False,
+        world: World | PhysicsWorld | None = None,
         x: float = 0.0,
         y: float = 0.0,
         yaw: float = 0.0,
@@ -179,8 +188,8 @@ class Turtlebot(Node):
     ) -> None:
         _check_time(speed, lockstep, use_sim_time)
         space = namespace.strip('/')
-        self.simulator = Simulator(
-            world,
+        self.simulator: Simulator = _simulator_class(physics, world)(
+            world,  # type: ignore[arg-type]
             start=Pose(x, y, yaw),
             # In lock-step a command is valid for its step, however long that is.
             command_timeout=command_timeout if lockstep is None else None,
@@ -216,6 +225,7 @@ class Turtlebot(Node):
         # However fast time runs, the number of images per real second stays the same.
         self._camera_beat = Beat(max(1.0, speed) / PI_CAMERA.rate, early)
         self._due_rounds = 0.0
+        self._speed = speed
         self._warned: set[str] = set()
         self._reported = 0
         self._lockstep = lockstep
@@ -224,7 +234,6 @@ class Turtlebot(Node):
             self._clock_publisher = self.create_publisher(Clock, '/clock', QUEUE_DEPTH)
         self._open_topics(TwistStamped if stamped else Twist, odometry)
         self._stopwatch = Stopwatch(cast(ROSClock, self.get_clock()))
-        self._speed = speed
         self._timer: Timer | None = None
         if lockstep is None:
             self._start_timer()
@@ -260,10 +269,15 @@ class Turtlebot(Node):
         self._commands = self.create_subscription(
             command_type, 'cmd_vel', self._on_command, QUEUE_DEPTH
         )
+        if self.simulator.has_physics:
+            self._start = self.simulator.pose
+            self.create_service(Empty, 'reset_world', self._on_reset)
 
     def _open_truth(self) -> None:
         """Begin to tell the true pose, if odometry may not be that."""
-        if self.simulator.drift or self.simulator.slip or not self._radio.is_perfect:
+        simulator = self.simulator
+        imperfect = simulator.drift or simulator.slip or not self._radio.is_perfect
+        if imperfect or simulator.has_physics:
             on_join = self._on_join(self._publish_truth)
             self._truth = self.create_publisher(
                 Odometry, TRUTH_TOPIC, QUEUE_DEPTH, event_callbacks=on_join
@@ -388,10 +402,32 @@ class Turtlebot(Node):
         self._reported += len(new)
         for contact in new:
             thing = 'a wall' if isinstance(contact.thing, Wall) else 'an obstacle'
+            place = f'x={contact.x:.2f} m, y={contact.y:.2f} m'
+            if self.simulator.has_physics:
+                self._warn(f'Bumped into {thing} at {place}.')
+                continue
             self._warn(
-                f'Bumped into {thing} at x={contact.x:.2f} m, y={contact.y:.2f} m, and stopped. '
-                'Back off, or turn on the spot, to go on.'
+                f'Bumped into {thing} at {place}, and stopped. Back off, or turn on the spot, to '
+                'go on.'
             )
+        if not self.simulator.tipped_over:
+            self._warned.discard('tipped')
+        else:
+            self._warn_once(
+                'tipped', 'Tipped over. The service reset_world puts it back on its wheels.'
+            )
+        if self._lockstep is None and self.simulator.real_time_factor < self._speed:
+            self._warn_once(
+                'slow',
+                f'This machine computes {self.simulator.real_time_factor:.2g} s of the world in a '
+                f'second, and {self._speed:g} s are wanted: the world falls behind.',
+            )
+
+    def _on_reset(self, request: Any, response: Any) -> Any:
+        with self._lock:
+            self.simulator.reset_world()
+            self.place(*self._start)
+        return response
 
     # -- commands -------------------------------------------------------------------------------
 
@@ -560,6 +596,19 @@ class Turtlebot(Node):
         if self._clock_publisher is None:
             return self.get_clock().now().to_msg()
         return time_message(self.simulator.time)
+
+
+def _simulator_class(physics: bool, world: World | PhysicsWorld | None) -> type[Simulator]:
+    if not physics:
+        if world is not None and not isinstance(world, World):
+            raise LabError(
+                f'The world {world!r} is one with physics, and this robot has none.',
+                todo='lab.Turtlebot(physics=True, world=...)',
+            )
+        return Simulator
+    from labkit.sim.physics.physics_robot import PhysicsSimulator
+
+    return PhysicsSimulator
 
 
 def _latched() -> QoSProfile:
