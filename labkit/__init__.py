@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from labkit.views.frames import frames
     from labkit.views.graph import graph
     from labkit.views.image import image
+    from labkit.views.joint_state_publisher_gui import joint_state_publisher_gui
     from labkit.views.monitor import monitor
     from labkit.views.plot import plot
     from labkit.views.projector import projector
@@ -68,6 +69,7 @@ __all__ = [
     'image',
     'join',
     'join_class',
+    'joint_state_publisher_gui',
     'launch',
     'leave_class',
     'lesson',
@@ -106,6 +108,7 @@ _HOMES = {
     'image': 'labkit.views.image',
     'join': 'labkit.sharing.joining',
     'join_class': 'labkit.exercises.record.membership',
+    'joint_state_publisher_gui': 'labkit.views.joint_state_publisher_gui',
     'launch': 'labkit.launching.launched',
     'leave_class': 'labkit.exercises.record.membership',
     'lesson': 'labkit.exercises.setup_cell',

@@ -29,6 +29,7 @@ _OWN: dict[str, dict[str, tuple[str, ...]]] = {
     'demo_nodes_py': {
         name: ('labkit.programs.demo_nodes', name) for name in ('talker', 'listener')
     },
+    'joint_state_publisher': {'joint_state_publisher': ('labkit.programs.joint_state_publisher',)},
     'robot_state_publisher': {'robot_state_publisher': ('labkit.programs.robot_state_publisher',)},
     'labkit': {'turtlebot': ('labkit.sim.turtlebot_program',)},
     'tf2_ros': {
