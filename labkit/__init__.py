@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from labkit.views.monitor import monitor
     from labkit.views.plot import plot
     from labkit.views.projector import projector
+    from labkit.views.scene_view import scene
     from labkit.views.teleop import teleop
 
 __version__ = '0.1.0'
@@ -82,6 +83,7 @@ __all__ = [
     'projector',
     'record',
     'remove',
+    'scene',
     'source',
     'spin',
     'start',
@@ -121,6 +123,7 @@ _HOMES = {
     'projector': 'labkit.views.projector',
     'record': 'labkit.bags.recorder',
     'remove': 'labkit.background.runtime',
+    'scene': 'labkit.views.scene_view',
     'source': 'labkit.packages.workspace',
     'spin': 'labkit.background.runtime',
     'start': 'labkit.background.runtime',

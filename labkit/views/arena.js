@@ -124,20 +124,8 @@ class ArenaMap extends Map2d {
 }
 
 function arenaButtons(map, robots, redraw, el, send) {
-  const make = (text, title, act) => {
-    const made = element('button', { type: 'button', textContent: text, title });
-    made.setAttribute('aria-label', title);
-    made.addEventListener('click', () => {
-      act();
-      redraw();
-    });
-    return made;
-  };
-  const full = make('Full screen', 'Full screen (key o)', () => {
-    if (document.fullscreenElement) document.exitFullscreen();
-    // With the keys, where they are beside the map.
-    else (keysBeside(el) ?? el).requestFullscreen();
-  });
+  const make = overButton(redraw);
+  const full = fullScreenButton(make, el);
   // One robot after the other, then none.
   const follow = make('Follow', 'Follow the robot (key f)', () => {
     map.followed = robots[robots.indexOf(map.followed) + 1] ?? null;
@@ -147,47 +135,25 @@ function arenaButtons(map, robots, redraw, el, send) {
     // A publisher is made now: those who listen find it before there is a goal.
     if (map.aims) send({ aim: true });
   });
-  const dock = make('Dock', 'Keep it in the panel on the right (key k)', () => send({ dock: true }));
+  const dock = dockButton(make, send);
   const all = [
     make('+', 'Zoom in (key +)', () => map.zoom(ZOOM)),
     make('−', 'Zoom out (key -)', () => map.zoom(1 / ZOOM)),
     make('Fit', 'Show the whole map (key 0)', () => map.fitAll()),
     follow, goal, dock, full,
   ];
-  const place = element('div', { className: 'labkit-arena-buttons' }, ...all);
-  place.setAttribute('role', 'group');
-  place.setAttribute('aria-label', 'Map');
   return {
-    place,
+    place: buttonsOver('Map', all),
     keys: {
       '+': all[0], '=': all[0], '-': all[1], 0: all[2], f: follow, g: goal, k: dock, o: full,
     },
     show: () => {
-      dock.hidden = !el.closest('.jp-LabShell .jp-Notebook');
+      showOver(dock, full, el);
       goal.setAttribute('aria-pressed', String(map.aims));
       follow.setAttribute('aria-pressed', String(map.followed !== null));
       setText(follow, map.followed?.name ? `Follow ${map.followed.name}` : 'Follow');
-      setText(full, document.fullscreenElement ? 'Leave full screen' : 'Full screen');
     },
   };
-}
-
-// What holds this map and the keys of the same cell; nothing if there are none.
-function keysBeside(el) {
-  const area = el.closest('.jp-OutputArea');
-  return area?.querySelector('.labkit-teleop') ? area : null;
-}
-
-// A cell that was run just now lets what it shows come into view, unless one has gone on.
-function comeIntoView(el) {
-  const number = (cell) => Number(cell?.dataset.windowedListIndex ?? NaN);
-  const cell = el.closest('.jp-Notebook-cell');
-  const active = cell?.parentElement.querySelector(':scope > .jp-mod-active');
-  if (!(Math.abs(number(active) - number(cell)) <= 1)) return;
-  const place = keysBeside(el) ?? el;
-  const room = cell.closest('.jp-WindowedPanel-outer') ?? document.documentElement;
-  const fits = place.offsetHeight <= room.clientHeight;
-  place.scrollIntoView({ block: fits ? 'nearest' : 'start' });
 }
 
 // Mouse: drag to move, wheel to zoom. The wheel alone scrolls the page until the map was clicked.
@@ -263,7 +229,7 @@ function render({ model, el }) {
     // In another frame, robots have no floor in common.
     const walls = !scene.fixed || robot === robots[0];
     if (news.eye && walls) occupancy.take(robot.scan, robot.eye);
-    const met = news.met ? numbers(buffers.shift()) : [];
+    const met = news.met ? numbersOf(buffers.shift()) : [];
     if (walls) occupancy.meet(met);
     if (news.bump) {
       bumpedAt = performance.now();

@@ -25,7 +25,7 @@ from labkit.views.arena_frames import ArenaFrames
 from labkit.views.arena_picture import Axes, Scene, seen_from, to_svg
 from labkit.views.arena_robot import MappedRobot
 from labkit.views.feed import Feed, subscribed
-from labkit.views.live import helper, live_views
+from labkit.views.live import helper
 from labkit.views.live_page import LivePage, Update
 from labkit.views.timed_out import TimedOut
 
@@ -279,10 +279,7 @@ class Arena(LivePage):
         if content.get('aim'):
             self._publisher_of_goals()
         elif content.get('dock'):
-            # With the keys of its cell.
-            request = self._cell.request_id
-            views = [view for view in live_views() if view._cell.request_id == request]
-            dock.show_panel(dock.TITLE, [view for view in views if isinstance(view, LivePage)])
+            dock.show_cell(self)
         elif isinstance(goal, list) and len(goal) == 3 and all(map(_is_finite, goal)):
             self._set_goal(*map(float, goal))
 

@@ -11,14 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from labkit.errors import did_you_mean
 from labkit.sim.kinematics import Pose
 from labkit.transforms.cache import NANOSECONDS
-from labkit.transforms.exceptions import TransformException
 from labkit.transforms.rotations import matrix
-from labkit.transforms.tree import Place
 from labkit.views.arena_picture import Axes
-from labkit.views.frames_heard import HeardFrames
+from labkit.views.placed_frames import PlacedFrames, nanoseconds
 from labkit.views.robot_messages import beams_of
 
 if TYPE_CHECKING:
@@ -33,46 +30,18 @@ PlacedScan = tuple[Any, tuple[float, float]]
 LEAST_SHARE = 0.05
 
 
-class ArenaFrames:
+class ArenaFrames(PlacedFrames):
     """Frames as tf2 hears them, for a map.
 
     Args:
         names: Frames whose axes are drawn.
         fixed: The frame in which all is drawn; '' for that of the odometry.
         node: See `HeardFrames`.
-
-    Attributes:
-        heard: What is heard of frames.
-        why: What can't be drawn -> why, in the words of tf2.
     """
 
     def __init__(self, names: Sequence[str], fixed: str, node: Node) -> None:
+        super().__init__(node)
         self.names, self.fixed = tuple(names), fixed
-        self.heard = HeardFrames(node)
-        self.why: dict[str, str] = {}
-
-    def place(
-        self, what: str, target: str, source: str, time: int = 0
-    ) -> tuple[int, Place] | None:
-        """Return the time that was found, and where a frame is in another; None if unknown.
-
-        Args:
-            what: What is drawn by it, for `why`.
-            target: The other frame.
-            source: The frame.
-            time: When, ns; 0 for the latest time.
-        """
-        try:
-            found = self.heard.tree.look(target, source, time)
-        except TransformException as error:
-            known = self.heard.tree.names()
-            unknown = [name for name in (target, source) if name not in known]
-            guess = did_you_mean(unknown[0], known) if unknown and known else ''
-            words = f"{what} can't be drawn in {target}: {str(error).strip()} {guess}"
-            self.why[what] = words.strip()
-            return None
-        self.why.pop(what, None)
-        return found
 
     def base(self, what: str, frame: str) -> tuple[float, Pose] | None:
         """Return when and where the frame of an odometry is in the fixed frame; None if unknown.
@@ -116,8 +85,7 @@ class ArenaFrames:
             message: The scan.
             target: Name of the frame.
         """
-        stamp = message.header.stamp
-        time = stamp.sec * NANOSECONDS + stamp.nanosec
+        time = nanoseconds(message.header.stamp)
         placed = self.place(what, target, message.header.frame_id, time)
         if placed is None:
             return None
@@ -126,15 +94,3 @@ class ArenaFrames:
         ranges, angles = beams_of(message)
         ends = np.stack([ranges * np.cos(angles), ranges * np.sin(angles)], axis=1) @ across.T
         return ends + np.array((x, y)), (x, y)
-
-    def is_late(self, message: LaserScan, target: str) -> bool:
-        """Return whether the transforms of a scan's time are still to come; see `scan`."""
-        tree, source = self.heard.tree, message.header.frame_id
-        if target not in tree or source not in tree:
-            return False
-        try:
-            newest = tree.latest_common_time(target, source)
-        except TransformException:
-            return False
-        stamp = message.header.stamp
-        return 0 < newest < int(stamp.sec) * NANOSECONDS + int(stamp.nanosec)

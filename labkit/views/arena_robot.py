@@ -14,6 +14,7 @@ from labkit.sim.kinematics import Pose, Twist2, wrap_angle
 from labkit.sim.robots import BURGER
 from labkit.views.arena_picture import Scene
 from labkit.views.live_page import Update
+from labkit.views.placed_frames import nanoseconds
 from labkit.views.robot_messages import beam_ends, motion_of, nearest_of, scanner_place
 
 if TYPE_CHECKING:
@@ -174,7 +175,7 @@ class MappedRobot:
             message, frames = self._waiting[0], self.frames
             if frames is None:
                 self._place(message, pose, (beam_ends(message, pose), scanner_place(pose)))
-            elif frames.is_late(message, self.frame) and len(self._waiting) < MAX_WAITING:
+            elif self._is_late(message) and len(self._waiting) < MAX_WAITING:
                 return
             elif (placed := frames.scan(self.scan_name, message, self.frame)) is not None:
                 self._place(message, pose, placed)
@@ -183,6 +184,12 @@ class MappedRobot:
                 if len(self._waiting) == 1:
                     return  # what is not known yet may be soon
             self._waiting.popleft()
+
+    def _is_late(self, message: LaserScan) -> bool:
+        """Return whether the transforms of a scan's time are still to come."""
+        assert self.frames is not None
+        header = message.header
+        return self.frames.is_late(self.frame, header.frame_id, nanoseconds(header.stamp))
 
     @property
     def scan_name(self) -> str:

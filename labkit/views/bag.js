@@ -10,11 +10,6 @@ const SPOKEN_MS = 1000; // a screen reader has to be able to speak what it is to
 const RATES = [0.1, 0.5, 1, 2, 5, 10, 50, 100];
 const JUMP = 0.5; // a longer way at once is none that was driven, m; see arena_robot.py
 
-// A copy: the bytes may lie anywhere in the message, numbers only at multiples of their size.
-function numbersOf(data, Kind) {
-  return new Kind(data.buffer.slice(data.byteOffset, data.byteOffset + data.byteLength));
-}
-
 // Lines with the time of the slider: what comes later is pale.
 class Replay extends Sheet {
   line(line, py) {
@@ -345,14 +340,14 @@ function render({ model, el }) {
     [state.scans, state.why] = [Boolean(news.scan && news.track), news.note];
     controls.hidden = !news.seconds;
     arena.hidden = !news.track;
-    topics.build(news.topics, numbersOf(buffers[0], Float32Array));
+    topics.build(news.topics, numbersOf(buffers[0]));
     topics.table.hidden = !news.topics.length;
     if (news.track) trail.take(numbersOf(buffers[1], Float64Array));
     takeLines(news.series, buffers.slice(news.track ? 2 : 1));
   };
   const takeMoment = (news, buffers) => {
     const sent = Object.fromEntries(news.buffers.map((name, index) => [name, buffers[index]]));
-    trail.scene.scan = sent.scan ? numbersOf(sent.scan, Float32Array) : null;
+    trail.scene.scan = sent.scan ? numbersOf(sent.scan) : null;
     if (news.fields === undefined || news.of !== state.topic) return;
     showMessage(message, news.fields);
     showJpeg(picture, sent.picture);

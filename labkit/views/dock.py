@@ -15,7 +15,7 @@ from labkit.views.graph import GraphView
 from labkit.views.live import live_views
 from labkit.views.live_page import LivePage
 
-__all__ = ['TITLE', 'dock', 'show_panel']
+__all__ = ['TITLE', 'dock', 'show_cell', 'show_panel']
 
 TITLE = 'Robot'
 _VIEW = 'application/vnd.jupyter.widget-view+json'
@@ -36,8 +36,8 @@ def dock(*views: LivePage | GraphView, title: str = TITLE) -> None:
 
     Args:
         views: What `lab.arena()`, `lab.teleop()`, `lab.image()`, `lab.monitor()`, `lab.plot()`,
-            `lab.graph()` or `lab.frames()` return. Without any: those that are live in this
-            notebook.
+            `lab.graph()`, `lab.frames()` or `lab.scene()` return. Without any: those that are live
+            in this notebook.
         title: The title of the panel. It takes the place of an earlier one with that title.
 
     Raises:
@@ -60,6 +60,13 @@ def dock(*views: LivePage | GraphView, title: str = TITLE) -> None:
     for view in views:  # one by one: an editor takes the parameters of `display(*views)` for ours
         display(view)  # type: ignore[no-untyped-call]
     show_panel(title, live)
+
+
+def show_cell(view: LivePage) -> None:
+    """Show a view in the panel, with the others of its cell, such as keys beside a map."""
+    request = view._cell.request_id
+    views = [other for other in live_views() if other._cell.request_id == request]
+    show_panel(TITLE, [other for other in views if isinstance(other, LivePage)])
 
 
 def show_panel(title: str, views: Iterable[LivePage]) -> None:

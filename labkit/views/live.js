@@ -28,6 +28,11 @@ function setText(place, text) {
   if (place.textContent !== text) place.textContent = text;
 }
 
+// A copy: the bytes may lie anywhere in the message, numbers only at multiples of their size.
+function numbersOf(data, Kind = Float32Array) {
+  return new Kind(data.buffer.slice(data.byteOffset, data.byteOffset + data.byteLength));
+}
+
 // Text with `code` in it, as elements.
 function rich(text) {
   const parts = text.split('`');

@@ -40,12 +40,6 @@ function include(shown, x, y) {
   if (y + MARGIN > shown[3]) shown[3] = high(y);
 }
 
-// A copy: the bytes may lie anywhere in the message, numbers only at multiples of four.
-function numbers(bytes) {
-  const { buffer, byteOffset, byteLength } = bytes;
-  return new Float32Array(buffer.slice(byteOffset, byteOffset + byteLength));
-}
-
 function take(shown, robot, news, scan) {
   if (news.lifted) robot.trail = [];
   if (news.bump !== undefined) robot.bump = news.bump;
@@ -58,7 +52,7 @@ function take(shown, robot, news, scan) {
     include(shown, news.trail[i], news.trail[i + 1]);
   }
   if (news.eye) {
-    robot.scan = numbers(scan);
+    robot.scan = numbersOf(scan);
     robot.eye = news.eye;
     for (let i = 0; i < robot.scan.length; i += 2) {
       include(shown, robot.scan[i], robot.scan[i + 1]);

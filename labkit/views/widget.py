@@ -15,13 +15,14 @@ __all__ = ['PageWidget', 'page_files', 'widget_class']
 
 # Files that several views share, loaded before the view's own.
 _SHARED = {
-    'arena': ('map', 'occupancy_grid'),
+    'arena': ('over_canvas', 'map', 'occupancy_grid'),
     'bag': ('map', 'chart'),
     'frames': ('drawing',),
     'graph': ('drawing',),
     'guess_form': ('form',),
     'plot': ('chart',),
     'quiz_form': ('form',),
+    'scene': ('over_canvas', 'scene_space', 'scene_drawing'),
     'verdict_form': ('form',),
 }
 

@@ -1,0 +1,264 @@
+"""What a scene is made of: shapes of messages, where they are, and the picture of them."""
+
+from __future__ import annotations
+
+import math
+import re
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from geometry_msgs.msg import Pose, PoseStamped
+from nav_msgs.msg import Odometry, Path
+from sensor_msgs.msg import LaserScan
+
+from labkit.sim.world import Post, Wall, World
+from labkit.transforms.rotations import from_rpy
+from labkit.views.scene_messages import (
+    burger_things,
+    odometry_things,
+    path_things,
+    pose_things,
+    scan_things,
+    world_things,
+)
+from labkit.views.scene_picture import HEIGHT, WIDTH, camera_for, to_svg
+from labkit.views.scene_shapes import faces_of
+from labkit.views.scene_things import (
+    HERE,
+    Thing,
+    arrow,
+    as_points,
+    composed,
+    corners_of,
+    is_same,
+    numbers_of,
+    told_to_page,
+)
+
+LEFT = from_rpy(0.0, 0.0, math.pi / 2)
+SOLIDS = ('box', 'cylinder', 'cone', 'sphere')
+
+
+def posed(x: float = 0.0, y: float = 0.0, *, frame: str = 'map', w: float = 1.0) -> PoseStamped:
+    message = PoseStamped()
+    message.header.frame_id = frame
+    message.pose.position.x, message.pose.position.y = x, y
+    message.pose.orientation.w = w
+    return message
+
+
+def near(rows: object, expected: object) -> bool:
+    return np.allclose(np.asarray(rows), np.asarray(expected), atol=1e-6)
+
+
+def test_beams_end_where_the_scanner_was_at_their_time() -> None:
+    nan, inf = math.nan, math.inf
+    ranges = [1.0, 2.0, inf, nan, 0.05, 9.0]
+    scan = LaserScan(angle_increment=math.pi / 2, range_min=0.1, range_max=3.5, ranges=ranges)
+    (thing,) = scan_things(scan, ((1.0, 0.0, 0.2), LEFT)).values()
+    # The first beam looks ahead, which is left by now, and the second one back.
+    assert near(thing.points, [(1.0, 1.0, 0.2), (-1.0, 0.0, 0.2)])
+    assert (thing.shape, thing.frame) == ('points', '')
+
+
+def test_a_scan_that_sees_nothing_is_no_points() -> None:
+    (thing,) = scan_things(LaserScan(range_max=3.5, ranges=[math.inf] * 4), HERE).values()
+    assert thing.points.shape == (0, 3)
+
+
+def test_a_path_is_a_line_in_its_frame_and_one_pose_is_none() -> None:
+    message = Path(poses=[posed(0.0, 0.0), posed(1.0, 2.0)])
+    message.header.frame_id = 'map'
+    (line,) = path_things(message).values()
+    assert (line.shape, line.frame) == ('line', 'map')
+    assert near(line.points[:, :2], [(0, 0), (1, 2)])
+    message.poses = message.poses[:1]
+    assert path_things(message) == {}
+
+
+def test_a_goal_is_an_arrow_that_points_where_it_looks() -> None:
+    message = posed(1.0, 0.0)
+    message.pose.orientation.z = message.pose.orientation.w = 0.5**0.5
+    shaft, head = pose_things(message).values()
+    tip = max(corners_of(head).tolist(), key=lambda corner: corner[1])
+    assert near(tip[1], 0.3)
+    assert near(corners_of(shaft)[:, 1].min(), 0.0)
+    assert all(part.frame == 'map' for part in (shaft, head))
+
+
+@pytest.mark.parametrize('wrong', [math.nan, math.inf, 1e9])
+def test_what_is_nowhere_is_not_drawn(wrong: float) -> None:
+    assert pose_things(posed(wrong)) == {}
+    odometry = Odometry()
+    odometry.pose.pose.position.x = wrong
+    assert odometry_things(odometry, ()) == {}
+
+
+def test_a_turn_that_nobody_has_filled_in_is_none() -> None:
+    empty = Pose()
+    empty.orientation.w = 0.0
+    assert numbers_of(empty) == HERE
+    empty.orientation.z = 5.0
+    assert numbers_of(empty) == ((0, 0, 0), (0, 0, 1, 0))
+
+
+def test_a_trail_is_a_line_from_its_second_point_on() -> None:
+    odometry = posed(frame='odom')
+    message = Odometry(header=odometry.header)
+    message.pose.pose = odometry.pose
+    assert set(odometry_things(message, [(0, 0, 0)])) == {'shaft', 'head'}
+    line = odometry_things(message, [(0, 0, 0), (1, 0, 0)])['line']
+    assert (line.frame, len(line.points)) == ('odom', 2)
+
+
+def test_a_burger_is_known_by_its_frames_each_by_its_prefix() -> None:
+    parts = ('base_link', 'wheel_left_link', 'wheel_right_link', 'base_scan')
+    names = [prefix + part for prefix in ('', 'robot1/') for part in parts]
+    found = burger_things([*names, 'robot1/camera_link', 'map'])
+    assert list(found) == ['', 'robot1/']
+    assert set(found['robot1/']) == {*(f'robot1/{part}' for part in parts), 'robot1/camera_link'}
+    assert all(part.frame == name for name, part in found['robot1/'].items())
+    # Something else that has a wheel is none.
+    assert burger_things(['base_link', 'wheel_left_link']) == {}
+
+
+def test_walls_stand_on_the_floor_where_the_world_has_them() -> None:
+    world = World([Wall(0, 0, 0, 2)], [Post(1, 1, 0.25)])
+    wall, post = world_things(world, 'odom').values()
+    corners = corners_of(wall)
+    assert near(corners.min(axis=0), (-0.01, -0.01, 0))
+    assert near(corners.max(axis=0)[:2], (0.01, 2.01))
+    assert near(corners_of(post).min(axis=0), (0.75, 0.75, 0))
+
+
+def test_places_are_put_one_after_the_other() -> None:
+    place = composed(((1.0, 0.0, 0.0), LEFT), ((2.0, 0.0, 0.0), LEFT))
+    assert near(place[0], (1, 2, 0))
+    assert near(np.abs(place[1]), (0, 0, 1, 0))
+
+
+def test_things_that_look_the_same_are_known() -> None:
+    points = as_points([(1, 2, 3)])
+    thing = Thing('points', points=points)
+    assert is_same(thing, Thing('points', points=points.copy()))
+    others = [Thing('points'), Thing('points', points=points + 1), Thing('box', points=points)]
+    assert not any(is_same(thing, other) for other in others)
+
+
+@pytest.mark.parametrize('shape', SOLIDS)
+def test_faces_look_outward_and_close(shape: str) -> None:
+    closed, groups = faces_of(Thing(shape, size=(1.0, 2.0, 3.0)), 10)
+    assert closed
+    edges: dict[tuple[tuple[float, ...], ...], int] = {}
+    for face in (face for faces in groups for face in faces):
+        normal = np.cross(face[1] - face[0], face[2] - face[0])
+        assert face.mean(axis=0) @ normal > 0
+        corners = [tuple(np.round(corner, 6) + 0.0) for corner in face]
+        for edge in zip(corners, [*corners[1:], corners[0]], strict=True):
+            edges[edge] = edges.get(edge, 0) + 1
+    # Each edge is met once in each direction.
+    assert all(edges.get((end, begin)) == count == 1 for (begin, end), count in edges.items())
+
+
+def test_a_large_mesh_is_the_box_around_it_in_a_picture() -> None:
+    points = as_points(np.random.default_rng(1).uniform(-1, 1, (30, 3)))
+    closed, groups = faces_of(Thing('mesh', points=points), 10)
+    assert not closed
+    assert len(groups[0]) == 10
+    closed, groups = faces_of(Thing('mesh', points=points), 9)
+    assert closed
+    assert len(groups[0]) == 6
+    assert near(groups[0].max(axis=(0, 1)), points.max(axis=0))
+
+
+def test_the_page_gets_numbers_in_buffers_and_the_rest_in_words() -> None:
+    points = as_points([(1, 2, 3), (math.nan, 0, 0), (4, 5, 6)])
+    buffers = [b'before']
+    colours = np.array([(255, 0, 0, 255), (0, 255, 0, 128)])
+    thing = Thing('points', 'odom', HERE, points=points, colours=colours, width=0.1, metres=True)
+    told = told_to_page(thing, buffers)
+    assert told == {
+        **{'shape': 'points', 'frame': 'odom', 'at': [0, 0, 0, 0, 0, 0, 1], 'size': (1, 1, 1)},
+        **{'colour': 'thing', 'alpha': 1.0, 'points': 1, 'colours': 2},
+        **{'width': 0.1, 'metres': True},
+    }
+    assert np.frombuffer(buffers[1], '<f4').tolist() == [1, 2, 3, 4, 5, 6]
+    assert list(buffers[2]) == [255, 0, 0, 255, 0, 255, 0, 128]
+
+
+# -- the picture ----------------------------------------------------------------------------------
+
+PLACES = {'odom': HERE, 'base_link': ((1.0, 0.0, 0.0), LEFT)}
+
+
+def everything() -> list[Thing]:
+    line = as_points([(0, 0, 0), (1, 1, 0)])
+    return [
+        *(Thing(shape, 'base_link', ((0.1 * i, 0, 0.1), LEFT)) for i, shape in enumerate(SOLIDS)),
+        Thing('mesh', points=as_points([(0, 0, 0), (1, 0, 0), (0, 1, 0)]), alpha=0.5),
+        Thing('line', points=line, colour='path'),
+        Thing('lines', points=line, colour='#123456'),
+        Thing('points', points=line, colour='laser'),
+        Thing('text', text='<script>'),
+        *arrow('odom', HERE, 0.3, 0.02, colour='goal'),
+        Thing('box', 'nowhere', colour='#010203'),
+    ]
+
+
+def test_picture_is_the_same_for_the_same_scene_and_escapes_words() -> None:
+    picture = to_svg(everything(), PLACES, 'A <b> scene')
+    assert picture == to_svg(everything(), PLACES, 'A <b> scene')
+    texts = [each.text for each in ElementTree.fromstring(picture).iter() if each.text]
+    assert {'A <b> scene', '<script>', 'odom', 'base_link'} <= set(texts)
+    for colour in ('#2e7d32', '#123456', '#c62828'):
+        assert f'stroke="{colour}"' in picture
+    # What nobody knows the place of is left out.
+    assert '#0101' not in picture
+    assert 'odom<' not in to_svg([], PLACES, '', axes=False, grid=False)
+
+
+def test_what_is_near_is_drawn_over_what_is_far() -> None:
+    camera = camera_for([], {'odom': HERE})
+    boxes = [
+        Thing('box', place=((x, 0.0, 0.0), HERE[1]), size=(0.1,) * 3, colour=colour)
+        for x, colour in ((0.5, '#ff0000'), (-0.5, '#0000ff'))
+    ]
+    assert camera.seen([boxes[0].place[0]])[0, 2] > camera.seen([boxes[1].place[0]])[0, 2]
+    for order in (boxes, boxes[::-1]):
+        drawn = to_svg(order, {'odom': HERE}, '', axes=False, grid=False)
+        far, close = (re.findall(fill, drawn) for fill in ('fill="#..0000', 'fill="#0000..'))
+        assert min(len(far), len(close)) >= 2
+        assert drawn.rindex(far[-1]) < drawn.index(close[0])
+
+
+def test_all_is_in_the_picture_also_what_is_large() -> None:
+    for size in (0.01, 1.0, 30.0):
+        box = Thing('box', size=(size, size, size))
+        camera = camera_for([box], {})
+        at = camera.on_paper(camera.seen(corners_of(box)))
+        assert (at > 0).all()
+        assert (at < (WIDTH, HEIGHT)).all()
+        assert camera.seen(corners_of(box))[:, 2].min() > 0
+
+
+def test_a_frame_that_is_followed_is_in_the_middle_and_nearer() -> None:
+    things = [Thing('box', size=(5.0, 5.0, 0.1))]
+    far, close = camera_for(things, PLACES), camera_for(things, PLACES, 'base_link')
+    assert near(close.on_paper(close.seen([(1.0, 0.0, 0.0)]))[0], (WIDTH / 2, HEIGHT / 2))
+    assert close.distance < far.distance / 2
+
+
+def test_what_lies_behind_the_eye_is_cut_off() -> None:
+    line = Thing('line', points=as_points([(0, 0, 0), (-400, -400, 0)]), colour='path')
+    drawn = to_svg([line], {'odom': HERE}, '', axes=False, grid=False)
+    assert 'nan' not in drawn
+    assert 'stroke="#2e7d32"' in drawn
+
+
+def test_the_page_has_a_colour_for_each_name() -> None:
+    from labkit.views.scene_picture import COLOURS
+    from labkit.views.widget import page_files
+
+    style = page_files('scene')[1]
+    assert [name for name in COLOURS if f'--labkit-{name}:' not in style] == []
