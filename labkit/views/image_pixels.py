@@ -75,10 +75,10 @@ def picture_of(message: Image) -> Picture:
     return Picture(pixels, words)
 
 
-def to_jpeg(picture: Picture) -> bytes:
-    """Return an image as a JPEG, scaled down for a page."""
+def to_jpeg(picture: Picture, largest: tuple[int, int] = LARGEST) -> bytes:
+    """Return an image as a JPEG, scaled down for a page to a width and a height, px."""
     image = Pixels.fromarray(picture.pixels)
-    image.thumbnail(LARGEST)
+    image.thumbnail(largest)
     return _saved(image, format='JPEG', quality=QUALITY)
 
 

@@ -71,6 +71,35 @@ class Names {
   }
 }
 
+// What cameras see, below in a corner.
+class Insets {
+  constructor() {
+    this.place = element('div', { className: 'labkit-scene-pictures' });
+    this.known = new Map();
+  }
+
+  take(topic, bytes) {
+    if (!this.known.has(topic)) {
+      const picture = element('img', { alt: `Picture of ${topic}` });
+      const figure = element('figure', {}, picture, element('figcaption', { textContent: topic }));
+      this.place.append(figure);
+      this.known.set(topic, { picture, figure });
+    }
+    showJpeg(this.known.get(topic).picture, bytes);
+  }
+
+  // Only those that are on.
+  keep(topics) {
+    for (const [topic, { picture, figure }] of this.known) {
+      if (!topics.includes(topic)) {
+        showJpeg(picture, null);
+        figure.remove();
+        this.known.delete(topic);
+      }
+    }
+  }
+}
+
 // The list of what is shown, with the frames that stand still and are followed.
 function displayPanel(camera, redraw, send) {
   const list = element('ul');
@@ -219,6 +248,7 @@ function render({ model, el }) {
   const frames = new Map();
   const palette = new Palette(canvas);
   const names = new Names();
+  const insets = new Insets();
   let drawing = null;
   try {
     drawing = new SceneDrawing(canvas);
@@ -265,15 +295,19 @@ function render({ model, el }) {
     if (news.all || news.things) includeAll(camera, drawing, frames);
     if (news.displays) {
       panel.show(news.displays);
+      insets.keep(news.displays.filter(([, on]) => on).map(([name]) => name));
       const isOn = (name) => news.displays.some(([one, on]) => one === name && on);
       Object.assign(shown, { axes: isOn('frames'), grid: isOn('grid') });
+    }
+    for (const [topic, index] of Object.entries(news.pictures ?? {})) {
+      insets.take(topic, buffers[index]);
     }
     if (news.text !== undefined) setText(words, news.text || news.empty || '');
     if (news.frames || news.things || news.displays || news.fixed !== undefined) redraw();
     if (news.fresh) comeIntoView(el);
   });
   el.append(element('div', { className: 'labkit-scene-space' },
-    canvas, names.place, panel.place, buttons.place), words, note);
+    canvas, names.place, insets.place, panel.place, buttons.place), words, note);
   if (!drawing) say(NO_WEBGL);
   pointAtScene(canvas, camera, redraw);
   canvas.addEventListener('keydown', (event) => {
@@ -307,6 +341,7 @@ function render({ model, el }) {
     document.removeEventListener('fullscreenchange', redraw);
     cancelAnimationFrame(frame);
     end();
+    insets.keep([]);
     drawing?.end();
   };
 }

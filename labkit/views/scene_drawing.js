@@ -3,8 +3,8 @@
 const SIDES = 24;
 const RINGS = 12;
 const ROUND = 2 * Math.PI;
-const AXIS = [0.12, 0.006]; // of the axes of a frame: length and width, m
-const LETTER_PX = 36; // the letters of axes are there if those are as long
+const AXIS = [0.08, 0.004]; // of the axes of a frame: length and width, m
+const LETTER_PX = 40; // the letters of axes are there if those are as long
 const LIFT = 0.03; // of points and lines, towards the eye, m
 const CELLS = 10; // of the grid, to each side
 const LIGHT = '0.34, -0.5, 0.8'; // from where it comes; see scene_picture.py
@@ -319,7 +319,7 @@ class SceneDrawing {
     if (canvas.height !== height) canvas.height = height;
     const view = camera.look(wide, high, frames);
     gl.viewport(0, 0, width, height);
-    gl.clearColor(...colour('ground'), 1);
+    gl.clearColor(...colour('space'), 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     // What this makes of its depth is that of a place so much nearer, but for where it is seen.
     this.lift = 2 * camera.near * LIFT;

@@ -6,7 +6,7 @@ Sizes and colours follow the displays of RViz where it has one: ros2/rviz, rviz_
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from labkit.sim.world import World
 
 __all__ = [
-    'burger_things',
     'odometry_things',
     'path_things',
     'pose_things',
@@ -33,7 +32,7 @@ __all__ = [
 ]
 
 # Length and diameter of an arrow, m, and how large a beam's end is, px.
-ARROW = (0.3, 0.02)
+ARROW = (0.2, 0.012)
 BEAM_PX = 4.0
 PATH_PX, TRAIL_PX = 3.0, 2.0
 # Lines are drawn this far above the floor, m, so that its grid does not cross them.
@@ -41,20 +40,6 @@ ABOVE = 0.003
 # The walls of the simulator are thin lines, and as high as its scanner sees, at least, m. A wall
 # is drawn this thick, m.
 WALL_HEIGHT, WALL_WIDTH = 0.25, 0.02
-# A TurtleBot3 Burger: frame -> shapes of a size, m, at a place in it, m, with a colour. Its robot
-# description names meshes, which no wheel has; these are the shapes that it gives for collisions.
-# Source: ROBOTIS-GIT/turtlebot3, branch jazzy, turtlebot3_description/urdf/
-# turtlebot3_burger.urdf. The camera is a box of our own.
-_BURGER: dict[str, tuple[str, tuple[float, float, float], tuple[float, float, float], str]] = {
-    'base_link': ('box', (0.140, 0.140, 0.143), (-0.032, 0.0, 0.070), 'robot'),
-    'wheel_left_link': ('cylinder', (0.066, 0.066, 0.018), (0.0, 0.0, 0.0), 'tyre'),
-    'wheel_right_link': ('cylinder', (0.066, 0.066, 0.018), (0.0, 0.0, 0.0), 'tyre'),
-    'caster_back_link': ('box', (0.030, 0.009, 0.020), (0.0, 0.001, 0.0), 'tyre'),
-    'base_scan': ('cylinder', (0.110, 0.110, 0.0315), (0.015, 0.0, -0.0065), 'tyre'),
-    'camera_link': ('box', (0.012, 0.026, 0.026), (0.0, 0.0, 0.0), 'accent'),
-}
-# Frames that make a robot a Burger.
-_KNOWN_BY = ('base_link', 'wheel_left_link', 'wheel_right_link', 'base_scan')
 
 
 def scan_points(message: LaserScan) -> Any:
@@ -108,26 +93,6 @@ def odometry_things(message: Odometry, trail: Sequence[Sequence[float]]) -> dict
         points = as_points(trail) + np.array((0, 0, ABOVE), '<f4')
         found['line'] = Thing('line', frame, colour='odometry', points=points, width=TRAIL_PX)
     return found
-
-
-def burger_things(names: Iterable[str]) -> dict[str, dict[str, Thing]]:
-    """Return the parts of each TurtleBot3 Burger that has frames, by the prefix of these.
-
-    Args:
-        names: All frames.
-    """
-    known = set(names)
-    end = _KNOWN_BY[1]
-    prefixes = sorted(name.removesuffix(end) for name in known if name.endswith(end))
-    return {
-        prefix: {
-            prefix + part: Thing(shape, prefix + part, (at, (0.0, 0.0, 0.0, 1.0)), size, colour)
-            for part, (shape, size, at, colour) in _BURGER.items()
-            if prefix + part in known
-        }
-        for prefix in prefixes
-        if all(prefix + part in known for part in _KNOWN_BY)
-    }
 
 
 def world_things(world: World, frame: str) -> dict[str, Thing]:

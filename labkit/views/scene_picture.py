@@ -34,20 +34,16 @@ LEAST_DISTANCE, ROOM, MOST = 0.6, 1.02, 50.0
 FOLLOWED = 3.0
 # Lines of the grid are 1 m apart, and there are so many cells to each side, as in RViz.
 CELLS = 5
-AXIS, AXIS_WIDTH, LEAST_PX = 0.12, 0.006, 0.7
+AXIS, AXIS_WIDTH, LEAST_PX = 0.08, 0.004, 0.7
 # A mesh of more triangles than this is drawn as the box around it.
 MOST_FACES = 3000
 # Where light comes from, and how bright a face is that turns away from it.
 LIGHT, SHADE = np.array((0.34, -0.5, 0.8)), 0.38
 # The colours of the page's light theme; see `scene.css`.
 COLOURS = {
-    'ground': '#ffffff',
     'ink': '#424242',
     'grid': '#e0e0e0',
     'thing': '#9e9e9e',
-    'robot': '#616161',
-    'tyre': '#37474f',
-    'accent': '#ef6c00',
     'wall': '#b0bec5',
     'post': '#90a4ae',
     'laser': '#c62828',

@@ -7,6 +7,7 @@ a frame is sent once.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any
@@ -18,6 +19,7 @@ from labkit.transforms.tree import Place
 
 __all__ = [
     'HERE',
+    'MOST',
     'Thing',
     'arrow',
     'as_points',
@@ -29,6 +31,7 @@ __all__ = [
     'numbers_of',
     'short',
     'told_to_page',
+    'turned_to',
 ]
 
 HERE: Place = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
@@ -113,6 +116,12 @@ def numbers_of(message: Any) -> Place | None:
         return None
     x, y, z, w = (q / length).tolist() if length > 0 else (0.0, 0.0, 0.0, 1.0)
     return at, (x, y, z, w)
+
+
+def turned_to(way: Any) -> Quaternion:
+    """Return the turn that lets the x axis point along a way."""
+    x, y, z = (float(part) for part in way)
+    return from_rpy(0.0, -math.atan2(z, math.hypot(x, y)), math.atan2(y, x))
 
 
 def arrow(

@@ -19,15 +19,10 @@ from labkit.views.feed import subscribed
 from labkit.views.live import helper
 from labkit.views.live_page import REFRESH_SEC, LivePage, Update
 from labkit.views.placed_frames import PlacedFrames
-from labkit.views.scene_displays import (
-    DISPLAYS,
-    Display,
-    RobotDisplay,
-    TopicDisplay,
-    WorldDisplay,
-)
+from labkit.views.scene_displays import Display, TopicDisplay
 from labkit.views.scene_picture import to_svg
 from labkit.views.scene_things import Thing, short, told_to_page
+from labkit.views.scene_topics import DISPLAYS, ImageDisplay, RobotDisplay, WorldDisplay
 
 if TYPE_CHECKING:
     from labkit.sim.turtlebot import Turtlebot
@@ -43,8 +38,9 @@ FIRST_SEC = 3.0
 # Frames that stand still if they are there, as RViz has it, and REP 105.
 STANDING = ('map', 'odom')
 GRID, AXES = 'grid', 'frames'
-# What a frame of a robot's body is called (REP 105).
-BASE = 'base_link'
+# Where robots say what they look like. Some begin when somebody subscribes; that they are there is
+# known from what they say of their joints.
+DESCRIPTION, JOINTS = 'robot_description', 'joint_states'
 # Of more frames the text tells only how many.
 MOST_TOLD = 12
 EMPTY = (
@@ -72,8 +68,7 @@ class SceneView(LivePage):
         self._wanted, self._follow = fixed_frame, follow
         self._chosen = dict.fromkeys(show, True) | dict.fromkeys(hide, False)
         self._frames = PlacedFrames(helper())
-        self._robot = RobotDisplay()
-        self._displays: list[Display] = [Display(GRID), Display(AXES), self._robot]
+        self._displays: list[Display] = [Display(GRID), Display(AXES)]
         if world is not None:
             self._displays.append(WorldDisplay(world))
         for display in self._displays:
@@ -152,20 +147,20 @@ class SceneView(LivePage):
             silent = [feed.silence() for feed in self._frames.heard.feeds if feed.publishers]
             return [' '.join(filter(None, silent)) or EMPTY]
         told = [f'A scene in the frame {self.fixed_frame}.']
-        for base in self._robots(places):
-            name = base.removesuffix(BASE).rstrip('/') or 'Robot'
-            x, y = (two(number) for number in places[base][0][:2])
-            told.append(f'{name} at x = {x} m, y = {y} m.')
+        for robot in self._robots(places):
+            space = robot.name.removesuffix(DESCRIPTION).strip('/')
+            x, y = (two(number) for number in places[robot.root][0][:2])
+            told.append(f'{space or "Robot"} at x = {x} m, y = {y} m.')
         told += filter(None, (display.words() for display in self._displays))
         names = list(places)
         shown = ', '.join(names) if len(names) <= MOST_TOLD else str(len(names))
         told.append(f'Frames: {shown}.')
         return [*told, *self._frames.why.values()]
 
-    def _robots(self, places: dict[str, Place]) -> list[str]:
-        """Return the frames of robots that are drawn."""
-        parts = self._robot.things(self._frames, self.fixed_frame)
-        return [name for name in places if name in parts and name.endswith(BASE)]
+    def _robots(self, places: dict[str, Place]) -> list[RobotDisplay]:
+        """Return the robots that are drawn."""
+        found = (one for one in self._displays if isinstance(one, RobotDisplay) and one.is_on)
+        return [robot for robot in found if robot.root in places]
 
     # -- ROS ------------------------------------------------------------------------------------
 
@@ -184,9 +179,7 @@ class SceneView(LivePage):
 
         def enough() -> bool:
             return heard.is_complete() and all(
-                display.is_heard or not display.feed.publishers or not display.is_sensor
-                for display in topics
-                if display.is_on
+                display.is_heard or not display.is_awaited for display in topics if display.is_on
             )
 
         feeds = [*heard.feeds, *(display.feed for display in topics if display.is_on)]
@@ -212,18 +205,21 @@ class SceneView(LivePage):
         """Add a display for each topic of a known type, and take away those that have gone."""
         self._found_at = time.monotonic()
         node = helper()
-        topics = {
-            topic: types[0]
-            for topic, types in node.get_topic_names_and_types()
-            if len(types) == 1 and types[0] in DISPLAYS and node.count_publishers(topic)
-        }
+        topics: dict[str, type[TopicDisplay]] = {}
+        for topic, types in node.get_topic_names_and_types():
+            if len(types) == 1 and node.count_publishers(topic):
+                space, _, end = topic.rpartition('/')
+                if end in (DESCRIPTION, JOINTS):
+                    topics[f'{space}/{DESCRIPTION}'] = RobotDisplay
+                elif types[0] in DISPLAYS:
+                    topics[topic] = DISPLAYS[types[0]]
         known = {display.name: display for display in self._topics()}
         for topic, display in known.items():
             if topic not in topics:
                 self._displays.remove(display)
                 self._let_listen(display, listen=False)
         for topic in sorted(topics.keys() - known.keys()):
-            kind = DISPLAYS[topics[topic]]
+            kind = topics[topic]
             display = kind(topic, is_on=self._chosen.get(topic, kind.at_first))
             self._displays.append(display)
             self._let_listen(display, listen=display.is_on)
@@ -265,7 +261,7 @@ class SceneView(LivePage):
             'fixed': self.fixed_frame,
             'frames': {name: short(place) for name, place in places.items()},
             'follow': self._follow,
-            'robots': self._robots(places),
+            'robots': [robot.root for robot in self._robots(places)],
             'displays': [[one.name, one.is_on, why.get(one.name, '')] for one in self._displays],
         }
         if everything or now - self._text_sent_at >= TEXT_SEC:
@@ -283,6 +279,15 @@ class SceneView(LivePage):
         if new or gone:
             told_things = {name: told_to_page(thing, buffers) for name, thing in new.items()}
             changes['things'] = told_things | gone
+        pictures = {}
+        for display in self._displays:
+            if isinstance(display, ImageDisplay):
+                jpeg = display.picture(again=everything)
+                if jpeg is not None:
+                    pictures[display.name] = len(buffers)
+                    buffers.append(jpeg)
+        if pictures:
+            changes['pictures'] = pictures
         if everything:
             # Scroll to the view only when its cell was just run.
             changes['fresh'], self._fresh = self._fresh, False
@@ -322,9 +327,9 @@ def scene(
 ) -> SceneView:
     """Show robots and what they see in three dimensions, live, as RViz does.
 
-    It draws what is published: the frames that tf2 hears as axes with names, a TurtleBot3 by its
-    frames, and each topic of laser scans, paths, odometry or poses such as goals. What tf2 can't
-    place is left out, and named with its reason.
+    It draws what is published: the frames that tf2 hears as axes with names, robots by their
+    `robot_description`, and each topic of laser scans, paths, odometry, poses such as goals, or
+    markers. What tf2 can't place is left out, and named with its reason.
 
     Mouse, touch, keys and buttons turn it, move it and come nearer. In its list of displays
     topics are switched on and off, and the frame that stands still, or is followed, is chosen.

@@ -46,7 +46,7 @@ def notebook(open_cells: Callable[..., Notebook]) -> Notebook:
 @pytest.fixture
 def view(notebook: Notebook) -> Locator:
     view = notebook.output('scene').locator('.labkit-scene')
-    expect(view.locator('canvas')).to_have_attribute('data-things', '9')
+    expect(view.locator('canvas')).to_have_attribute('data-things', '21')
     return view
 
 
@@ -101,15 +101,22 @@ def test_it_is_drawn_while_something_changes_and_then_no_more(
     )
     notebook.run_cell('halt')
     rest(notebook, view)
+    expect(view.locator('canvas')).to_have_attribute('data-things', '22')
     expect(view.locator('.labkit-scene-words')).to_contain_text('Laser /scan: ')
     # What is switched off is neither drawn nor heard.
     view.locator('summary').click()
     box = view.get_by_label('/scan')
     box.uncheck()
-    expect(view.locator('canvas')).to_have_attribute('data-things', '9')
+    expect(view.locator('canvas')).to_have_attribute('data-things', '21')
     expect(view.locator('.labkit-scene-words')).not_to_contain_text('Laser')
     assert count_of(view, 'laser') < 50
+    # A camera is heard when it is asked for.
+    view.get_by_label('/camera/image_raw').check()
+    picture = view.get_by_role('img', name='Picture of /camera/image_raw')
+    expect(picture).to_be_visible()
     assert violations(notebook, 'scene') == []
+    view.get_by_label('/camera/image_raw').uncheck()
+    expect(picture).to_have_count(0)
 
 
 def test_mouse_wheel_and_keys_move_it(notebook: Notebook, view: Locator) -> None:
@@ -136,7 +143,7 @@ def test_mouse_wheel_and_keys_move_it(notebook: Notebook, view: Locator) -> None
     for key in ('Shift+ArrowRight', 'ArrowLeft', 'f'):
         page.keyboard.press(key)
     follow = view.locator('.labkit-over-buttons button[aria-pressed]')
-    expect(follow).to_have_text('Follow base_link')
+    expect(follow).to_have_text('Follow base_footprint')
     expect(follow).to_have_attribute('aria-pressed', 'true')
     page.keyboard.press('0')
     expect(follow).to_have_attribute('aria-pressed', 'false')
@@ -157,7 +164,7 @@ def test_in_the_panel_and_after_its_end(notebook: Notebook, view: Locator) -> No
     notebook.run_cell('dock')
     docked = notebook.page.locator('.jupyterlab-sidecar .labkit-scene')
     # With four walls and three posts.
-    expect(docked.locator('canvas')).to_have_attribute('data-things', '16')
+    expect(docked.locator('canvas')).to_have_attribute('data-things', '28')
     notebook.execute('apputils:change-theme', theme='JupyterLab Dark')
     expect(docked.locator('canvas')).to_be_visible()
     assert count_of(docked, 'wall') + count_of(docked, 'laser') > 20

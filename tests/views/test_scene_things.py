@@ -12,10 +12,12 @@ from geometry_msgs.msg import Pose, PoseStamped
 from nav_msgs.msg import Odometry, Path
 from sensor_msgs.msg import LaserScan
 
+from labkit.descriptions.urdf import read
+from labkit.errors import LabError
 from labkit.sim.world import Post, Wall, World
 from labkit.transforms.rotations import from_rpy
+from labkit.views.scene_meshes import thinned, triangles_of
 from labkit.views.scene_messages import (
-    burger_things,
     odometry_things,
     path_things,
     pose_things,
@@ -23,6 +25,7 @@ from labkit.views.scene_messages import (
     world_things,
 )
 from labkit.views.scene_picture import HEIGHT, WIDTH, camera_for, to_svg
+from labkit.views.scene_robot import robot_things
 from labkit.views.scene_shapes import faces_of
 from labkit.views.scene_things import (
     HERE,
@@ -82,7 +85,7 @@ def test_a_goal_is_an_arrow_that_points_where_it_looks() -> None:
     message.pose.orientation.z = message.pose.orientation.w = 0.5**0.5
     shaft, head = pose_things(message).values()
     tip = max(corners_of(head).tolist(), key=lambda corner: corner[1])
-    assert near(tip[1], 0.3)
+    assert near(tip[1], 0.2)
     assert near(corners_of(shaft)[:, 1].min(), 0.0)
     assert all(part.frame == 'map' for part in (shaft, head))
 
@@ -110,17 +113,6 @@ def test_a_trail_is_a_line_from_its_second_point_on() -> None:
     assert set(odometry_things(message, [(0, 0, 0)])) == {'shaft', 'head'}
     line = odometry_things(message, [(0, 0, 0), (1, 0, 0)])['line']
     assert (line.frame, len(line.points)) == ('odom', 2)
-
-
-def test_a_burger_is_known_by_its_frames_each_by_its_prefix() -> None:
-    parts = ('base_link', 'wheel_left_link', 'wheel_right_link', 'base_scan')
-    names = [prefix + part for prefix in ('', 'robot1/') for part in parts]
-    found = burger_things([*names, 'robot1/camera_link', 'map'])
-    assert list(found) == ['', 'robot1/']
-    assert set(found['robot1/']) == {*(f'robot1/{part}' for part in parts), 'robot1/camera_link'}
-    assert all(part.frame == name for name, part in found['robot1/'].items())
-    # Something else that has a wheel is none.
-    assert burger_things(['base_link', 'wheel_left_link']) == {}
 
 
 def test_walls_stand_on_the_floor_where_the_world_has_them() -> None:
@@ -185,6 +177,98 @@ def test_the_page_gets_numbers_in_buffers_and_the_rest_in_words() -> None:
     }
     assert np.frombuffer(buffers[1], '<f4').tolist() == [1, 2, 3, 4, 5, 6]
     assert list(buffers[2]) == [255, 0, 0, 255, 0, 255, 0, 128]
+
+
+# -- robots and meshes ----------------------------------------------------------------------------
+
+URDF = """
+<robot name="one">
+  <material name="red"><color rgba="1 0 0 0.5"/></material>
+  <link name="base">
+    <visual>
+      <origin xyz="0 0 1"/><geometry><box size="1 2 3"/></geometry><material name="red"/>
+    </visual>
+    <visual><geometry><sphere radius="2"/></geometry></visual>
+  </link>
+  <link name="hand">
+    <visual><geometry><mesh filename="{mesh}" scale="2 2 2"/></geometry></visual>
+    <collision><geometry><cylinder radius="0.5" length="3"/></geometry></collision>
+  </link>
+  <joint name="j" type="fixed"><parent link="base"/><child link="hand"/></joint>
+</robot>
+"""
+TRIANGLES = np.array([[(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 0, 1), (1, 0, 1), (0, 1, 1)]])
+
+
+def binary(triangles: object) -> bytes:
+    rows = np.asarray(triangles, '<f4').reshape(-1, 9)
+    parts = [bytes(12) + row.tobytes() + bytes(2) for row in rows]
+    return b'solid'.ljust(80) + len(rows).to_bytes(4, 'little') + b''.join(parts)
+
+
+def text(triangles: object) -> bytes:
+    corners = ''.join(f'vertex {x} {y} {z}\n' for x, y, z in np.asarray(triangles).reshape(-1, 3))
+    return f'solid it\nfacet normal 0 0 1\nouter loop\n{corners}endloop\n'.encode()
+
+
+def test_a_robot_is_the_shapes_of_its_links(tmp_path) -> None:
+    path = tmp_path / 'hand.stl'
+    path.write_bytes(binary(TRIANGLES))
+    things, wrong = robot_things(read(URDF.format(mesh=path)))
+    assert wrong == []
+    assert list(things) == ['base', 'base 1', 'hand']
+    box, ball, mesh = things.values()
+    assert (box.shape, box.frame, box.size, box.colour, box.alpha) == (
+        *('box', 'base', (1, 2, 3), '#ff0000', 0.5),
+    )
+    assert near(box.place[0], (0, 0, 1))
+    assert (ball.shape, ball.size, ball.colour) == ('sphere', (4, 4, 4), '#b2b2b2')
+    assert (mesh.shape, mesh.frame, mesh.size) == ('mesh', 'hand', (2, 2, 2))
+    assert near(corners_of(mesh).max(axis=0), (2, 2, 2))
+
+
+@pytest.mark.parametrize(
+    ('name', 'words'),
+    [
+        ('/nowhere/hand.stl', 'There is no file for the mesh'),
+        ('/etc/hosts', "The mesh 'hosts' is not drawn: only files of STL are."),
+        ('http://example.org/hand.stl', 'is not loaded'),
+    ],
+)
+def test_in_place_of_a_mesh_is_what_others_touch_with_the_reason(name: str, words: str) -> None:
+    things, (wrong,) = robot_things(read(URDF.format(mesh=name)))
+    assert words in wrong
+    assert (things['hand'].shape, things['hand'].size) == ('cylinder', (1, 1, 3))
+
+
+@pytest.mark.parametrize('data', [binary(TRIANGLES), text(TRIANGLES)])
+def test_meshes_are_read_in_both_formats(data: bytes) -> None:
+    assert near(triangles_of(data, 'it.stl'), TRIANGLES)
+
+
+@pytest.mark.parametrize(
+    'data', [b'', b'solid', b'vertex 1 2', binary(TRIANGLES)[:-1], b'vertex a b c', bytes(84)]
+)
+def test_what_is_no_mesh_is_refused_in_words(data: bytes) -> None:
+    with pytest.raises(LabError, match=r"'it\.stl' is not drawn: it is no STL, or it is empty"):
+        triangles_of(data, 'it.stl')
+
+
+def test_a_mesh_of_many_triangles_becomes_one_of_few_that_is_as_large() -> None:
+    # A sphere of 20,000 triangles.
+    ball = Thing('mesh', points=np.zeros((0, 3)))
+    assert faces_of(ball, 10) == (False, [])
+    u, v = np.meshgrid(np.linspace(0.01, 3.13, 101), np.linspace(0, 2 * math.pi, 101))
+    at = np.stack([np.sin(u) * np.cos(v), np.sin(u) * np.sin(v), np.cos(u)], axis=-1)
+    a, b, c, d = at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]
+    many = np.concatenate([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)])
+    many = many.reshape(-1, 3, 3)
+    few = thinned(many, 3000).reshape(-1, 3, 3)
+    assert 1000 < len(few) <= 3000
+    assert near(few.min(axis=(0, 1)).round(1), (-1, -1, -1))
+    assert np.abs(np.linalg.norm(few, axis=2) - 1).max() < 0.1
+    # A small one stays as it is.
+    assert near(thinned(TRIANGLES, 3000).reshape(-1, 3, 3), TRIANGLES)
 
 
 # -- the picture ----------------------------------------------------------------------------------
