@@ -214,8 +214,12 @@ def _said_twice(edges: Sequence[FrameEdge]) -> Iterator[Trouble]:
         if len(edge.authors) > 1 and edge.is_certain:
             yield Trouble(
                 (edge.child,),
-                f'{edge.source} both publish where {edge.child} is in {edge.parent}: it jumps '
-                'between what they say.',
+                f'{edge.source} both publish where {edge.child} is in {edge.parent}: '
+                + (
+                    'the last one that is heard holds.'
+                    if edge.is_static
+                    else 'it jumps between what they say.'
+                ),
                 'Let only one of them publish it.',
             )
 

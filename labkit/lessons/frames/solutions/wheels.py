@@ -43,7 +43,8 @@ class WheelDriver(Node):
         odom.pose.pose.orientation.z = math.sin(self.heading / 2)
         odom.pose.pose.orientation.w = math.cos(self.heading / 2)
         self.publisher.publish(odom)
-        transform = TransformStamped(header=odom.header, child_frame_id=odom.child_frame_id)
+        transform = TransformStamped(header=odom.header)
+        transform.child_frame_id = odom.child_frame_id
         transform.transform.translation.x = odom.pose.pose.position.x
         transform.transform.translation.y = odom.pose.pose.position.y
         transform.transform.rotation = odom.pose.pose.orientation

@@ -51,7 +51,7 @@ ANSWERS = [
             "        transform.header.frame_id = 'base_footprint'\n"
             "        transform.child_frame_id = 'odom'\n" + SEND,
         ),
-        ('TransformStamped(header=odom.header,', 'TransformStamped(header=copy(odom.header),'),
+        ('TransformStamped(header=odom.header)', 'TransformStamped(header=copy(odom.header))'),
         ('import math\n', 'import math\nfrom copy import copy\n'),
     ),
     wrong(
