@@ -293,25 +293,26 @@ def _loops(scene: Scene, tree: _Tree, said: list[_Said]) -> Iterator[Fault]:
         loop = way[way.index(frame) :]
         steps = ', '.join(f'{each} is in {tree.parents[each]}' for each in loop[:5])
         is_kept = tree.listener is not None and any(
-            edge.child in loop and _is_old(scene, edge, said) for edge in tree.listener.edges
+            edge.child in loop and _may_be_old(scene, edge, said) for edge in tree.listener.edges
         )
         yield Fault(
             LOOP,
             _menders(scene, tree, () if is_kept else said, set(loop)),
             min(loop),
             f'The frames go round in a loop: {steps}. Lookups with them fail.',
-            # It may be mended meanwhile, and a buffer keeps what it has heard.
-            'Nobody says all of that any more. clear() empties the Buffer.' if is_kept else '',
+            'It may be mended meanwhile: a Buffer keeps what it has heard. A new one shows it.'
+            * is_kept,
             aloud=not is_kept,
         )
 
 
-def _is_old(scene: Scene, edge: Edge, said: Sequence[_Said]) -> bool:
-    """Return whether a listener has heard it once, and nobody says so any more."""
+def _may_be_old(scene: Scene, edge: Edge, said: Sequence[_Said]) -> bool:
+    """Return whether a listener has heard it once, and maybe nobody says so any more."""
     if edge.latest and scene.now - edge.heard > COUNTS_SEC:
         return True
     says_so = {(each.sent.child, each.sent.parent) for each in said}
-    return _knows_all(scene) and (edge.child, edge.parent) not in says_so
+    # What is fixed is said once, and of other processes nobody knows whether they are still there.
+    return (not edge.latest or _knows_all(scene)) and (edge.child, edge.parent) not in says_so
 
 
 def _menders(
