@@ -99,7 +99,6 @@ _UNAVAILABLE = {
             ('image_transport_py', 'what sends images in compressed form'),
         )
     },
-    'xacro': ('a language in which robots are described. Here, `pip install xacro` has it', ''),
     'nav2_common': ('what launch files of Nav2 are written with', _REAL.format('nav2-common')),
     'urdf_parser_py': ('a reader of descriptions of robots', _REAL.format('urdfdom-py')),
     **dict.fromkeys(

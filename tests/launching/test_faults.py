@@ -159,7 +159,6 @@ PYTHON = [
         4,
         'target_action of OnProcessExit is an action of the class ExecuteLocal',
     ),
-    ('import launch\nimport xacro', 2, 'pip install xacro'),
     ('import launch_testing', 1, 'what launch files are tested with'),
     ('from nav2_common.launch import RewrittenYaml', 1, 'apt install ros-jazzy-nav2-common'),
     ('\nimport lab_not_there', 2, 'ModuleNotFoundError'),

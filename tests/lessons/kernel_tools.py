@@ -97,14 +97,7 @@ def clean() -> None:
     Files that it has written are removed, so that the next one has to write its own. Those that
     it has changed are as before.
     """
-    processes = [child for child in _children() if child.pid not in _children_before]
-    for process in processes:
-        with contextlib.suppress(psutil.NoSuchProcess):
-            process.send_signal(signal.SIGINT)
-    _, busy = psutil.wait_procs(processes, timeout=5)
-    for process in busy:
-        process.kill()
-    psutil.wait_procs(busy)
+    _end_processes()
     for script in _scripts:
         script.wait()
     _scripts.clear()
@@ -112,7 +105,8 @@ def clean() -> None:
         if node not in _before and node is not runtime.helper:
             remove(node)
     # Between two callbacks: one of the last answer may sleep, and is not to be taken for the next.
-    runtime.wait(_alone, 25.0)
+    if not runtime.wait(_alone, 25.0):
+        _end_processes()  # one that a shell was about to start
     assert wait_for(_alone, TIMEOUT_SEC), f'there are still others in {_graph()}'
     for path in sorted(_files() - _files_before.keys(), reverse=True):
         if path.is_dir() and not path.is_symlink():
@@ -123,6 +117,17 @@ def clean() -> None:
         if content is not None and content != _content(path):
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(content)
+
+
+def _end_processes() -> None:
+    processes = [child for child in _children() if child.pid not in _children_before]
+    for process in processes:
+        with contextlib.suppress(psutil.NoSuchProcess):
+            process.send_signal(signal.SIGINT)
+    _, busy = psutil.wait_procs(processes, timeout=5)
+    for process in busy:
+        process.kill()
+    psutil.wait_procs(busy)
 
 
 def forget_names() -> None:
@@ -230,7 +235,9 @@ def _children() -> list[psutil.Process]:
     own = psutil.Process()
     children = own.children(recursive=True)
     for process in psutil.process_iter():
-        with contextlib.suppress(ProcessLookupError):
-            if os.getpgid(process.pid) == os.getpgrp() and process != own:
+        with contextlib.suppress(ProcessLookupError, psutil.Error):
+            # A shell that has ended leaves them to nobody, and to a group of its own.
+            is_ours = os.getpgid(process.pid) == os.getpgrp() or process.cwd() == str(_HERE)
+            if is_ours and process != own:
                 children.append(process)
     return list(dict.fromkeys(children))

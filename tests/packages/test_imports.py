@@ -9,7 +9,7 @@ from labkit.packages.imports import _UNAVAILABLE
 
 def test_what_tutorials_import_has_a_sentence():
     parts = 'tf2_kdl launch_xml launch_testing moveit moveit_commander'
-    others = 'rosidl_runtime_py ros2run rqt_gui actionlib diagnostic_updater xacro'
+    others = 'rosidl_runtime_py ros2run rqt_gui actionlib diagnostic_updater'
     assert {*parts.split(), *others.split()} <= _UNAVAILABLE.keys()
 
 

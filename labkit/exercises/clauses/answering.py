@@ -531,7 +531,7 @@ class Answers(GraphClause):
             named = [each for each in self.mistakes if each.model is not anything]
             found = recognise(named, lambda each: each.answer(silent[-1]) in came)
             mistake = found if found is not None else NOT_DUE.of(value=show(silent[-1:]))
-        elif self._has_a_timer(evidence) and _between(heard, left):
+        elif _between(heard, left) and self._has_a_timer(evidence):
             mistake = REPEATED
         elif _repeats(heard, left) >= MANY:
             known = evidence.probe.node_object(evidence.subscription(self.inner, self.by).node)
