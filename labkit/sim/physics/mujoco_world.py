@@ -19,7 +19,7 @@ from labkit.sim.world import Wall, World, room
 if TYPE_CHECKING:
     import mujoco
 
-__all__ = ['MOST_BEHIND', 'PhysicsWorld', 'Rider', 'yard']
+__all__ = ['MOST_BEHIND', 'PhysicsWorld', 'Rider', 'outline', 'yard']
 
 # Steps between two looks at wheels and contacts, and at motors that change their speed.
 CHUNK, SHORT = 16, 4
@@ -179,7 +179,7 @@ class PhysicsWorld:
         outlines = [
             wall
             for pose, crate in zip(self.crate_poses(), self.crates, strict=True)
-            for wall in _outline(pose, crate.size / 2)
+            for wall in outline(pose, crate.size / 2, crate.size / 2)
         ]
         inner = self.plan.walls[len(self.plan.corners) :] if self.plan.corners else self.plan.walls
         found = World((*inner, *outlines), self.plan.posts, corners=self.plan.corners)
@@ -225,10 +225,14 @@ def _is_of(name: str, robot: str) -> bool:
     return name.startswith(f'{robot}:')
 
 
-def _outline(pose: Pose, half: float) -> list[Wall]:
-    cos, sin = math.cos(pose.yaw) * half, math.sin(pose.yaw) * half
+def outline(pose: Pose, half_x: float, half_y: float) -> list[Wall]:
+    """Return walls around a rectangle, m."""
+    cos, sin = math.cos(pose.yaw), math.sin(pose.yaw)
     corners = [
-        (pose.x + a * cos - b * sin, pose.y + a * sin + b * cos)
+        (
+            pose.x + a * half_x * cos - b * half_y * sin,
+            pose.y + a * half_x * sin + b * half_y * cos,
+        )
         for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))
     ]
     return [Wall(*a, *b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
