@@ -1,11 +1,10 @@
 // A slider for each joint, as the browser has them: mouse, touch and arrow keys move it.
 
-const STEPS = 1000;
-
 function jointSlider(row, move) {
   const value = element('output');
+  // With steps it may not reach its end: they are rounded. Keys move it by a hundredth anyway.
   const slider = element('input', {
-    type: 'range', min: row.lower, max: row.upper, step: (row.upper - row.lower) / STEPS,
+    type: 'range', min: row.lower, max: row.upper, step: 'any',
   });
   slider.setAttribute('aria-label', `${row.name}, ${row.unit}`);
   const show = (position) => {
