@@ -38,7 +38,7 @@ def test_keys_move_joints(open_cells: Callable[..., Notebook], tmp_path: Any) ->
     notebook.screenshot(tmp_path / 'sliders.png')
     far.focus()
     notebook.page.keyboard.press('End')
-    assert notebook.run_cell('wait').splitlines()[-1].startswith('far       0.600 m')
+    assert notebook.run_cell('wait').splitlines()[-1].startswith('far      0.600 m')
     turn.focus()
     notebook.page.keyboard.press('Home')
     expect(turn).to_have_attribute('aria-valuetext', '-3.142 rad')
