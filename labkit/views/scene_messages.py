@@ -31,8 +31,8 @@ __all__ = [
     'world_things',
 ]
 
-# Length and diameter of an arrow, m, and how large a beam's end is, px.
-ARROW = (0.2, 0.012)
+# Length and diameter of the arrows of a pose and of odometry, m; how large a beam's end is, px.
+GOAL, ODOMETRY = (0.4, 0.03), (0.2, 0.012)
 BEAM_PX = 4.0
 PATH_PX, TRAIL_PX = 3.0, 2.0
 # Lines are drawn this far above the floor, m, so that its grid does not cross them.
@@ -78,7 +78,7 @@ def pose_things(message: PoseStamped) -> dict[str, Thing]:
     place = numbers_of(message.pose)
     if place is None:
         return {}
-    shaft, head = arrow(message.header.frame_id, place, *ARROW, colour='goal')
+    shaft, head = arrow(message.header.frame_id, place, *GOAL, colour='goal')
     return {'shaft': shaft, 'head': head}
 
 
@@ -87,7 +87,7 @@ def odometry_things(message: Odometry, trail: Sequence[Sequence[float]]) -> dict
     frame, found = message.header.frame_id, {}
     place = numbers_of(message.pose.pose)
     if place is not None:
-        shaft, head = arrow(frame, place, *ARROW, colour='odometry')
+        shaft, head = arrow(frame, place, *ODOMETRY, colour='odometry')
         found = {'shaft': shaft, 'head': head}
     if len(trail) > 1:
         points = as_points(trail) + np.array((0, 0, ABOVE), '<f4')
