@@ -306,8 +306,9 @@ function render({ model, el }) {
     if (news.frames || news.things || news.displays || news.fixed !== undefined) redraw();
     if (news.fresh) comeIntoView(el);
   });
-  el.append(element('div', { className: 'labkit-scene-space' },
-    canvas, names.place, insets.place, panel.place, buttons.place), words, note);
+  const over = element('div', { className: 'labkit-scene-over' },
+    names.place, insets.place, panel.place, buttons.place);
+  el.append(element('div', { className: 'labkit-scene-space' }, canvas, over), words, note);
   if (!drawing) say(NO_WEBGL);
   pointAtScene(canvas, camera, redraw);
   canvas.addEventListener('keydown', (event) => {
