@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import json
 import shutil
 import subprocess
 import sys
@@ -17,6 +18,7 @@ from labkit.lessons.package.made import BROKEN, make_broken
 from labkit.lessons.your_own_machine.made import COURIER, make_courier
 from labkit.packages.skeleton import Part, Skeleton
 
+NOTEBOOKS = Path(__file__).resolve().parents[2] / 'notebooks'
 WORKSPACE = """
 from labkit.lessons.package.learner_workspace import make_workspace, workspace
 
@@ -52,6 +54,28 @@ def test_the_workspace_of_the_learner_is_found_beside_the_notebook_and_from_insi
     ]:
         monkeypatch.chdir(folder)
         assert workspace() == found, folder
+
+
+def test_own_programs_of_earlier_lessons_become_part_of_the_package(tmp_path, monkeypatch):
+    (path,) = NOTEBOOKS.glob('11_*.ipynb')
+    cells = json.loads(path.read_text('utf-8'))['cells']
+    (entry,) = (''.join(cell['source']) for cell in cells if cell['id'] == 'entry')
+    name = 'robot_basics_lab'
+    place = tmp_path / 'ros2_ws' / 'src' / name
+    for part in Skeleton(name=name, maintainer='me', email='me@example.org').parts():
+        part.write(place)
+    own = (place / name / 'talker.py', tmp_path / 'nodes' / 'ear.py')
+    for path in own:
+        path.parent.mkdir(exist_ok=True)
+        path.write_text('def main(): ...')
+    monkeypatch.chdir(tmp_path)
+    for _ in range(2):  # a cell may be run again
+        exec(entry, {})
+    assert (place / name / 'ear.py').is_file()
+    setup = (place / 'setup.py').read_text()
+    compile(setup, 'setup.py', 'exec')
+    for path in own:
+        assert setup.count(f"'{path.stem} = {name}.{path.stem}:main',") == 1
 
 
 def test_the_broken_package_is_made_anew_only_when_that_is_asked_for(tmp_path, monkeypatch):

@@ -29,6 +29,16 @@ def main():
         node.destroy_node()
         rclpy.try_shutdown()
 END
+# A new file, ears_lab/launch/ears.launch.xml:
+mkdir ears_lab/launch
+cat > ears_lab/launch/ears.launch.xml << END
+<launch>
+  <node pkg="ears_lab" exec="listener"/>
+</launch>
+END
+# In the editor, one more line in data_files of ears_lab/setup.py. The same by a command:
+line="('share/ears_lab/launch', ['launch/ears.launch.xml']),"
+sed -i "s|data_files=\[|&$line|" ears_lab/setup.py
 # In the terminal:
 cd ..
 colcon build --packages-select ears_lab
