@@ -264,8 +264,7 @@ function render({ model, el }) {
   const showNote = () => {
     const slow = waiting && performance.now() - askedAt > SLOW_MS;
     const words = [state.why, state.refused, slow ? GONE : ''];
-    setText(note, state.ended || words.filter(Boolean).join(' '));
-    note.hidden = !note.textContent;
+    sayIn(note, state.ended || words.filter(Boolean).join(' '));
   };
   // Whether the kernel has something to tell that belongs to the time of the slider.
   const open = () => (state.topic || state.scans) && !state.ended

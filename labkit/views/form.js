@@ -26,10 +26,7 @@ function makeForm(model, el, name, lose = () => {}) {
   const unmake = makeView(model, el);
   const note = makeNote();
   el.append(note);
-  const sayGone = (isGone) => {
-    setText(note, isGone ? GONE : '');
-    note.hidden = !isGone;
-  };
+  const sayGone = (isGone) => sayIn(note, isGone ? GONE : '');
   const { send, disconnect } = connect(model, () => {
     sayGone(true);
     lose();

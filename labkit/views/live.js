@@ -162,11 +162,19 @@ function makeRoom(el) {
   return () => watch.disconnect();
 }
 
-// The place where a view says what is wrong.
+// The place where a view says what is wrong. Under a cell whose kernel is gone it has a button.
 function makeNote() {
-  const note = element('p', { className: 'labkit-live-note', hidden: true });
+  const back = bringBackButton();
+  const note = element('p', { className: 'labkit-live-note', hidden: true }, element('span'), back);
   note.setAttribute('role', 'status');
   return note;
+}
+
+function sayIn(note, text) {
+  const [words, back] = note.children;
+  setText(words, text);
+  back.hidden = text !== GONE || !note.closest('.jp-Cell');
+  note.hidden = !text;
 }
 
 // Hand over what the kernel sends, and tell the kernel that somebody looks on, again and again.
@@ -184,8 +192,7 @@ function follow(model, el, take) {
   };
   const show = () => {
     const quiet = performance.now() - heardAt > QUIET_MS;
-    setText(note, ended || (quiet ? GONE : why));
-    note.hidden = !note.textContent;
+    sayIn(note, ended || (quiet ? GONE : why));
   };
   const say = (words) => {
     why = words;

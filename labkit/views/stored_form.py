@@ -73,8 +73,9 @@ class Stored:
         assert self._shown is not None
         style = f'<style class="labkit-style">{_style(self._mark)}</style>'
         if 'text/html' in self._shown:
-            card = f'<div class="labkit-kept {self._mark}-stored">{self._shown["text/html"]}</div>'
-            return {**self._shown, 'text/html': style + card}
+            card = f'{self._shown["text/html"]}<div>{_button()}</div>'
+            kept = f'<div class="labkit-kept {self._mark}-stored">{card}</div>'
+            return {**self._shown, 'text/html': style + kept}
         text = self._shown['text/plain']
         # Reached by Tab: what is long scrolls.
         body = f'<pre tabindex="0">{html.escape(text)}</pre>'
@@ -84,12 +85,27 @@ class Stored:
                 body = picture(text, as_source(kind, data))
         docked = DOCKED.format(self._name)
         now = datetime.now()
-        words = f'Stored on {now.day} {now:%B %Y} at {now:%H:%M:%S}. <span>{TODO}</span>'
+        words = (
+            f'Stored on {now.day} {now:%B %Y} at {now:%H:%M:%S}. <span>{TODO}</span> {_button()}'
+        )
         page = (
             f'{style}<p class="{self._mark}-docked" hidden>{docked}</p>'
             f'<div class="labkit-stored {self._mark}-stored"><p>{words}</p>{body}</div>'
         )
         return {**self._shown, 'text/html': page}
+
+
+@functools.lru_cache(maxsize=1)
+def _button() -> str:
+    """Return a script that puts a button where it stands; without scripts there is none."""
+    script = Path(__file__).with_name('bring_back.js').read_text(encoding='utf-8')
+    # JupyterLab would take Enter for the cell.
+    place = (
+        'const place = document.currentScript.parentElement;\n'
+        "place.setAttribute('data-lm-suppress-shortcuts', 'true');\n"
+        'place.append(bringBackButton());'
+    )
+    return f'<script>(() => {{\n{script}\n{place}\n}})();</script>'
 
 
 @functools.lru_cache(maxsize=1)

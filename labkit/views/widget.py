@@ -34,12 +34,12 @@ def page_files(name: str) -> tuple[str, str]:
         name: Its files are `NAME.js` and `NAME.css`; shared ones come first.
     """
     folder = Path(__file__).parent
-    parts = ('live', *_SHARED.get(name, ()), name)
+    parts = ('bring_back', 'live', *_SHARED.get(name, ()), name)
     script, style = (
         '\n'.join(
             path.read_text(encoding='utf-8')
             for path in (folder / f'{part}{ending}' for part in parts)
-            if ending == '.js' or path.is_file()  # a view may do without a style of its own
+            if ending == '.js' or path.is_file()  # not each has a style of its own
         )
         for ending in ('.js', '.css')
     )

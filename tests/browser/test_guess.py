@@ -66,7 +66,7 @@ def test_a_guess_by_mouse_comes_back_the_next_day(open_guess) -> None:
     expect(notebook.output('no-timeout')).to_contain_text('YOU GUESSED: after 0.2 m')
     expect(notebook.output('no-timeout')).to_contain_text('What came: at the wall.')
     notebook.restart_kernel()
-    for cell_id in ('setup', 'guess'):
-        notebook.run_cell(cell_id)
+    form_of(notebook).get_by_role('button', name='Bring it back').click()
+    expect(form_of(notebook).locator('.labkit-live-note')).to_be_hidden()
     guessed = form_of(notebook).get_by_role('button', name='after 0.2 m')
     expect(guessed).to_have_attribute('aria-pressed', 'true')

@@ -154,3 +154,9 @@ def test_the_next_day_the_card_is_there(notebook: Notebook, jupyter) -> None:
     expect(kept).to_contain_text('FAIL: ones')
     expect(kept).to_contain_text('HINT 1 of 3')
     expect(notebook.output('check').get_by_text('Error displaying widget')).to_be_hidden()
+    # One button runs the setup cell and this one; what was checked is not there any more.
+    kept.get_by_role('button', name='Bring it back').focus()
+    notebook.page.keyboard.press('Enter')
+    expect(place(notebook, 'NOT ATTEMPTED')).to_be_visible()
+    assert [notebook.error_of(cell_id) for cell_id in ('setup', 'check')] == ['', '']
+    assert notebook.output_text('starter') == ''
