@@ -323,12 +323,17 @@ function render({ model, el }) {
   sizes.observe(canvas);
   const themes = new MutationObserver(repaint);
   themes.observe(document.body, { attributes: true });
-  document.addEventListener('fullscreenchange', redraw);
+  const onFullScreen = () => {
+    // The room fills it.
+    if (document.fullscreenElement?.contains(el) && !map.followed) map.fitAll();
+    redraw();
+  };
+  document.addEventListener('fullscreenchange', onFullScreen);
 
   return () => {
     sizes.disconnect();
     themes.disconnect();
-    document.removeEventListener('fullscreenchange', redraw);
+    document.removeEventListener('fullscreenchange', onFullScreen);
     cancelAnimationFrame(frame);
     end();
   };

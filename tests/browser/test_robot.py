@@ -191,6 +191,10 @@ def test_map_and_keys_are_beside_each_other_where_there_is_room(stage):
     area.get_by_role('button', name='Full screen').click()
     stage.page.wait_for_function('document.fullscreenElement')
     assert stage.page.evaluate("document.fullscreenElement.querySelector('.labkit-teleop')")
+    # The room fills the picture, and the keys are at its right.
+    assert beside()
+    expect(arena.locator('canvas')).to_have_attribute('data-view', 'all')
+    assert arena.bounding_box()['width'] > 0.6 * stage.page.viewport_size['width']
     stage.page.evaluate('document.exitFullscreen()')
     stage.page.wait_for_function('!document.fullscreenElement')
 
