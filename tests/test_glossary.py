@@ -23,8 +23,8 @@ def texts() -> dict[str, str]:
 
 # Words that are ordinary English, too, and so may stand in a lesson before the one of their own.
 ORDINARY = {
-    'client', 'constant', 'feedback', 'frame', 'goal', 'package', 'publisher', 'record', 'result',
-    'server', 'subscriber', 'subscription',
+    'client', 'constant', 'feedback', 'frame', 'goal', 'joint', 'link', 'package', 'publisher',
+    'record', 'result', 'server', 'subscriber', 'subscription',
 }  # fmt: skip
 
 

@@ -32,13 +32,18 @@ def two_copies(code: str) -> str:
 def started_by_subprocess(script: str) -> str:
     """Return a cell that starts a script as a process, as the standard library does it."""
     start = "process = subprocess.Popen([sys.executable, '-c', program])"
-    return f'import subprocess\nimport sys\n\nprogram = """{script}"""\n{start}\n'
+    return f'import subprocess\nimport sys\n\nprogram = {_quoted(script)}\n{start}\n'
 
 
 def started_by_asyncio(script: str) -> str:
     """Return a cell that starts a script as a process without waiting, as asyncio does it."""
     start = "process = await asyncio.create_subprocess_exec(sys.executable, '-c', program)"
-    return f'import asyncio\nimport sys\n\nprogram = """{script}"""\n{start}\n'
+    return f'import asyncio\nimport sys\n\nprogram = {_quoted(script)}\n{start}\n'
+
+
+def _quoted(script: str) -> str:
+    quotes = "'''" if '"""' in script else '"""'
+    return f'{quotes}{script}{quotes}'
 
 
 def _parts(code: str) -> tuple[str, str]:
