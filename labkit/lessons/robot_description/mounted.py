@@ -92,7 +92,9 @@ class _Mounted(GraphClause):
 class _Placed(GraphClause):
     """The camera is where the task says, and looks down as far."""
 
-    text = WORDS.of(base=BASE, x=FROM_BASE[0], z=FROM_BASE[2], down=DOWN_DEG).clause('placed')
+    text = WORDS.of(child=CHILD, base=BASE, x=FROM_BASE[0], z=FROM_BASE[2], down=DOWN_DEG).clause(
+        'placed'
+    )
     own_life = True
 
     def judge(self, evidence: Evidence) -> str:
