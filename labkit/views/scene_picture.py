@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from labkit.errors import printable
 from labkit.transforms.rotations import matrix
 from labkit.transforms.tree import Place
 from labkit.views.scene_shapes import faces_of
@@ -35,8 +36,12 @@ FOLLOWED = 3.0
 # Lines of the grid are 1 m apart, and there are so many cells to each side, as in RViz.
 CELLS = 5
 AXIS, AXIS_WIDTH, LEAST_PX = 0.08, 0.004, 0.7
+_MARKS = ('points', 'line', 'lines')
 # A mesh of more triangles than this is drawn as the box around it.
 MOST_FACES = 3000
+# So many faces are in a picture, those of the largest things; what is smaller then is a dot. So
+# many points and pieces of lines are, too: of more, some are left out. A notebook stores it.
+MOST_SOLID, MOST_MARKS = 12_000, 4_000
 # Where light comes from, and how bright a face is that turns away from it.
 LIGHT, SHADE = np.array((0.34, -0.5, 0.8)), 0.38
 # The colours of the page's light theme; see `scene.css`.
@@ -130,7 +135,7 @@ def to_svg(
         grid: Whether the floor is drawn.
     """
     things = list(things)
-    paper = _Paper(camera_for(things, places, follow))
+    paper = _Paper(camera_for(things, places, follow), things)
     if grid:
         paper.grid()
     for thing in things:
@@ -140,7 +145,7 @@ def to_svg(
     paper.finish()
     if axes:
         paper.axes(places)
-    words = html.escape(text)
+    words = html.escape('\n'.join(map(printable, text.splitlines())))
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
         f'width="{WIDTH}" height="{HEIGHT}" role="img" font-family="sans-serif" font-size="12">'
@@ -153,8 +158,11 @@ def to_svg(
 class _Paper:
     """A picture in the making: what is drawn waits until all is known that is farther away."""
 
-    def __init__(self, camera: Camera) -> None:
+    def __init__(self, camera: Camera, things: Iterable[Thing]) -> None:
         self.camera = camera
+        marks = [each for each in things if each.shape in _MARKS]
+        self._most_marks = MOST_MARKS // max(1, len(marks))
+        self._dots = _small_ones(each for each in things if each.shape not in (*_MARKS, 'text'))
         self.parts: list[str] = []
         # How far away, the kind of what is drawn, and that.
         self._waiting: list[tuple[float, str, str]] = []
@@ -194,7 +202,9 @@ class _Paper:
             seen = self.camera.seen([place[0]])
             x, y = self.camera.on_paper(seen)[0]
             self._add(seen[0, 2], 'text', _text(thing.text, x, y))
-        elif thing.shape in ('points', 'line', 'lines'):
+        elif id(thing) in self._dots:
+            self._dot(thing, place)
+        elif thing.shape in _MARKS:
             self._marks(thing, moved(place, np.asarray(thing.points, float) * thing.size))
         else:
             self._faces(thing, place)
@@ -212,8 +222,11 @@ class _Paper:
     def _marks(self, thing: Thing, points: Any) -> None:
         """Draw points, or lines through them."""
         colour = _colour(thing)
+        step = max(1, math.ceil(len(points) / max(1, self._most_marks)))
+        if thing.shape != 'lines':
+            points = points[::step]
         if thing.shape != 'points':
-            by_two = points[: len(points) // 2 * 2].reshape(-1, 2, 3)
+            by_two = points[: len(points) // 2 * 2].reshape(-1, 2, 3)[::step]
             through = np.stack([points[:-1], points[1:]], axis=1)
             ends = by_two if thing.shape == 'lines' else through
             ends = ends[np.isfinite(ends).all(axis=(1, 2))]
@@ -228,6 +241,16 @@ class _Paper:
         width = 3.0 if thing.metres else thing.width
         look = f'<path stroke="{colour}" stroke-width="{width:g}" stroke-linecap="round" d="'
         for away, (x, y) in zip(seen[:, 2], self.camera.on_paper(seen), strict=True):
+            self._add(away, look, f'M{x:.1f} {y:.1f}h0')
+
+    def _dot(self, thing: Thing, place: Place) -> None:
+        seen = self.camera.seen([place[0]])
+        away = float(seen[0, 2])
+        if away > NEAR:
+            (x, y), width = self.camera.on_paper(seen)[0], SCALE * _extent(thing) / away
+            pale = f' opacity="{thing.alpha:g}"' if thing.alpha < 1 else ''
+            look = f'<path stroke="{_colour(thing)}" stroke-width="{max(1.0, width):.0f}" '
+            look += f'stroke-linecap="round"{pale} d="'
             self._add(away, look, f'M{x:.1f} {y:.1f}h0')
 
     def _faces(self, thing: Thing, place: Place) -> None:
@@ -270,6 +293,24 @@ class _Paper:
         return way
 
 
+def _small_ones(solids: Iterable[Thing]) -> set[int]:
+    """Return the `id` of each solid for whose faces there is no room in a picture."""
+    sorted_ones = sorted(solids, key=_extent, reverse=True)
+    left = MOST_SOLID
+    for number, thing in enumerate(sorted_ones):
+        left -= sum(map(len, faces_of(thing, MOST_FACES)[1]))
+        if left < 0:
+            return set(map(id, sorted_ones[number:]))
+    return set()
+
+
+def _extent(thing: Thing) -> float:
+    """Return how large a solid is, m."""
+    if thing.points is None or not len(thing.points):
+        return max(map(abs, thing.size))
+    return float((np.ptp(thing.points, axis=0) * np.abs(thing.size)).max())
+
+
 def _directions() -> tuple[Any, Any, Any]:
     """Return where ahead, right and up are for the camera."""
     level = math.cos(ELEVATION)
@@ -303,7 +344,8 @@ def _shaded(colour: str, bright: float) -> str:
 
 
 def _text(words: str, x: float, y: float) -> str:
+    words = html.escape(printable(words))
     return (
         f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="middle" fill="{_hex("ink")}" '
-        f'stroke="#ffffff" stroke-width="3" paint-order="stroke">{html.escape(words)}</text>'
+        f'stroke="#ffffff" stroke-width="3" paint-order="stroke">{words}</text>'
     )

@@ -302,6 +302,34 @@ def test_picture_is_the_same_for_the_same_scene_and_escapes_words() -> None:
     assert 'odom<' not in to_svg([], PLACES, '', axes=False, grid=False)
 
 
+def test_many_things_are_dots_and_the_large_ones_are_not() -> None:
+    large = Thing('sphere', place=((0, 0, 3), HERE[1]), size=(2, 2, 2), colour='#ff0000')
+    spheres = [Thing('sphere', place=((n, 0, 0), HERE[1]), size=(0.1,) * 3) for n in range(2000)]
+    few = to_svg([*spheres[:20], large], PLACES, '')
+    assert 'stroke-linecap' not in few
+    many = to_svg([*spheres, large], PLACES, '')
+    assert 'stroke-linecap' in many
+    assert len(many) < 1e6
+    reds = {'#' + match for match in re.findall('fill="#([0-9a-f]{2}0000)"', many)}
+    assert len(reds) > 10  # it has its faces, each as bright as it is
+
+
+@pytest.mark.parametrize('shape', ['points', 'line', 'lines'])
+def test_of_many_marks_some_are_drawn(shape: str) -> None:
+    rows = np.random.default_rng(1).uniform(-1, 1, (50_000, 3))
+    cloud = Thing(shape, points=as_points(rows), colour='#123456')
+    small = Thing('points', points=as_points(rows[:300]), colour='#654321')
+    picture = to_svg([cloud, small], {}, '', grid=False)
+    assert len(picture) < 200_000
+    assert picture.count('h0') >= 300  # what has few is complete
+
+
+def test_a_text_that_is_no_xml_is_readable_all_the_same() -> None:
+    picture = to_svg([Thing('text', text='a\x07b')], {'\x1bodom': HERE}, 'one\ntwo\x00')
+    texts = [each.text for each in ElementTree.fromstring(picture).iter() if each.text]
+    assert {'a?b', '?odom', 'one\ntwo?'} <= set(texts)
+
+
 def test_what_is_near_is_drawn_over_what_is_far() -> None:
     camera = camera_for([], {'odom': HERE})
     boxes = [
