@@ -6,8 +6,9 @@ import math
 import time
 from typing import TYPE_CHECKING, Any
 
+from labkit.errors import printable
 from labkit.views.placed_frames import PlacedFrames, nanoseconds
-from labkit.views.scene_displays import Things, TopicDisplay
+from labkit.views.scene_displays import Things, TopicDisplay, counted
 from labkit.views.scene_markers import DELETE, DELETE_ALL, marker_things
 from labkit.views.scene_things import HERE, Thing, is_same
 
@@ -28,11 +29,13 @@ class MarkerDisplay(TopicDisplay):
     def __init__(self, topic: str, *, is_on: bool) -> None:
         super().__init__(topic, is_on=is_on)
         self._markers: dict[str, _Kept] = {}
+        self._is_over = False  # whether there were more than are kept
 
     def forget(self) -> None:
         """Forget all of them."""
         super().forget()
         self._markers.clear()
+        self._is_over = False
 
     def take(self, message: Any) -> None:
         """Take markers that are new, changed or gone."""
@@ -41,20 +44,35 @@ class MarkerDisplay(TopicDisplay):
             name = f'{marker.ns} {marker.id}'
             if marker.action == DELETE_ALL:
                 self._markers.clear()
+                self._is_over = False
             elif marker.action == DELETE:
                 self._markers.pop(name, None)
             elif name in self._markers or len(self._markers) < MOST_MARKERS:
                 self._markers[name] = _Kept(marker, before=self._markers.get(name))
+            else:
+                self._is_over = True
 
     def _things_in(self, frames: PlacedFrames, fixed: str) -> Things:
         now = time.monotonic()
         self._markers = {n: kept for n, kept in self._markers.items() if kept.ends_at > now}
         found: Things = {}
+        # There may be as many reasons as markers: the first one is told.
+        reasons: list[str] = []
         for name, kept in self._markers.items():
-            things = kept.things(f'{self.name} {name.strip()}', frames, fixed)
-            if kept.why:
-                frames.why[self.name] = f'{self.name}, marker {name.strip()}: {kept.why}.'
-            found |= {f'{name} {number}': thing for number, thing in enumerate(things)}
+            called = f'{self.name}, marker {printable(name.strip())}'
+            things = kept.things(called, frames, fixed)
+            lost = frames.why.pop(called, '')
+            if lost or kept.why:
+                reasons.append(lost or f'{called}: {kept.why}.')
+            for number, thing in enumerate(things):
+                found[f'{name} {number}'] = thing
+        told = reasons[:1]
+        if len(reasons) > 1:
+            told.append(f'Not drawn either: {counted(len(reasons) - 1, "more marker")}.')
+        if self._is_over:
+            told.append(f'{self.name}: only the first {MOST_MARKERS} markers are drawn.')
+        if told:
+            frames.why[self.name] = ' '.join(told)
         return found
 
     def _words(self) -> str:

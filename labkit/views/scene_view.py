@@ -38,6 +38,7 @@ FIRST_SEC = 3.0
 # Frames that stand still if they are there, as RViz has it, and REP 105.
 STANDING = ('map', 'odom')
 GRID, AXES = 'grid', 'frames'
+SCENE = 'The scene'
 # Where robots say what they look like. Some begin when somebody subscribes; that they are there is
 # known from what they say of their joints.
 DESCRIPTION, JOINTS = 'robot_description', 'joint_states'
@@ -129,6 +130,9 @@ class SceneView(LivePage):
         fixed, frames = self.fixed_frame, self._frames
         frames.why.clear()
         names = _ordered(frames.heard.tree) if fixed else []
+        if names and fixed not in frames.heard.tree:
+            frames.place(SCENE, fixed, names[0])
+            names = []
         found = {name: frames.place(f'Frame {name}', fixed, name) for name in names}
         places = {name: place[1] for name, place in found.items() if place is not None}
         things = {
@@ -147,6 +151,9 @@ class SceneView(LivePage):
             silent = [feed.silence() for feed in self._frames.heard.feeds if feed.publishers]
             return [' '.join(filter(None, silent)) or EMPTY]
         told = [f'A scene in the frame {self.fixed_frame}.']
+        if self.fixed_frame not in self._frames.heard.tree:
+            # Nothing can be drawn, and all for one reason.
+            return [*told, self._frames.why[SCENE]]
         for robot in self._robots(places):
             space = robot.name.removesuffix(DESCRIPTION).strip('/')
             x, y = (two(number) for number in places[robot.root][0][:2])

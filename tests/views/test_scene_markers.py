@@ -189,8 +189,19 @@ def test_markers_are_taken_away_and_end(run: Callable[[str], str]) -> None:
 
 def test_why_a_marker_is_not_there_is_told(run: Callable[[str], str]) -> None:
     run("show(marker(1, frame='moon'))")
-    assert 'n 1 can\'t be drawn in map: "moon" passed' in run('print(frames.why)').replace(
-        '\\', ''
-    )
+    why = run("print(frames.why['/marks'])")
+    assert why.startswith('/marks, marker n 1 can\'t be drawn in map: "moon" passed')
     run('one = marker(2); one.scale.x = 0.0; show(marker(1, action=Marker.DELETE), one)')
     assert 'marker n 2: ' in run("print(frames.why['/marks'])")
+
+
+def test_of_many_markers_that_are_not_there_one_reason_is_told(run: Callable[[str], str]) -> None:
+    run("show(*(marker(n, frame='moon') for n in range(2050)))")
+    assert run('print(list(frames.why), len(look()))') == "['/marks'] 0"
+    why = run("print(frames.why['/marks'])")
+    assert why.count('lookupTransform') == 1
+    assert why.endswith(
+        'Not drawn either: 1999 more markers. /marks: only the first 2000 markers are drawn.'
+    )
+    run('show(marker(1, action=Marker.DELETEALL))')
+    assert run('print(frames.why)') == '{}'
