@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections import deque
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from labkit.descriptions.urdf import read
@@ -23,7 +24,7 @@ from labkit.views.scene_messages import (
     world_things,
 )
 from labkit.views.scene_robot import robot_things
-from labkit.views.scene_things import numbers_of
+from labkit.views.scene_things import is_same, numbers_of
 
 if TYPE_CHECKING:
     from labkit.descriptions.links_and_joints import Description
@@ -41,22 +42,33 @@ MAX_WAITING = 10
 
 
 class WorldDisplay(Display):
-    """The walls and posts of a simulated world."""
+    """The walls and posts of a simulated world, and its crates, which may be pushed.
 
-    def __init__(self, world: World) -> None:
+    Args:
+        look: Returns the world as it is now.
+    """
+
+    def __init__(self, look: Callable[[], World]) -> None:
         super().__init__('walls')
-        self._world = world
-        self._drawn: tuple[str, Things] = ('', {})
+        self._look = look
+        self._drawn: tuple[object, ...] = ()
+        self._things: Things = {}
 
     def _things_in(self, frames: PlacedFrames, fixed: str) -> Things:
-        tree = frames.heard.tree
+        tree, world = frames.heard.tree, self._look()
         frame = next((name for name in ('map', 'odom') if name in tree), fixed)
-        if frame != self._drawn[0] or not self._drawn[1]:
-            self._drawn = frame, world_things(self._world, frame)
-        return self._drawn[1]
+        here = frame, tuple(world.walls), tuple(world.posts)
+        if here != self._drawn:
+            self._drawn, before = here, self._things
+            self._things = {
+                name: before[name] if name in before and is_same(before[name], thing) else thing
+                for name, thing in world_things(world, frame).items()
+            }
+        return self._things
 
     def _words(self) -> str:
-        walls, posts = len(self._world.walls), len(self._world.posts)
+        world = self._look()
+        walls, posts = len(world.walls), len(world.posts)
         return f'Of the simulator: {counted(walls, "wall")}, {counted(posts, "post")}.'
 
 

@@ -9,7 +9,7 @@ widgets can't run it is a picture (`labkit.views.scene_picture`).
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 from labkit.errors import LabError, quoted
@@ -64,7 +64,7 @@ class SceneView(LivePage):
         follow: str,
         show: tuple[str, ...],
         hide: tuple[str, ...],
-        world: World | None,
+        world: Callable[[], World] | None,
     ) -> None:
         self._wanted, self._follow = fixed_frame, follow
         self._chosen = dict.fromkeys(show, True) | dict.fromkeys(hide, False)
@@ -349,8 +349,8 @@ def scene(
         show: Topics, or other displays, that are on from the start: those of cameras are off by
             default, since a camera takes time.
         hide: Topics, or other displays, that are off from the start.
-        world: The world of a simulator, or a robot in it: its walls and posts are drawn, which no
-            topic tells.
+        world: The world of a simulator, or a robot in it: its walls, posts and crates are drawn,
+            which no topic tells.
 
     Returns:
         A scene in a cell, text for `print()`. `.close()` ends it.
@@ -380,13 +380,19 @@ def _checked(names: Iterable[str]) -> tuple[str, ...]:
     return every
 
 
-def _world_of(world: object) -> World | None:
-    """Return a simulated world, or that of a robot; None for none."""
+def _world_of(world: object) -> Callable[[], World] | None:
+    """Return what returns a simulated world, or that of a robot, as it is now; None for none."""
     from labkit.sim.world import World
 
-    found = getattr(getattr(world, 'simulator', None), 'world', world)
-    if found is None or isinstance(found, World):
-        return found
+    if world is None:
+        return None
+    simulator = getattr(world, 'simulator', None)
+    if isinstance(getattr(simulator, 'world', None), World):
+        return lambda: simulator.world  # type: ignore[union-attr]
+    if isinstance(getattr(world, 'plan', None), World):
+        return world.seen  # type: ignore[attr-defined, no-any-return]
+    if isinstance(world, World):
+        return lambda: world
     raise LabError(
         f'world is a simulated world, or a robot in one, but it is {quoted(world)}.',
         todo='robot = lab.spin(lab.Turtlebot()), then lab.scene(world=robot)',

@@ -110,6 +110,27 @@ def test_walls_of_the_simulator_are_there_if_they_are_asked_for(
     assert text == shown(run_still('lab.scene(world=robot.simulator.world)'))['text/plain']
 
 
+def test_a_crate_is_drawn_where_it_was_pushed(run_still: Callable[[str], Result]) -> None:
+    pytest.importorskip('mujoco')
+    run_still(
+        'import mujoco\n'
+        'from labkit.sim.physics.mujoco_world import PhysicsWorld\n'
+        'from labkit.sim.physics.things import Crate\n'
+        'from labkit.sim.world import room\n'
+        'world = PhysicsWorld(room(4.0, 4.0), crates=[Crate(0.5, 0.0, size=0.2)])\n'
+        'pushed = lab.scene(world=world)\n'
+        'def middle():\n'
+        '    found = pushed.things\n'
+        "    return round(sum(found[f'walls wall {n}'].place[0][0] for n in range(4, 8)) / 4, 3)"
+    )
+    room_side = "pushed.things['walls wall 0']"
+    run_still(f'print(pushed); side = {room_side}')
+    assert run_still('print(middle())').text == '0.5\n'
+    run_still('world.data.qpos[0] = 1.2; mujoco.mj_forward(world.model, world.data)')
+    # What stands is not sent again.
+    assert run_still(f'print(middle(), {room_side} is side)').text == '1.2 True\n'
+
+
 def test_what_tf2_does_not_know_is_named_with_its_reason_and_left_out(
     run_still: Callable[[str], Result],
 ) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from labkit.descriptions.links_and_joints import Description
-from labkit.errors import LabError
+from labkit.errors import LabError, quoted
 from labkit.sim.kinematics import Pose, yaw_from_quaternion
 from labkit.sim.physics.mjcf import STEP, mjcf_of_robot, mjcf_of_world
 from labkit.sim.physics.things import Crate, Ice, Ramp
@@ -71,6 +71,11 @@ class PhysicsWorld:
         ice: Iterable[Ice] = (),
         ramps: Iterable[Ramp] = (),
     ) -> None:
+        if plan is not None and not isinstance(plan, World):
+            raise LabError(
+                f'A plan is a World, with walls and posts, and this is {quoted(plan)}.',
+                todo='PhysicsWorld(room(4.0, 4.0)), with room from labkit.sim.world',
+            )
         self._mujoco = _mujoco()
         self.plan = plan if plan is not None else room()
         self.crates = tuple(Crate(*each) for each in crates)

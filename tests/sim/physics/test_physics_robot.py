@@ -288,3 +288,8 @@ def test_an_hour_of_two_robots_that_push_things_has_no_nan() -> None:
     assert world.time == pytest.approx(3600, abs=0.1)
     for pose in (*world.crate_poses(), *(each.pose for each in both)):
         assert max(abs(pose.x), abs(pose.y)) < 1.6, pose
+
+
+def test_what_is_no_plan_is_refused_in_words() -> None:
+    with pytest.raises(LabError, match=r"A plan is a World, .* and this is 'yard'"):
+        PhysicsWorld('yard')  # type: ignore[arg-type]
