@@ -54,7 +54,7 @@ def ros_packages() -> str:
             if is_inside(origin, os.getcwd())
             else 'Start from a terminal where no ROS 2 has been sourced.',
         )
-    return f'Jazzy, rclpy {wanted["ros-rclpy"]}'
+    return f'Jazzy, rclpy {_version("ros-rclpy")}'
 
 
 def jupyter() -> str:
@@ -65,7 +65,7 @@ def jupyter() -> str:
         found = [f'{name} {_version(name)}' for name in _JUPYTER if _version(name)]
         return f'not of this environment: {", ".join(found)}'
     _compare(wanted)
-    return ', '.join(f'{name} {wanted[name]}' for name in _JUPYTER if name in wanted)
+    return ', '.join(f'{name} {_version(name)}' for name in wanted or _JUPYTER if _version(name))
 
 
 def _python_path() -> list[str]:
@@ -73,7 +73,13 @@ def _python_path() -> list[str]:
 
 
 def pinned() -> dict[str, str]:
-    """Return the packages and versions that environment.txt pins for this Python."""
+    """Return the packages and versions that environment.txt pins for this Python.
+
+    None where labkit was installed from a wheel: there is no course then, and the environment is
+    somebody else's.
+    """
+    if is_inside(str(ROOT), sysconfig.get_path('purelib')):
+        return {}
     try:
         lines = (ROOT / 'environment.txt').read_text(encoding='utf-8').splitlines()
     except OSError as error:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import errno
 import json
 import os
+import shutil
 import stat
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -66,6 +68,47 @@ def test_update_reaches_untouched_lessons_and_spares_edited_ones(
     assert source_of(work / START) == '1 + 1 + 1'
     assert (work / TALKER).read_text() == notebook('my own')
     assert (work / '03_command_line.ipynb').is_file()
+
+
+def test_a_newer_version_by_git_spares_what_is_the_learners(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    root = Path(__file__).resolve().parents[2]
+    assert '\ngit pull\npython3 -m labkit lab\n' in (root / 'README.md').read_text()
+    theirs, clone = tmp_path / 'theirs', tmp_path / 'clone'
+
+    def git(folder: Path, *words: str) -> str:
+        who = ['-c', 'user.name=A', '-c', 'user.email=a@example.org']
+        command = ['git', *who, *words]
+        return subprocess.run(
+            command, cwd=folder, check=True, capture_output=True, text=True
+        ).stdout
+
+    (theirs / 'notebooks').mkdir(parents=True)
+    shutil.copy(root / '.gitignore', theirs)
+    for name in (START, TALKER):
+        (theirs / 'notebooks' / name).write_text(notebook('1'))
+    git(theirs, 'init', '-q')
+    git(theirs, 'add', '.')
+    git(theirs, 'commit', '-qm', 'One')
+    git(tmp_path, 'clone', '-q', str(theirs), str(clone))
+    monkeypatch.setattr(learner_folder, 'LESSONS', clone / 'notebooks')
+    monkeypatch.setattr(learner_folder, 'WORK', clone / 'work')
+    learner_folder.copy_lessons()
+    (clone / 'work' / TALKER).write_text(notebook('my own'))
+    (clone / 'work' / 'nodes').mkdir()
+    (clone / 'work' / 'nodes' / 'mine.py').write_text('pass\n')
+
+    for name in (START, TALKER):
+        (theirs / 'notebooks' / name).write_text(notebook('2'))
+    git(theirs, 'commit', '-qam', 'Two')
+    git(clone, 'pull')
+    news = learner_folder.copy_lessons()
+    assert len(news) == 1 and TALKER in news[0]
+    assert source_of(clone / 'work' / START) == '2'
+    assert source_of(clone / 'work' / TALKER) == 'my own'
+    assert (clone / 'work' / 'nodes' / 'mine.py').read_text() == 'pass\n'
+    assert git(clone, 'status', '--porcelain') == ''
 
 
 def test_nothing_is_written_twice(work: Path) -> None:
