@@ -11,6 +11,7 @@ import io
 from typing import TYPE_CHECKING, Any
 
 from labkit import settings
+from labkit.background.compat import leave_events_to_cells
 from labkit.settings import audience
 from labkit.views.themed import as_source, picture, themed
 
@@ -32,6 +33,7 @@ def register() -> None:
         # Not as `text/html`: matplotlib removes other formatters of figures.
         bundles = shell.display_formatter.mimebundle_formatter
         bundles.for_type_by_name('matplotlib.figure', 'Figure', _bundle)
+        leave_events_to_cells()
 
 
 def _bundle(figure: Figure) -> dict[str, str]:

@@ -236,6 +236,36 @@ print(comm.comm_id)
     assert kernel.finish(running).text == 'running\nTrue\n'
 
 
+def test_what_a_page_says_shows_no_figure_that_a_cell_still_draws(kernel):
+    subshell = kernel.new_subshell()
+    code = """
+import threading
+import matplotlib.pyplot as plt
+from comm import create_comm
+import labkit  # calls compat.leave_events_to_cells()
+from labkit.background import compat
+heard = threading.Semaphore(0)
+comm = create_comm(target_name='a view')
+compat.hear_while_cells_run(comm)
+comm.on_msg(lambda message: heard.release())
+print(comm.comm_id)
+"""
+    made = kernel.run(code)
+    drawing = """
+figure = plt.figure()
+print('drawing', flush=True)
+print(all(heard.acquire(timeout=20) for _ in range(2)), plt.get_fignums())
+"""
+    running = kernel.start(drawing)
+    kernel.wait_for_output(running, 'drawing')
+    # The events of the first message are over when the second one is heard.
+    for _ in range(2):
+        kernel.say(made.text.strip(), {}, subshell)
+    result = kernel.finish(running)
+    assert result.text.startswith('drawing\nTrue [1]\n')
+    assert [each['output_type'] for each in result.outputs] == ['stream', 'display_data']
+
+
 def test_a_clock_is_set_without_a_word_to_the_graph(script):
     result = script(
         READY
