@@ -80,12 +80,13 @@ ANSWERS = [
         'This step is another one',
         ('0.160', '0.161'),
     ),
+    # The wheels of the notebook's robot stand at 0 while the check is awaited, however long.
     wrong(
         'stops after ten',
         'Each message of the wheels is a step.',
         (
             '        self.publisher.publish(odom)\n',
-            "        self.count = getattr(self, 'count', 0) + 1\n"
+            "        self.count = getattr(self, 'count', 0) + any(self.last)\n"
             '        if self.count > 10:\n            return\n'
             '        self.publisher.publish(odom)\n',
         ),
