@@ -43,7 +43,9 @@ def themed(drawing: str, words: str, source: str) -> str:
         source: The same as an image, see `as_source`, for pages that do not trust the notebook.
     """
     drawing = drawing[drawing.index('<svg') :]
-    drawing = drawing.replace('<svg', f'<svg aria-hidden="true" style="{_STYLE}"', 1)
+    # What has no colour is black: matplotlib writes all of its text so.
+    style = f'{_STYLE}; fill: #000000'
+    drawing = drawing.replace('<svg', f'<svg aria-hidden="true" style="{style}"', 1)
     drawing = _TAG.sub(_with_style, drawing)
     drawing = _COLOUR.sub(lambda found: _THEME.get(found[0], found[0]), drawing)
     label = escape(words)

@@ -58,6 +58,8 @@ def test_what_is_black_or_white_follows_the_theme() -> None:
     assert not re.search('(?<!, )#(000000|ffffff)', drawing)
     assert 'var(--jp-content-font-color1, #000000)' in drawing
     assert 'var(--jp-layout-color0, #ffffff)' in drawing
+    # Text has no colour of its own.
+    assert 'fill: var(--jp-content-font-color1, #000000)' in drawing[: drawing.index('>')]
     assert '#1f77b4' in drawing  # the colour of a line stays
 
 
