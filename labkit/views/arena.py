@@ -155,7 +155,7 @@ class Arena(LivePage):
 
     def _unknown(self) -> list[str]:
         """Return what can't be drawn, with the reason."""
-        return list(self._frames.why.values()) if self._frames is not None else []
+        return self._frames.told if self._frames is not None else []
 
     # -- ROS ------------------------------------------------------------------------------------
 

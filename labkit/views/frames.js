@@ -26,6 +26,15 @@ function render({ model, el }) {
     const above = drawing.place.querySelectorAll('.caption');
     known.caption.forEach((line, index) => above[index] && setText(above[index], line));
   };
+  // What is wrong, and the numbers, are read where the drawing scrolls, too.
+  const keepAbove = () => {
+    const { place, svg } = drawing;
+    const shift = svg ? (place.scrollLeft * svg.getAttribute('width')) / svg.clientWidth : 0;
+    place.querySelectorAll('.caption').forEach((line) => {
+      line.setAttribute('transform', `translate(${shift} 0)`);
+    });
+  };
+  drawing.place.addEventListener('scroll', keepAbove);
   const { note, send, end } = follow(model, el, (news) => {
     if (news.svg !== undefined) {
       const isFirst = !drawing.svg;
@@ -33,6 +42,7 @@ function render({ model, el }) {
       // Where the root is, if it scrolls.
       const { place } = drawing;
       if (isFirst) place.scrollLeft = (place.scrollWidth - place.clientWidth) / 2;
+      keepAbove();
       details.hidden = zoom.hidden = !news.svg;
     }
     if (news.told !== undefined) setText(told, news.told);

@@ -201,10 +201,15 @@ def _two_parents(edges: Sequence[FrameEdge]) -> Iterator[Trouble]:
         if len(above) > 1:
             names = ' and '.join(f'{edge.parent} (from {edge.source})' for edge in above)
             number = _NUMBERS.get(len(above), len(above))
+            so = (
+                'is all that counts'
+                if all(edge.is_static for edge in above)
+                else 'counts, so the tree changes all the time'
+            )
             yield Trouble(
                 (child,),
-                f'{child} has {number} parents: {names}. A frame has one: tf2 takes the last that '
-                'it has heard, so the tree changes all the time.',
+                f'{child} has {number} parents: {names}. A frame has one: the last that tf2 has '
+                f'heard {so}.',
                 f'Let only one node publish where {child} is.',
             )
 

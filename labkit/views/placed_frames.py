@@ -31,6 +31,14 @@ class PlacedFrames:
         self.heard = HeardFrames(node)
         self.why: dict[str, str] = {}
 
+    @property
+    def told(self) -> list[str]:
+        """What can't be drawn, with the reason: once, if several things have the same."""
+        things: dict[str, list[str]] = {}
+        for what, words in self.why.items():
+            things.setdefault(words.removeprefix(what), []).append(what)
+        return [f'{_in_words(names)}{reason}' for reason, names in things.items()]
+
     def place(
         self, what: str, target: str, source: str, time: int = 0
     ) -> tuple[int, Place] | None:
@@ -64,6 +72,11 @@ class PlacedFrames:
         except TransformException:
             return False
         return 0 < newest < time
+
+
+def _in_words(names: list[str]) -> str:
+    *others, last = names
+    return f'{", ".join(others)} and {last}' if others else last
 
 
 def nanoseconds(stamp: Any) -> int:

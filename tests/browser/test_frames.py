@@ -109,6 +109,18 @@ def test_what_is_too_wide_to_be_read_scrolls(notebook: Notebook) -> None:
     scrolls = 'place => place.scrollWidth > place.clientWidth + 1'
     assert place.evaluate(scrolls)
     expect(part(view, 'Frame odom')).to_be_in_viewport()
+    # What is wrong is read wherever it is scrolled to.
+    notebook.run_cell('shelf')
+    caption = view.locator('.caption').first
+    for left in (0, 300):
+        place.evaluate('(place, left) => { place.scrollLeft = left; }', left)
+        begins = 'caption => caption.getBoundingClientRect().left'
+        expect(caption).to_contain_text('✗ Could not find')
+        notebook.page.wait_for_function(
+            f'([caption, place]) => ({begins})(caption) > ({begins})(place)'
+            f' && ({begins})(caption) < ({begins})(place) + 60',
+            arg=[caption.element_handle(), place.element_handle()],
+        )
     view.get_by_role('button', name='Fit all of it').click()
     assert not place.evaluate(scrolls)
     notebook.page.set_viewport_size({'width': 1280, 'height': 900})

@@ -569,7 +569,7 @@ robot.take_scan(scan)
     ends = 'print([[round(n, 3) + 0.0 for n in end] for end in robot.current_scene().scan])'
     assert kernel.run(ends).text.strip() == '[]'
     assert (
-        'The scan on /nowhere can\'t be drawn in odom: "odom" passed'
+        'The scan on /nowhere and mast can\'t be drawn in odom: "odom" passed'
         in kernel.run('print(view.text)').text
     )
     kernel.run('view._frames.heard.set_transform_static(mast, "test")')

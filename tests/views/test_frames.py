@@ -105,9 +105,17 @@ def test_trees_that_are_not_connected_are_told_in_the_words_of_tf2() -> None:
 def test_a_frame_with_two_parents_is_told_with_who_says_so() -> None:
     tree = tree_of(edge('map', 'base', '/b'), edge('odom', 'base'), edge('base', 'scan'))
     (told,) = texts(tree)
-    assert told.startswith('base has two parents: map (from /b) and odom (from /a).')
+    assert told == (
+        'base has two parents: map (from /b) and odom (from /a). A frame has one: the last that '
+        'tf2 has heard counts, so the tree changes all the time.'
+    )
     assert str(tree).count('scan') == 1
     assert 'base (see above): moving, from /a' in str(tree)
+
+
+def test_two_parents_of_a_static_frame_do_not_take_turns() -> None:
+    (told,) = texts(tree_of(edge('map', 'lamp', static=True), edge('odom', 'lamp', static=True)))
+    assert told.endswith('the last that tf2 has heard is all that counts.')
 
 
 def test_a_loop_is_told_once_and_ends() -> None:
