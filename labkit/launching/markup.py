@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
-from xml.parsers import expat
 
 import yaml
 
@@ -27,6 +26,7 @@ from labkit.launching.model import (
 )
 from labkit.launching.parameter_types import coerce, is_value, type_named
 from labkit.launching.templates import template, unescaped
+from labkit.rosgraph.xml_loading import Element, XmlError, load_xml
 from labkit.rosgraph.yaml_loading import load_yaml
 
 __all__ = ['from_xml', 'from_yaml']
@@ -176,28 +176,25 @@ def from_xml(text: str, path: str) -> LaunchDescription:
     Raises:
         LaunchError: It is no XML, or says something that is unknown.
     """
-    parser = expat.ParserCreate()
-    roots: list[Entity] = []
-    open_ones: list[Entity] = []
-
-    def begin(tag: str, attributes: dict[str, str]) -> None:
-        entity = Entity(tag, Place(path, parser.CurrentLineNumber), dict(attributes))
-        (open_ones[-1].parts if open_ones else roots).append(entity)
-        open_ones.append(entity)
-
-    parser.StartElementHandler = begin
-    parser.EndElementHandler = lambda tag: open_ones.pop()
     try:
-        parser.Parse(text.encode(), True)
-    except expat.ExpatError as error:
-        inside = f' in <{open_ones[-1].tag}>' if open_ones else ''
+        root = load_xml(text)
+    except XmlError as error:
         raise LaunchError(
-            f'This is no XML{inside}: {expat.errors.messages[error.code]}.',
+            f'This is no XML: {error}.',
             todo='Each tag ends with /> or has an end tag, and in a value & is written &amp;, '
-            '< is written &lt;.',
-            place=Place(path, error.lineno),
+            '< is written &lt;. What the file itself declares is an <arg> or a <let>.',
+            place=Place(path, error.line),
         ) from error
-    return _description(roots[0])
+    return _description(_of_element(root, path))
+
+
+def _of_element(element: Element, path: str) -> Entity:
+    return Entity(
+        element.tag,
+        Place(path, element.line),
+        element.attributes,
+        [_of_element(child, path) for child in element.children],
+    )
 
 
 class _Located(dict[Any, Any]):

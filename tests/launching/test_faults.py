@@ -1,5 +1,6 @@
 """Faults of launch files are told with file and line, and with what to do."""
 
+import itertools
 from pathlib import Path
 
 import pytest
@@ -59,6 +60,21 @@ def test_xml(body: str, line: int, words: str, tmp_path: Path, toys: Path):
     assert words in str(caught.value)
 
 
+def test_entities_that_stand_for_billions_are_refused(tmp_path: Path):
+    # 10 ** 6 texts: more would be refused by expat itself, and by no other limit.
+    names = 'abcdefg'
+    declared = ''.join(
+        f'<!ENTITY {name} "{f"&{before};" * 10}">\n' for before, name in itertools.pairwise(names)
+    )
+    text = (
+        f'<!DOCTYPE launch [\n<!ENTITY a "x">\n{declared}]>\n<launch><log message="&g;"/></launch>'
+    )
+    path = write(tmp_path, {'main.launch.xml': text})
+    with pytest.raises(LabError) as caught:
+        visit(path)
+    assert f"{path}, line 2: This is no XML: it declares the entity 'a'." in str(caught.value)
+
+
 @pytest.mark.parametrize(
     ('program', 'words'),
     [
@@ -81,7 +97,7 @@ def test_a_program_that_is_not_there_is_told_and_the_others_start(
 
 
 MUCH = {
-    'groups': ('<group>' * 5000 + '</group>' * 5000, 1, 'nested too deep'),
+    'groups': ('<group>' * 5000 + '</group>' * 5000, 2, 'nested too deep'),
     'substitutions': (f'<log message="{"$(var " * 5000}a{")" * 5000}"/>', 1, 'nested too deep'),
     'text': (
         '<let name="a" value="x"/>' + '<let name="a" value="$(var a)$(var a)"/>' * 40,
