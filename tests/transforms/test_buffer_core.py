@@ -1,6 +1,7 @@
 """The buffer answers as the real tf2: values to 1e-9, times, and errors word by word.
 
-What the real one says is in real.json; record_real.py has made it, and tells how.
+What the real one says is in real.json; record_real.py has made it, and tells how. What a library
+says that knows nothing of tf2 is in pytransform3d.json, made by record_pytransform3d.py.
 """
 
 from __future__ import annotations
@@ -15,8 +16,11 @@ from transforms.replay import ask, make_buffer, put
 
 import labkit.transforms.buffer_core as ours
 from labkit.transforms import exceptions
+from labkit.transforms.rotations import matrix
 
-STORIES = json.loads(Path(__file__).with_name('real.json').read_text(encoding='utf-8'))
+HERE = Path(__file__).parent
+STORIES = json.loads((HERE / 'real.json').read_text(encoding='utf-8'))
+SECOND_WITNESS = json.loads((HERE / 'pytransform3d.json').read_text(encoding='utf-8'))
 
 
 class Module:
@@ -43,6 +47,17 @@ def test_it_answers_as_the_real_one(story):
             continue
         answer = ask(Module, buffer, step['call'], step['asked'])
         assert answer == near(step['said']), f'step {number}: {step["call"]}{step["asked"]}'
+
+
+@pytest.mark.parametrize('case', SECOND_WITNESS, ids=lambda case: '-'.join(case['asked'][:2]))
+def test_it_answers_as_pytransform3d(case):
+    buffer = make_buffer(Module, None)
+    for step in case['steps']:
+        put(buffer, step)
+    answer = ask(Module, buffer, 'lookup_transform_core', case['asked'])
+    turned = [list(row) for row in matrix(tuple(answer['turn']))]
+    found = [[*row, shift] for row, shift in zip(turned, answer['shift'], strict=True)]
+    assert found == [pytest.approx(row, abs=1e-9) for row in case['said']]
 
 
 def test_there_are_many_cases_of_all_kinds():
