@@ -110,9 +110,7 @@ class Arena(LivePage):
         return self.text
 
     def _static(self) -> dict[str, str]:
-        if self._watched and not self._ended and self._node is None:
-            # Before the page asks: it can't while the cell is running and driving the robot.
-            self._open()
+        self._open_early()
         self._wait_for_first()
         return self._stored_form()
 

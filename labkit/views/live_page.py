@@ -98,6 +98,11 @@ class LivePage(Live):
             for feed in self._feeds:
                 feed.open(helper())
 
+    def _open_early(self) -> None:
+        """Listen before the page asks: it can't while this cell, or one after it, is running."""
+        if self._watched and not self._ended and self._node is None:
+            self._open()
+
     def _close(self) -> None:
         with self._lock:
             for feed in self._feeds:

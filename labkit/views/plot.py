@@ -122,9 +122,10 @@ class Plot(LivePage):
         return (self._bundle or self._wait_for_bundle())['text/plain']
 
     def _static(self) -> dict[str, str]:
-        return self._bundle or self._stored_bundle()
+        self._open_early()
+        return self._bundle or self._stored_form()
 
-    def _stored_bundle(self) -> dict[str, str]:
+    def _stored_form(self) -> dict[str, str]:
         """Return text and picture of the last window."""
         words, lines = [], []
         for each in self._series:
@@ -171,6 +172,13 @@ class Plot(LivePage):
         for each in self._series:
             each.waiting.append((moment, math.nan))
         super()._open()
+
+    def _close(self) -> None:
+        with self._lock:
+            # What has come since the last update, for the page and for what is stored.
+            if any(each.waiting for each in self._series):
+                self._send_to_page(*self._update(everything=False))
+            super()._close()
 
     def _update(self, everything: bool) -> Update:
         parts, buffers = [], []

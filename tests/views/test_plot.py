@@ -94,6 +94,17 @@ def test_leaves_nothing_behind(run):
     )
 
 
+def test_last_lines_stay_when_ros_is_stopped_before_the_page_asks(run):
+    # As in Run All: the kernel hears the page only when a later cell has stopped ROS.
+    run('talker = lab.spin(Talker())\nview = lab.plot("/odds.data")\ndisplay(view)')
+    run('seen = talker.count\nlab.wait_until(lambda: talker.count >= seen + 20)\nlab.stop()')
+    run('page = PlotPage(view)')
+    assert run('print(len(page.numbers()) >= 20, page.known["ended"])') == (
+        'True ROS was stopped. Run this cell to start it again.'
+    )
+    assert run('print("image/svg+xml" in view._stored_form())') == 'True'
+
+
 def test_time_in_which_nobody_looked_is_a_gap(run):
     run('talker = lab.spin(Talker())\npage = PlotPage(lab.plot("/odds.data"))')
     run('page.wait_numbers(5)\npage.say("gone")\npage.say("there")')
