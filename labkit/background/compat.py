@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import ctypes
 import sys
-import threading
 import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -52,7 +51,6 @@ __all__ = [
     'is_of_rate',
     'is_shut_down',
     'keep_feedback',
-    'leave_events_to_cells',
     'new_wait_set',
     'node_of_action',
     'own_guards',
@@ -397,21 +395,3 @@ def hear_while_cells_run(comm: Any) -> None:
     background that is the main thread, where they wait for the running cell.
     """
     comm._reply_subshell_for = None
-
-
-def leave_events_to_cells() -> None:
-    """Let IPython's events happen in the thread that runs the cells, and between them.
-
-    A comm that is heard in another thread (see `hear_while_cells_run`) fires `post_execute` there.
-    matplotlib then shows, and closes, the figure that a cell is still drawing.
-    """
-    events = settings.shell().events
-    trigger = events.trigger
-
-    def trigger_between_cells(event: str, *args: Any, **kwargs: Any) -> None:
-        if threading.current_thread() is threading.main_thread():
-            trigger(event, *args, **kwargs)
-        else:
-            call_in_kernel(lambda: trigger(event, *args, **kwargs))
-
-    events.trigger = trigger_between_cells

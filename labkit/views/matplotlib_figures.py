@@ -8,10 +8,10 @@ show, is still the PNG.
 from __future__ import annotations
 
 import io
+import threading
 from typing import TYPE_CHECKING, Any
 
 from labkit import settings
-from labkit.background.compat import leave_events_to_cells
 from labkit.settings import audience
 from labkit.views.themed import as_source, picture, themed
 
@@ -33,7 +33,26 @@ def register() -> None:
         # Not as `text/html`: matplotlib removes other formatters of figures.
         bundles = shell.display_formatter.mimebundle_formatter
         bundles.for_type_by_name('matplotlib.figure', 'Figure', _bundle)
-        leave_events_to_cells()
+        _leave_events_to_cells(shell.events)
+
+
+def _leave_events_to_cells(events: Any) -> None:
+    """Let IPython's events happen in the thread that runs the cells, and between them.
+
+    A comm that is heard in another thread (`compat.hear_while_cells_run`) fires `post_execute`
+    there. matplotlib then shows, and closes, the figure that a cell is still drawing.
+    """
+    trigger = events.trigger
+
+    def trigger_between_cells(event: str, *args: Any, **kwargs: Any) -> None:
+        if threading.current_thread() is threading.main_thread():
+            trigger(event, *args, **kwargs)
+            return
+        from labkit.background.compat import call_in_kernel  # loads rclpy
+
+        call_in_kernel(lambda: trigger(event, *args, **kwargs))
+
+    events.trigger = trigger_between_cells
 
 
 def _bundle(figure: Figure) -> dict[str, str]:

@@ -242,7 +242,7 @@ def test_what_a_page_says_shows_no_figure_that_a_cell_still_draws(kernel):
 import threading
 import matplotlib.pyplot as plt
 from comm import create_comm
-import labkit  # calls compat.leave_events_to_cells()
+import labkit
 from labkit.background import compat
 heard = threading.Semaphore(0)
 comm = create_comm(target_name='a view')
