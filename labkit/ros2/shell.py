@@ -26,6 +26,7 @@ COMMANDS = {
     'doctor': 'labkit.ros2.doctor',
     'interface': 'labkit.ros2.interface',
     'launch': 'labkit.ros2.launch',
+    'lifecycle': 'labkit.ros2.lifecycle',
     'node': 'labkit.ros2.node',
     'param': 'labkit.ros2.param',
     'pkg': 'labkit.ros2.pkg',
@@ -43,11 +44,6 @@ _ELSEWHERE = {
     'daemon': (
         'starts and stops a process in the background that knows the graph',
         'A command asks the running notebook, which knows it; without one it looks for itself.',
-    ),
-    'lifecycle': (
-        'changes the states of nodes that have some',
-        'Call their services: ros2 service call /NODE/get_state lifecycle_msgs/srv/GetState, '
-        "or change_state with lifecycle_msgs/srv/ChangeState '{transition: {id: 1}}'.",
     ),
     'multicast': (
         'sends and receives a packet, to try a network out',

@@ -121,7 +121,6 @@ def test_signs_that_a_page_has_made_are_named(capsys, line, signs):
             'starts and stops a process',
         ),
         ('daemon stop', 'ros2 daemon is part of a full installation'),
-        ('lifecycle get /a', 'ros2 lifecycle is part of a full installation'),
         ('multicast send', 'ros2 multicast is part of a full installation'),
         ('component list', 'ros2 component is part of a full installation'),
         ('param set /lamp speed \udcff', "'\\udcff' is no text in UTF-8."),
