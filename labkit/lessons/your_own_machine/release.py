@@ -28,6 +28,7 @@ NOT_ADDED = WORDS.mistake('release/not-added')
 LATER = WORDS.mistake('release/later')
 MADE_BY_COLCON = WORDS.mistake('release/made-by-colcon')
 NO_ARCHIVE = WORDS.mistake('release/no-archive')
+NOT_PACKED = WORDS.mistake('release/not-packed')
 OTHER_FILES = WORDS.mistake('release/other-files')
 
 
@@ -98,11 +99,11 @@ def _is_archived(work: Work) -> None:
     if not path.is_file():
         raise Fail(wanted, f'no {ARCHIVE}', NO_ARCHIVE)
     try:
-        with tarfile.open(path) as archive:
+        with tarfile.open(path, 'r:gz') as archive:
             members = sorted((one for one in archive if one.isfile()), key=lambda one: one.name)
             held = [_blob(archive, member) for member in members]
     except tarfile.TarError:
-        raise Fail(wanted, f'{ARCHIVE} is not such an archive', OTHER_FILES) from None
+        raise Fail(wanted, f'{ARCHIVE} is no tar that gzip has packed', NOT_PACKED) from None
     names = [member.name for member in members]
     # git archive --prefix puts the same folder before each name.
     if len(names) != len(tagged) or not all(map(str.endswith, names, tagged)):

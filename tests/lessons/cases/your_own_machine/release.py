@@ -67,7 +67,7 @@ ANSWERS = [
     ),
     wrong(
         'an archive that is none',
-        'courier.tar.gz is not such an archive',
+        'courier.tar.gz is no tar that gzip has packed',
         (ARCHIVE, '!echo 1.0.0 > courier.tar.gz\n'),
     ),
     wrong(
@@ -100,6 +100,11 @@ ANSWERS = [
         'an archive beside the workspace',
         'Seen: no courier.tar.gz',
         ('-o courier.tar.gz', '-o src/courier.tar.gz'),
+    ),
+    wrong(
+        'a tar that is not packed',
+        'promises a file that gzip has packed',
+        (' -o courier.tar.gz', ' --format=tar -o courier.tar.gz'),
     ),
     right('no folder before the names', (' --prefix=ros2_ws/', '')),
     right(
