@@ -161,6 +161,21 @@ ANSWERS = [
             'from rclpy.node import Node\nfrom rclpy.qos import DurabilityPolicy, QoSProfile\n',
         ),
     ),
+    wrong(
+        'once for each subscriber',
+        'Nothing stops the node after its first message.',
+        (
+            "        super().__init__('door')\n",
+            "        super().__init__('door')\n        self.known = 0\n",
+        ),
+        (
+            '        if self.publisher.get_subscription_count() > 0:\n',
+            '        count, known = self.publisher.get_subscription_count(), self.known\n'
+            '        self.known = count\n'
+            '        if count > known:\n',
+        ),
+        ('            self.timer.cancel()\n', ''),
+    ),
     right('waits in a thread'),
     right(
         'an executor with several threads',
