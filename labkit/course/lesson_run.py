@@ -18,6 +18,7 @@ import signal
 import struct
 import sys
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, cast
 
@@ -30,7 +31,7 @@ from nbval.plugin import find_comment_markers, find_metadata_tags
 
 from labkit.errors import LabError
 
-__all__ = ['LessonError', 'LessonRun', 'nbval_options', 'normalised']
+__all__ = ['LessonError', 'LessonRun', 'has_what_it_needs', 'nbval_options', 'normalised']
 
 # A cell takes at most 5 s; the rest is for busy machines. A cell that builds sets a limit in its
 # metadata: "labkit": {"timeout_sec": 1200}.
@@ -69,6 +70,14 @@ def nbval_options(cell: NotebookNode) -> dict[str, bool]:
     if cell.cell_type != 'code':
         return {}
     return {**dict(find_metadata_tags(cell.metadata)), **dict(find_comment_markers(cell.source))}
+
+
+def has_what_it_needs(cell: NotebookNode) -> bool:
+    """Tell whether the module is here that a cell needs by its metadata: "needs": "mujoco".
+
+    Without it the cell runs, too, and says so. It is compared, and recorded, only with it.
+    """
+    return find_spec(cell.metadata.get('labkit', {}).get('needs', 'labkit')) is not None
 
 
 class LessonRun:

@@ -22,7 +22,7 @@ from nbformat import NotebookNode
 from nbval.cover import setup_coverage, teardown_coverage
 from nbval.plugin import IPyNbCell, IPyNbFile, coalesce_streams
 
-from labkit.course.lesson_run import LessonError, LessonRun, normalised
+from labkit.course.lesson_run import LessonError, LessonRun, has_what_it_needs, normalised
 from labkit.course.record import LESSONS_DIR
 
 __all__ = ['LessonFile']
@@ -102,6 +102,9 @@ class LessonCell(IPyNbCell):  # type: ignore[misc]
             self.parent.timed_out = run.timed_out or run.broken
             raise
         self.test_outputs = coalesce_streams(deepcopy(run.shown))
+        # Where what it needs is not installed, it has said that, which no file stores.
+        if not has_what_it_needs(self.cell):
+            return
         # nbval leaves a cell alone that was never run, but not outputs without a run.
         if self.options['check'] or self.cell.execution_count is None:
             self._compare()

@@ -16,7 +16,7 @@ from pathlib import Path
 import nbformat
 from nbformat import NotebookNode
 
-from labkit.course.lesson_run import LessonError, LessonRun, nbval_options
+from labkit.course.lesson_run import LessonError, LessonRun, has_what_it_needs, nbval_options
 from labkit.errors import LabError
 from labkit.files import write_atomically
 
@@ -99,6 +99,10 @@ def _record_lesson(path: Path) -> str:
     before = path.read_bytes()
     with LessonRun(path) as run:
         write_tasks(run.notebook, path.name)
+        for cell in run.notebook.cells:
+            if not has_what_it_needs(cell):
+                message = f'it needs {cell.metadata["labkit"]["needs"]}, which is not installed'
+                raise LessonError(message, cell_id=str(cell.get('id', '')))
         for index in range(len(run.notebook.cells)):
             _check_raised(run.execute(index))
     _keep_measurements(run.notebook, nbformat.reads(before.decode(), as_version=4))

@@ -89,6 +89,8 @@ STATIC_MOVES = kind(
     'it is sent again with the same numbers, or moved by hand now and then',
 )
 
+# On this topic a simulator tells where things are in its own world.
+_TRUTH = 'base_pose_ground_truth'
 # Behind its clock by more than that is what a buffer has forgotten, s.
 _OLD_SEC = 10.0
 # An innocent reason is over by then, s: whoever listens has heard nothing yet.
@@ -391,8 +393,9 @@ def _unknown(scene: Scene, trees: list[_Tree]) -> Iterator[Fault]:
     for node in scene.nodes:
         for pub in node.publishers:
             frame = pub.frame
-            # A slash in front has a kind of its own.
-            if frame and frame not in known and not frame.startswith('/'):
+            # A slash in front has a kind of its own. The world of a simulator need not be a frame.
+            told = frame.startswith('/') or pub.topic.endswith(_TRUTH)
+            if frame and frame not in known and not told:
                 yield Fault(
                     UNKNOWN,
                     (node.name,),

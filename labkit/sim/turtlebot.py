@@ -346,6 +346,24 @@ class Turtlebot(Node):
             self._reported = 0
             self.restart()
 
+    def enter(self, world: PhysicsWorld, x: float = 0.0, y: float = 0.0, yaw: float = 0.0) -> None:
+        """Take a robot with physics out of its world, and `place` it in another one.
+
+        Args:
+            world: The other one.
+            x: m.
+            y: m.
+            yaw: rad.
+
+        Raises:
+            LabError: The robot has no physics, or as for `place`.
+        """
+        if not self.simulator.has_physics:
+            raise _not_heavy(world)
+        with self._lock:
+            self.simulator.enter(world, (x, y, yaw))  # type: ignore[call-arg, arg-type]
+            self.place(x, y, yaw)
+
     def restart(self) -> None:
         """Restart the timers: the next messages, with a scan, come a full period from now.
 
@@ -601,14 +619,18 @@ class Turtlebot(Node):
 def _simulator_class(physics: bool, world: World | PhysicsWorld | None) -> type[Simulator]:
     if not physics:
         if world is not None and not isinstance(world, World):
-            raise LabError(
-                f'The world {world!r} is one with physics, and this robot has none.',
-                todo='lab.Turtlebot(physics=True, world=...)',
-            )
+            raise _not_heavy(world)
         return Simulator
     from labkit.sim.physics.physics_robot import PhysicsSimulator
 
     return PhysicsSimulator
+
+
+def _not_heavy(world: PhysicsWorld) -> LabError:
+    return LabError(
+        f'The world {world!r} is one with physics, and this robot has none.',
+        todo='lab.Turtlebot(physics=True, world=...)',
+    )
 
 
 def _latched() -> QoSProfile:

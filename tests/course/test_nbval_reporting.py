@@ -99,6 +99,7 @@ CELLS = {
     'data': 'display({"application/json": {"a": [1, 2]}}, raw=True)',
     'meant': 'raise ValueError("no")',
     'exempted': 'import time; print(time.monotonic())',
+    'needs': 'print("not installed")',
     'picture': f'display({{"image/png": "{BLACK}", "text/plain": "a dot"}}, raw=True)',
     'picture-text': f'display({{"image/png": "{BLACK}", "text/plain": "a dot"}}, raw=True)',
 }
@@ -114,6 +115,11 @@ def displays(**data: object) -> Callable[[NotebookNode], object]:
     return lambda cell: cell.outputs[0].data.update(named)
 
 
+def needs_what_is_not_here(cell: NotebookNode) -> None:
+    cell.metadata.labkit = {'needs': 'a_package_that_nobody_has'}
+    cell.outputs[0].update(text='something else\n')
+
+
 CHANGES: dict[str, Callable[[NotebookNode], object]] = {
     'text': stores(0, text='hallo\nworld\n'),
     'space': stores(0, text='hello  \n'),
@@ -127,10 +133,11 @@ CHANGES: dict[str, Callable[[NotebookNode], object]] = {
     'data': displays(application__json={'a': [1, 3]}),
     'meant': stores(0, evalue='yes'),
     'exempted': stores(0, text='something else\n'),
+    'needs': needs_what_is_not_here,
     'picture': displays(image__png=WHITE),
     'picture-text': displays(text__plain='a line'),
 }
-PASS = {'same', 'exempted', 'picture'}
+PASS = {'same', 'exempted', 'needs', 'picture'}
 
 
 def test_every_difference_is_found_and_shown(folder: Path, nbval: Run):

@@ -8,6 +8,7 @@ import shutil
 import time
 from collections.abc import Collection
 from dataclasses import dataclass, replace
+from importlib.util import find_spec
 from pathlib import Path
 
 import built_once
@@ -73,6 +74,11 @@ class Finding:
 def reset_before(exercise: Exercise, name: str) -> str:
     """Return a cell that takes away what an answer has left, before the one of a name."""
     return _RESET.format(name=exercise.name, seed=f'{exercise.name} {name} {DRAW}')
+
+
+def can_run(exercise: Exercise) -> bool:
+    """Tell whether what an exercise needs is here: MuJoCo has no wheel for Python 3.10."""
+    return find_spec('mujoco') is not None or not getattr(exercise.stage, 'physics', False)
 
 
 def states_of(exercise: Exercise) -> list[Answer]:

@@ -81,6 +81,9 @@ def test_a_frame_in_a_header_that_nobody_publishes() -> None:
     assert told(scene(laser)) == told(scene(laser, hears={})) == []
     slash = replace(laser, publishers=(replace(scan, frame='/base'),))
     assert told(scene(slash, robot)) == []
+    # A simulator's truth is in its own world.
+    truth = replace(laser, publishers=(replace(scan, topic='/base_pose_ground_truth'),))
+    assert told(scene(truth, robot)) == []
 
 
 def test_a_frame_that_is_asked_for() -> None:

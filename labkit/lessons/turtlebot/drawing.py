@@ -62,7 +62,7 @@ def _scene(drive: Drive) -> Scene:
 
     return Scene(
         pose=drive.told(drive.end),
-        trail=[drive.told(pose)[:2] for _, pose in drive.poses],
+        trail=[drive.told(pose)[:2] for _, pose in drive.came],
         scan=[None if end is None else told(end) for end in drive.walls],
         goals=drive.goals,
         frame=FRAME if drive.from_start else '',

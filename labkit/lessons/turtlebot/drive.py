@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 import statistics
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from labkit.exercises.clauses import Evidence
 from labkit.exercises.figures import figure
@@ -16,6 +16,9 @@ from labkit.exercises.history import Note
 from labkit.exercises.messages_heard import Sample, Watch
 from labkit.exercises.observation import Life
 from labkit.sim.kinematics import Pose, wrap_angle, yaw_from_quaternion
+
+if TYPE_CHECKING:
+    from labkit.sim.physics.mujoco_world import PhysicsWorld
 
 __all__ = [
     'EMPTY',
@@ -67,6 +70,8 @@ class Trial:
         nothing: What the scanner says where it sees nothing. It sees less far if that is not inf.
         walls: What else stands in the room, m: walls from (x1, y1) to (x2, y2),
         posts: and posts at (x, y) with a radius.
+        make_world: Makes the world with physics in which it takes place; None in the usual room.
+        drift: Error of the odometry there: see `Turtlebot`.
     """
 
     start: tuple[float, float, float]
@@ -76,6 +81,8 @@ class Trial:
     nothing: float = math.inf
     walls: Sequence[tuple[float, float, float, float]] = ()
     posts: Sequence[tuple[float, float, float]] = ()
+    make_world: Callable[[], PhysicsWorld] | None = None
+    drift: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -127,6 +134,8 @@ class Drive:
         walls: What the scanner saw near its end, beam by beam, m; None where that was nothing.
         margin: How far its times may be off, s: a step of time, for a process of its own.
         cut: Whether the check did not see its end.
+        true_poses: In a world with physics, where it really was: time in s, and pose.
+        crate: And where the first crate was.
     """
 
     evidence: Evidence
@@ -140,6 +149,8 @@ class Drive:
     walls: Sequence[Point | None] = ()
     margin: float = SAME
     cut: bool = False
+    true_poses: list[tuple[float, Pose]] = field(default_factory=list)
+    crate: list[tuple[float, Pose]] = field(default_factory=list)
 
     def take(self, life: Life) -> None:
         """Take what came while time passed."""
@@ -148,14 +159,19 @@ class Drive:
         self.scans = [(sample.at, sample.message.ranges) for sample in life.on('/scan')]
 
     @property
+    def came(self) -> Sequence[tuple[float, Pose]]:
+        """How it came along: what it believes, or what is so where that is another thing."""
+        return self.true_poses or self.poses
+
+    @property
     def start(self) -> Pose:
         """Where it began."""
-        return self.poses[0][1]
+        return self.came[0][1]
 
     @property
     def end(self) -> Pose:
         """Where it is in the end."""
-        return self.poses[-1][1]
+        return self.came[-1][1]
 
     @property
     def duration(self) -> float:
@@ -187,7 +203,7 @@ class Drive:
         return gaps[1:] if len(gaps) > 3 and gaps[0] < usual else gaps
 
     def told(self, pose: Pose) -> Pose:
-        """Return a pose of the odometry in the frame in which verdict and picture tell it.
+        """Return a pose in the frame in which verdict and picture tell it.
 
         Where the task is about that, it is seen from the start: x ahead, y to the left.
         """
@@ -199,7 +215,7 @@ class Drive:
 
     def way(self) -> float:
         """Return how far it drove, m."""
-        return sum(math.dist(a[1][:2], b[1][:2]) for a, b in pairwise(self.poses))
+        return sum(math.dist(a[1][:2], b[1][:2]) for a, b in pairwise(self.came))
 
     def seen(self, at: float, *, since: float = 0.0) -> list[Pose]:
         """Return the odometry that was the newest one at some time, and `since` seconds before."""

@@ -28,6 +28,7 @@ __all__ = [
     'Begins',
     'Hears',
     'look_at_end',
+    'look_at_numbers',
     'look_at_rate',
     'look_at_time',
     'short',

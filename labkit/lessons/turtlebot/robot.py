@@ -20,6 +20,7 @@ from labkit.sim.world import Post, Wall, World, playground
 if TYPE_CHECKING:
     from labkit.exercises.messages_heard import Sample
     from labkit.rosgraph.endpoints import Endpoint
+    from labkit.sim.physics.mujoco_world import PhysicsWorld
 
 __all__ = [
     'find_robot',
@@ -38,14 +39,19 @@ NEAR_WALL = 0.8
 # As far as a short-sighted scanner sees, m.
 SHORT_SIGHT = 1.0
 NO_ROBOT = WORDS.mistake('robot/none')
+NO_PHYSICS = WORDS.mistake('robot/no-physics')
 TWO_ROBOTS = WORDS.mistake('robot/two')
 SECOND_CLOCK = WORDS.mistake('robot/second-clock')
 COPIES = WORDS.mistake('robot/copies')
 OTHERS = WORDS.mistake('robot/others')
 
 
-def find_robot(probe: Probe) -> Any:
+def find_robot(probe: Probe, *, physics: bool = False) -> Any:
     """Return the simulated robot of this notebook.
+
+    Args:
+        probe: The probe of the check.
+        physics: Whether it is one with physics.
 
     Raises:
         Fail: There is none, or not the one of the lesson, or a second one.
@@ -58,7 +64,8 @@ def find_robot(probe: Probe) -> Any:
     name, robot = next((pair for pair in here if hasattr(pair[1], 'simulator')), ('', None))
     expected = 'the robot of this lesson, in this notebook'
     if robot is None:
-        raise Fail(expected, f'/odom comes from {listed}' if ends else 'no robot', NO_ROBOT)
+        seen = f'/odom comes from {listed}' if ends else 'no robot'
+        raise Fail(expected, seen, NO_PHYSICS if physics else NO_ROBOT)
     if len(ends) > 1:
         other = next((end.node for end in ends if end.node != name), name)
         expected = 'one robot on /cmd_vel and /odom'
@@ -71,6 +78,10 @@ def find_robot(probe: Probe) -> Any:
         raise Fail('nobody who publishes on /clock', seen, SECOND_CLOCK.of(name=clocks[0].node))
     if robot.executor is None:
         raise Fail(expected, f'{name} is there, but it is not spun', NO_ROBOT)
+    if physics:
+        if not robot.simulator.has_physics:
+            raise Fail('a robot with physics', f'{name} has none', NO_PHYSICS)
+        return robot
     if robot.simulator.world.fixed != playground().fixed or robot.simulator.robot != BURGER:
         raise Fail(expected, f'{name} is in a room of another kind', NO_ROBOT)
     return robot
@@ -105,6 +116,10 @@ def place(robot: Any, start: tuple[float, float, float]) -> None:
 @contextlib.contextmanager
 def in_room(robot: Any, trial: Trial) -> Iterator[None]:
     """Put into the room what stands there in a drive, and let the scanner be as it is there."""
+    if trial.make_world is not None:
+        with _in_world(robot, trial, trial.make_world()):
+            yield
+        return
     simulator = robot.simulator
     before = simulator.robot, simulator.scan_nothing, simulator.world
     usual = playground()
@@ -121,6 +136,19 @@ def in_room(robot: Any, trial: Trial) -> Iterator[None]:
         simulator.robot, simulator.scan_nothing, _ = before
         if simulator.world is not before[2]:
             simulator.enter(before[2])
+
+
+@contextlib.contextmanager
+def _in_world(robot: Any, trial: Trial, world: PhysicsWorld) -> Iterator[None]:
+    simulator = robot.simulator
+    home, pose, drift = simulator.physics, robot.pose, simulator.drift
+    try:
+        robot.enter(world, *trial.start)
+        simulator.drift = trial.drift
+        yield
+    finally:
+        simulator.drift = drift
+        robot.enter(home, *pose)
 
 
 def walls_near(robot: Any, pose: Pose) -> list[Point | None]:

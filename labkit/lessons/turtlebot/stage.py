@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from labkit.exercises import Clause, Fail, Probe, Stage, expect, words_of
 from labkit.exercises.clauses import Evidence
@@ -75,19 +75,21 @@ class Drives(Stage[Drive]):
         draw: Draws where the drives begin, and where they lead.
         say: Says what was seen, if all was right.
         seconds: How long a drive may take, s.
+        physics: Whether it takes place in worlds with physics.
     """
 
     sign: tuple[str, str]
     draw: Callable[[], Sequence[Trial]]
     say: Callable[[Sequence[Drive]], str]
     seconds: float
+    physics: bool = False
 
     @contextmanager
     def scenes(self, probe: Probe, clauses: Sequence[Clause[Drive]]) -> Iterator[Iterator[Drive]]:
         """Find the node and the robot, and make the drives one after the other."""
         evidence = Evidence(probe)
         find(clauses, Drive(evidence))
-        trials = Trials(evidence, self.sign, self.seconds)
+        trials = Trials(evidence, self.sign, self.seconds, physics=self.physics)
         with observed() as drives:
             with naming(next(each for each in clauses if isinstance(each, Begins))):
                 trials.wait_until_quiet()
@@ -110,9 +112,17 @@ class Trials:
         evidence: What was found in the graph.
         sign: The topic on which the node hears the sign to start, and the type there.
         seconds: How long a drive may take, s.
+        physics: Whether they take place in worlds with physics.
     """
 
-    def __init__(self, evidence: Evidence, sign: tuple[str, str], seconds: float) -> None:
+    def __init__(
+        self,
+        evidence: Evidence,
+        sign: tuple[str, str],
+        seconds: float,
+        *,
+        physics: bool = False,
+    ) -> None:
         self._evidence, self._probe = evidence, evidence.probe
         self._sign, self._seconds = sign, seconds
         node = evidence.subscription(sign[0]).node
@@ -121,7 +131,7 @@ class Trials:
         self.is_here = self._probe.in_this_process(self._source)
         if self.is_here:
             expect.spun(self._probe, self._source)
-        self._robot = find_robot(self._probe)
+        self._robot = find_robot(self._probe, physics=physics)
 
     def made(self, trials: Sequence[Trial], drives: list[Drive]) -> Iterator[Drive]:
         """Make the drives, one after the other.
@@ -146,7 +156,8 @@ class Trials:
             )
             with in_room(self._robot, trial):
                 longest = SIGN_SEC + self._seconds + LONGER_SEC
-                life = self._live(longest, EndOfDrive(SIGN_SEC), trial)
+                until = _noting(self._robot, found, EndOfDrive(SIGN_SEC))
+                life = self._live(longest, until, trial)
                 found.cut = life.seconds >= longest
                 found.take(life)
                 if found.poses:
@@ -252,3 +263,16 @@ class Trials:
             expected = f'{name} follows the time of ROS (use_sim_time), as its timers do'
             raise Fail(expected, f'{name} does not answer when it is told the time', DEAF)
         return life
+
+
+def _noting(
+    robot: Any, drive: Drive, until: Callable[[float, Mapping[str, Watch]], bool]
+) -> Callable[[float, Mapping[str, Watch]], bool]:
+    """Return when a drive is over; in a world with physics, note meanwhile what is where."""
+
+    def noting(now: float, watches: Mapping[str, Watch]) -> bool:
+        drive.true_poses.append((now, robot.pose))
+        drive.crate += [(now, pose) for pose in robot.simulator.physics.crate_poses()[:1]]
+        return until(now, watches)
+
+    return noting if robot.simulator.has_physics else until

@@ -19,7 +19,7 @@ from labkit.sim.world import Wall, World, room
 if TYPE_CHECKING:
     import mujoco
 
-__all__ = ['MOST_BEHIND', 'PhysicsWorld', 'Rider', 'outline', 'yard']
+__all__ = ['MOST_BEHIND', 'PhysicsWorld', 'Rider', 'has_mujoco', 'outline', 'yard']
 
 # Steps between two looks at wheels and contacts, and at motors that change their speed.
 CHUNK, SHORT = 16, 4
@@ -250,6 +250,16 @@ def _check(thing: Crate | Ice | Ramp) -> None:
     small = [value for value in sizes if value <= 0]
     if small and not (isinstance(thing, Ice) and thing.friction == 0 and len(small) == 1):
         raise LabError(f'Sizes, masses and friction are more than 0, but this is {thing!r}.')
+
+
+def has_mujoco() -> bool:
+    """Tell whether worlds with physics can be made here; if not, print why, and what to do."""
+    try:
+        _mujoco()
+    except LabError as error:
+        print(error)
+        return False
+    return True
 
 
 def _mujoco() -> Any:

@@ -116,12 +116,21 @@ class PhysicsSimulator(Simulator):
         self._force = (0.0, 0.0, GRAVITY)
         self._look()
 
-    def enter(self, world: World) -> None:
-        """Take the robot, at rest, out of its world and into one without crates."""
+    def enter(
+        self,
+        world: PhysicsWorld | World,
+        start: Pose | tuple[float, float, float] | None = None,
+    ) -> None:
+        """Take the robot, at rest, out of its world and into another one.
+
+        Args:
+            world: The other one. A `World` becomes one without crates.
+            start: Where it is put there; where it was if None.
+        """
         self.close()
-        self.physics = PhysicsWorld(world)
+        self.physics = world if isinstance(world, PhysicsWorld) else PhysicsWorld(world)
         self.physics.join(self, description(), WHEELS)
-        self.place(self.pose)
+        self.place(self.pose if start is None else start)
 
     def close(self) -> None:
         """Remove the robot from its world."""
@@ -241,7 +250,8 @@ class PhysicsSimulator(Simulator):
         """Read pose and velocity from the world."""
         data, bound = self.physics.data, self._bound()
         w, x, y, z = data.xquat[bound.body].tolist()
-        self._orientation = (x, y, z, w)
+        # Of the two quaternions of a turn it is the one with w >= 0, as of the light robot.
+        self._orientation = (x, y, z, w) if w >= 0 else (-x, -y, -z, -w)
         place_x, place_y, self._height = data.xpos[bound.body].tolist()
         yaw = yaw_from_quaternion(x, y, z, w)
         self.pose = Pose(place_x, place_y, yaw)

@@ -90,6 +90,30 @@ def test_a_world_with_physics_is_for_a_robot_with_physics(stage: Stage) -> None:
         stage.robot(world=PhysicsWorld(open_field()))
 
 
+def test_it_goes_from_one_world_into_another(stage: Stage) -> None:
+    home, rink = PhysicsWorld(open_field()), PhysicsWorld(open_field(), crates=[Crate(1.0, 0.0)])
+    robot = stage.robot(physics=True, world=home)
+    robot.enter(rink, 0.5, -1.0, 1.0)
+    assert robot.pose == pytest.approx((0.5, -1.0, 1.0), abs=1e-3)
+    simulator: Any = robot.simulator
+    assert simulator.physics is rink
+    stage.until(lambda: rink.time > 0.2)
+    with pytest.raises(LabError, match='but a crate is at'):
+        robot.enter(rink, 1.0, 0.0)
+    light = stage.robot(name='light', namespace='light')
+    with pytest.raises(LabError, match='this robot has none'):
+        light.enter(rink)
+
+
+def test_its_heading_is_within_half_a_turn(stage: Stage) -> None:
+    robot = stage.robot(physics=True, world=PhysicsWorld(open_field()), yaw=3.0, lockstep=0.1)
+    driver = stage.driver()
+    stage.command(driver, 0.0, 1.0, 10)
+    assert robot.pose.yaw < 0
+    _, _, z, w = robot.simulator.orientation
+    assert 2 * math.atan2(z, w) == pytest.approx(robot.pose.yaw, abs=1e-6)
+
+
 def test_in_virtual_time_it_goes_the_same_way_each_time() -> None:
     class Curve(Node):
         def __init__(self) -> None:
@@ -127,7 +151,10 @@ def test_without_mujoco_the_error_says_what_installs_it(script: Callable[..., An
         'import sys\nsys.modules["mujoco"] = None\n'
         'import labkit as lab\n'
         'try:\n    lab.Turtlebot(physics=True)\n'
-        'except lab.LabError as error:\n    print(error)'
+        'except lab.LabError as error:\n    print(error)\n'
+        'from labkit.sim.physics.mujoco_world import has_mujoco\n'
+        'print(has_mujoco())'
     )
     done = script(code)
-    assert 'python3 -m labkit physics' in done.stdout, done
+    assert done.stdout.count('python3 -m labkit physics') == 2, done
+    assert done.stdout.endswith('False\n'), done
