@@ -42,7 +42,7 @@ SPEED, SECONDS, EITHER = 0.2, 10.0, 0.5
 # How far it may come off its line, m.
 NEAR = 0.25
 # How far it has to come along its line, m: its wheels slip, so it comes less far than they turn.
-FAR = 0.8
+FAR = 0.5
 # Friction on the slippery side and on the other one.
 SLIPPERY, LESS = (0.04, 0.06), (0.08, 0.15)
 # Commands are in proportion to an error if less than this share of their squares is left over.
