@@ -26,7 +26,7 @@ from labkit.launching import events
 from labkit.launching.event_handlers import BaseEventHandler, entities_in
 from labkit.launching.execute import Start, Written
 from labkit.launching.launch_files import load
-from labkit.launching.lifecycle import ChangeState
+from labkit.launching.lifecycle_nodes import ChangeState
 from labkit.launching.managed_nodes import ManagedNodes
 from labkit.launching.model import Action, Context, Timer, raised
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from labkit.launching.lifecycle import ChangeState, LifecycleNode, StateTransition
+from labkit.launching.lifecycle_nodes import ChangeState, LifecycleNode, StateTransition
 from labkit.launching.model import Action
 
 __all__ = ['ManagedNodes']

@@ -14,7 +14,7 @@ import yaml
 from labkit.errors import LabError, did_you_mean, nearest
 from labkit.launching import actions, execute, ros_actions
 from labkit.launching.conditions import IfCondition, UnlessCondition
-from labkit.launching.lifecycle import LifecycleNode
+from labkit.launching.lifecycle_nodes import LifecycleNode
 from labkit.launching.model import (
     Action,
     LaunchDescription,

@@ -13,7 +13,7 @@ from labkit.launching import (
     event_handlers,
     events,
     execute,
-    lifecycle,
+    lifecycle_nodes,
     model,
     ros_actions,
     substitutions,
@@ -315,8 +315,8 @@ def _functions(module: ModuleType) -> dict[str, Callable[..., Any]]:
 def _of_launch_ros() -> dict[str, dict[str, Any]]:
     ros = {
         **_public(ros_actions),
-        'LifecycleNode': lifecycle.LifecycleNode,
-        'LifecycleTransition': lifecycle.LifecycleTransition,
+        'LifecycleNode': lifecycle_nodes.LifecycleNode,
+        'LifecycleTransition': lifecycle_nodes.LifecycleTransition,
         'PushRosNamespace': ros_actions.PushROSNamespace,
         'RosTimer': ros_actions.ROSTimer,
     }
@@ -326,13 +326,16 @@ def _of_launch_ros() -> dict[str, dict[str, Any]]:
         'Parameter',
     )
     joined = ros_actions.joined_namespace
-    by_name = {'matches_node_name': lifecycle.matches_node_name}
-    happened = {'ChangeState': lifecycle.ChangeState, 'StateTransition': lifecycle.StateTransition}
+    by_name = {'matches_node_name': lifecycle_nodes.matches_node_name}
+    happened = {
+        'ChangeState': lifecycle_nodes.ChangeState,
+        'StateTransition': lifecycle_nodes.StateTransition,
+    }
     return {
         'launch_ros': {},
         'launch_ros.actions': ros,
         'launch_ros.descriptions': values,
-        'launch_ros.event_handlers': {'OnStateTransition': lifecycle.OnStateTransition},
+        'launch_ros.event_handlers': {'OnStateTransition': lifecycle_nodes.OnStateTransition},
         'launch_ros.events': by_name,
         'launch_ros.events.lifecycle': {**by_name, **happened},
         'launch_ros.events.matchers': by_name,

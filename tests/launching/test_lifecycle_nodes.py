@@ -13,7 +13,7 @@ from lifecycle_msgs.msg import State, Transition
 
 from labkit.background.domains import claim_domain
 from labkit.errors import LabError
-from labkit.launching.lifecycle import ChangeState
+from labkit.launching.lifecycle_nodes import ChangeState
 from tests.launching.stage import visit, write
 
 # A node that shows its transitions; the parameter `ends` makes one of them end otherwise.
