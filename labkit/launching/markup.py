@@ -182,7 +182,7 @@ def from_xml(text: str, path: str) -> LaunchDescription:
         raise LaunchError(
             f'This is no XML: {error}.',
             todo='Each tag ends with /> or has an end tag, and in a value & is written &amp;, '
-            '< is written &lt;. What the file itself declares is an <arg> or a <let>.',
+            '< is written &lt;.',
             place=Place(path, error.line),
         ) from error
     return _description(_of_element(root, path))

@@ -359,7 +359,7 @@ class Turtlebot(Node):
             LabError: The robot has no physics, or as for `place`.
         """
         if not self.simulator.has_physics:
-            raise _not_heavy(world)
+            raise _needs_physics(world)
         with self._lock:
             self.simulator.enter(world, (x, y, yaw))  # type: ignore[call-arg, arg-type]
             self.place(x, y, yaw)
@@ -619,14 +619,14 @@ class Turtlebot(Node):
 def _simulator_class(physics: bool, world: World | PhysicsWorld | None) -> type[Simulator]:
     if not physics:
         if world is not None and not isinstance(world, World):
-            raise _not_heavy(world)
+            raise _needs_physics(world)
         return Simulator
     from labkit.sim.physics.physics_robot import PhysicsSimulator
 
     return PhysicsSimulator
 
 
-def _not_heavy(world: PhysicsWorld) -> LabError:
+def _needs_physics(world: PhysicsWorld) -> LabError:
     return LabError(
         f'The world {world!r} is one with physics, and this robot has none.',
         todo='lab.Turtlebot(physics=True, world=...)',

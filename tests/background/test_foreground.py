@@ -394,13 +394,17 @@ def test_a_file_that_is_run_leaves_what_a_pasted_program_leaves(kernel, how):
             'print([each.get_name() for each in runtime.unspun_nodes()], runtime.nodes())'
         )
         assert left.text == f'{["leaving"] * (act == "1 / 0")} []\n'
-    (kernel.folder / 'caught.py').write_text(
-        FILE.format(act='sys.exit()', main='try: main()\n    except SystemExit: print("caught")')
+    caught = FILE.format(
+        act='sys.exit()', main='try: main()\n    except SystemExit: print("caught")'
     )
+    # By a name, so that it stays whenever Python collects what nothing holds.
+    held = caught.replace('spin(Leaving())', 'spin(node)').replace(
+        '    rclpy.init()\n', '    global node\n    rclpy.init()\n    node = Leaving()\n'
+    )
+    (kernel.folder / 'caught.py').write_text(held)
     assert kernel.run('%run caught.py').text == 'caught\n'
-    assert kernel.run('print([each.get_name() for each in runtime.unspun_nodes()])').text == (
-        "['leaving']\n"
-    )
+    left = 'import gc; gc.collect(); print([each is node for each in runtime.unspun_nodes()])'
+    assert kernel.run(left).text == '[True]\n'
 
 
 @pytest.mark.parametrize('how', ['spin', 'own executor', 'with executor'])

@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 import tarfile
+import zlib
 from collections.abc import Sequence
 from hashlib import sha1
 
@@ -102,7 +103,7 @@ def _is_archived(work: Work) -> None:
         with tarfile.open(path, 'r:gz') as archive:
             members = sorted((one for one in archive if one.isfile()), key=lambda one: one.name)
             held = [_blob(archive, member) for member in members]
-    except tarfile.TarError:
+    except (tarfile.TarError, EOFError, zlib.error):
         raise Fail(wanted, f'{ARCHIVE} is no tar that gzip has packed', NOT_PACKED) from None
     names = [member.name for member in members]
     # git archive --prefix puts the same folder before each name.

@@ -106,6 +106,11 @@ ANSWERS = [
         'promises a file that gzip has packed',
         (' -o courier.tar.gz', ' --format=tar -o courier.tar.gz'),
     ),
+    wrong(
+        'half of an archive',
+        'courier.tar.gz is no tar that gzip has packed',
+        (ARCHIVE, ARCHIVE + '!truncate -s 500 courier.tar.gz\n'),
+    ),
     right('no folder before the names', (' --prefix=ros2_ws/', '')),
     right(
         'all of src, and a note',
